@@ -33,5 +33,6 @@ def grid_of(
     """
     states = [PAPER_STATES[state] if isinstance(state, str) else state for state in initial]
     models = {**PAPER_MODELS, **(models or {})}
+    models["chain"] = {**models["chain"], "blocks": states[0].blocks}
     runs = dict.fromkeys(models["laws"], Settings(**settings))
     return Grid(folder, {state.name: state for state in states}, a, runs, models)

@@ -1,7 +1,8 @@
 """An independent method in double precision: SciPy's DOP853 from event to event, for any chain, law and contact.
 
 Positions are relative to the driver, y_i = U_i − vt, which makes the paper's Eq. 2 y' = U' − v, U'' = −Ky − dθΦ(dU')
-with d = ±1, the direction of slip. Stiffness K, static friction θ and Φ are given: nothing is shared with the package.
+with d = ±1, the direction of slip; masses divide U''. Stiffness K, static friction θ and Φ are given: nothing is shared
+with the package.
 Event times are good to about 1e-9 over a short horizon; a dip shorter than SPACING is not seen.
 """
 
@@ -16,7 +17,7 @@ FRESH = 2e-3
 ROUNDING = 1e-13
 
 
-def scipy_events(stiffness, threshold, friction, v, position, velocity, slip, end, *, contact="one_sided"):
+def scipy_events(stiffness, threshold, friction, v, position, velocity, slip, end, *, contact="one_sided", mass=1.0):
     """Return all events up to `end`, (time, block from 1, 0 stop | 1 start), and position and velocity there.
 
     friction : Φ of the speed; slip : of each block, 0 stuck, ±1 the direction of its slip
@@ -30,7 +31,7 @@ def scipy_events(stiffness, threshold, friction, v, position, velocity, slip, en
 
     def rate(_, y):
         speed = y[blocks:]
-        acceleration = -stiffness @ y[:blocks] - drag * friction(np.maximum(slip * speed, 0.0))
+        acceleration = (-stiffness @ y[:blocks] - drag * friction(np.maximum(slip * speed, 0.0))) / mass
         return np.concatenate([speed - v, slips * acceleration])
 
     def gaps(time, y):
@@ -100,7 +101,6 @@ def model_events(model, start, end):
     offset = model.sliding_offset
     slip = np.where(start.stuck, 0, np.where(start.velocity < 0.0, -1, 1))
     matter = model.chain.stiffness, model.chain.thresholds, model.law, model.v
-    events, position, velocity = scipy_events(
-        *matter, start.position + offset, start.velocity, slip, end, contact=model.contact
-    )
+    kind = {"contact": model.contact, "mass": model.chain.masses}
+    events, position, velocity = scipy_events(*matter, start.position + offset, start.velocity, slip, end, **kind)
     return events, np.concatenate([position - offset, velocity])

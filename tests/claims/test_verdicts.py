@@ -121,11 +121,10 @@ AT_ONE = ["plus_mean_distance", "plus_aperiodic", "velocities_touch_zero"]
 REPLACED = {"linearized": {"law": "exponential"}, "nonlinear": {}}
 MOVED = {"plus": {"position": [0.98, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1023]}}
 FASTER = {"plus": {"position": [0.989, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1024]}}
-FOUR = {"four": {"position": [-1.0] * 4, "velocity": [0.1] * 4}}
 LONGER = "the paper's runs have a transient of 3000 and a window of 7000, those of the study "
 CHAINS = [{"ends": "ring"}, {"coupling": 2.0}, {"pulling": 1.0}, {"threshold": [1.0, 1.1, 1.0]}]
 FEW = "a statement on all 0.005 ≤ a ≤ 0.08 needs 10 values of a; what was computed has 2 there"
-SPRINGS = "the study's chain has other springs or static friction than the paper's"
+SPRINGS = "the study's chain has other springs, masses or static friction than the paper's"
 
 
 @pytest.mark.parametrize(
@@ -141,7 +140,7 @@ SPRINGS = "the study's chain has other springs or static friction than the paper
         (["plus_mean_distance"], paper_world, {"initial": MOVED}, "the study's initial state plus is not the paper's"),
         (["plus_mean_distance"], paper_world, {"initial": FASTER}, "the study's initial state plus is not the paper's"),
         (["minus_synchronizes"], paper_world, {"initial": MOVED}, "the study has no initial state minus"),
-        (["equilibrium"], paper_world, {"initial": FOUR}, "the paper's chain has 3 blocks, that of the study 4"),
+        (["equilibrium"], paper_world, {"chain": {"blocks": 4}}, "the paper's chain has 3 blocks, that of the study 4"),
         (AT_ONE, lambda: _at(lambda a: a != 0.08), {}, "a = 0.08 is not in the grid"),
         (["minus_synchronizes"], lambda: _at(lambda a: slice(None, None, 8)), {}, FEW),
     ],

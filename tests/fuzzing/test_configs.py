@@ -50,14 +50,15 @@ basins chains two_blocks samples pixels tiles pairs blocks laws seed position ve
 perturbations threads phases amplitude phase_difference inner_share 180 180.5 refine fraction_width lifetime 1.0e-4 law
 chain coupling pulling threshold ends neighbours open ring formula sigma eta exponential stribeck carlson_langer own 100
 100.5 1/(1+a*u) 1-a*u 1-b*u exp(-a*u) sqrt(1-a*u) 1-a*u**2 {formula: 1-a*u} {formula: 1-b*u, b: 0.5} {law: stribeck,
-sigma: 0.1} {sigma: 0.02} {linearized: {}}
+sigma: 0.1} {sigma: 0.02} {linearized: {}} mass grid springs {springs: x} {grid: [3,1]} random=uniform
+{random: uniform, low: 0.5, high: 1, seed: 1}
 """
 pieces = st.sampled_from(re.findall(r"\{.*?\}+|\[.*?\]+|\S+", PIECES))
 
 #: Keys with their least and greatest values, whole numbers where these are; > stands where the least is not allowed.
 RANGES = """
 a_digits 1 15, v 1e-6 1e3, step 1e-9 10.0, transient >0.0 1e9, window 1e-3 1e9, batches 2 10000, sampling 1e-6 1e9,
-trajectory 0.0 1e9, trajectory_sampling 1e-6 1e9, event_window 0.0 1e9, lyapunov_exponents 0 2048,
+trajectory 0.0 1e9, trajectory_sampling 1e-6 1e9, event_window 0.0 1e9, lyapunov_exponents 0 2000000,
 lyapunov_alignment 0.0 1e9, synchronization_threshold >0.0 1.0, motion.zero_exponent 0.0 1.0,
 motion.chaotic_exponent 0.0 1.0, motion.standard_errors 0.0 100.0, motion.period_tolerance >0.0 1.0,
 motion.longest_period >0.0 1e9, agreement.relative_tolerance 0.0 1.0, agreement.standard_errors 0.0 100.0,
@@ -162,7 +163,8 @@ def test_every_key_is_among_those_that_are_changed():
             elif isinstance(field.range, Keys):
                 yield from missing(node[key], field.range)
 
-    assert list(missing(yaml.safe_load(EVERY_KEY), CONFIG)) == []
+    # A chain is a row, a grid or a network from a file.
+    assert list(missing(yaml.safe_load(EVERY_KEY), CONFIG)) == ["grid", "springs"]
 
 
 def check_study(study, written):

@@ -53,7 +53,7 @@ def test_a_point_in_words(point, capsys):
     said = shown(capsys, point)
     for words in (
         f"{point}: a run from plus, linearized law, a = 0.08\n",
-        "3 blocks, open: coupling 1, pulling neighbours, threshold 1\n",
+        "3 blocks, open: coupling 1, pulling neighbours, threshold 1, mass 1\n",
         "linearized: Phi = 1 - a*u\n",
         "U(0)  = 0.989, -0.993, -0.991\n",
         "transient 3000, window 1000 in 4 batches\n",

@@ -94,10 +94,13 @@ BAD_CHANGES = [
     ({"phases": {"phase_difference": [90, 181]}}, ["phases.phase_difference[1]: 181", "180"]),
     ({"phases": {"inner_share": [0.0, -0.1]}}, ["phases.inner_share[1]: -0.1", "between 0"]),
     ({"phases": {"inner_share": []}}, ["phases.inner_share: []", "at least 1"]),
-    ({"phases": {"a": [0.08]}, "chain": {"ends": "ring"}}, ["phases.a: [0.08]", "a spring joins the end blocks"]),
+    (
+        {"phases": {"a": [0.08]}, "chain": {"ends": "ring"}},
+        ["phases.a: [0.08]", "a row of three blocks or more with open ends"],
+    ),
     (
         {"phases": {"a": [0.08]}, "initial": {"two": {"position": [0.0, 0.1], "velocity": [0.1, 0.1]}}},
-        ["phases.a: [0.08]", "a spring joins the end blocks"],
+        ["phases.a: [0.08]", "a row of three blocks or more with open ends"],
     ),
     ({"figures": {"a": 0.0801}}, ["figures.a: 0.0801", "grid"]),
     ({"chains": {"block": [3]}}, ["chains.block: unknown key"]),

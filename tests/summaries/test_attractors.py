@@ -91,16 +91,16 @@ def test_what_initial_states_and_sweeps_reach(one_law):
 def test_states_that_round_to_an_initial_state_are_all_corners_of_its_box():
     state = PAPER_STATES["plus"]
     numbers = np.array([*state.position, *state.velocity])
-    found = attractors.corners(state, "one_sided")
+    found = attractors.corners(state, "one_sided", 3)
     shifts = np.array([[*one.position, *one.velocity] for one in found]) - numbers
     assert np.abs(shifts) == pytest.approx(5e-4)
     assert len({tuple(row) for row in np.sign(shifts)}) == 64
     # Blocks do not begin backward where they cannot slip so.
     rest = InitialState("rest", (0.0, 0.0, 0.0), (0.0, 0.0, 0.1))
-    assert min(velocity for one in attractors.corners(rest, "one_sided") for velocity in one.velocity) == 0.0
-    assert min(velocity for one in attractors.corners(rest, "symmetric") for velocity in one.velocity) == -5e-4
+    assert min(velocity for one in attractors.corners(rest, "one_sided", 3) for velocity in one.velocity) == 0.0
+    assert min(velocity for one in attractors.corners(rest, "symmetric", 3) for velocity in one.velocity) == -5e-4
     four = InitialState("four", (0.0,) * 4, (0.1,) * 4)
-    assert len({one.position + one.velocity for one in attractors.corners(four, "one_sided")}) == 64
+    assert len({one.position + one.velocity for one in attractors.corners(four, "one_sided", 4)}) == 64
 
 
 def test_plus_lies_next_to_a_boundary_at_0_05_and_not_at_0_08():

@@ -56,6 +56,32 @@ def test_any_chain(chain, law):
     assert rate == pytest.approx(theirs.real.max(), abs=1e-9)
 
 
+@pytest.mark.parametrize(
+    "chain",
+    [
+        Chain(3, mass=(1.0, 2.0, 0.5)),
+        Chain(4, ends="ring", mass=2.0),
+        Chain(4, mass=(1.0, 2.0, 2.0, 1.0), threshold=(1.0, 2.0, 2.0, 1.0)),
+        Chain(grid=(3, 2), coupling=1.5),
+    ],
+)
+def test_masses_and_networks(chain):
+    model = Model(chain, law_of("nonlinear", 0.4), 0.7)
+    assert sliding_position(model) == pytest.approx(model.sliding_offset, rel=1e-12)
+    slope = float(model.law.slope(0.7))
+    blocks = np.zeros((chain.blocks, chain.blocks)), np.eye(chain.blocks)
+    dense = np.block([[*blocks], [-chain.stiffness, np.diag(-chain.thresholds * slope)]])
+    dense[chain.blocks :] /= chain.masses[:, None]
+    theirs = np.linalg.eigvals(dense)
+    mine = eigenvalues(model)
+    assert np.sort(mine.imag) == pytest.approx(np.sort(theirs.imag), abs=1e-9)
+    assert np.sort(mine.real) == pytest.approx(np.sort(theirs.real), abs=1e-9)
+
+
+def test_the_modes_of_a_large_chain_are_left_out():
+    assert np.isnan(summarize([Model(Chain(2000), law_of("linearized", 0.1))], [0.1])["eigenvalue"]).all()
+
+
 def test_eigenvalues_and_growth_rates(found):
     real, imaginary = (found["eigenvalue"].sel(part=part) for part in ("real", "imaginary"))
     assert real.sel(law="linearized", a=0.3).values.tolist() == [0.15] * 6

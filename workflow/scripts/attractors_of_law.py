@@ -15,7 +15,7 @@ from burridge_knopoff.study.model import model_of
 
 params, law = snakemake.params, snakemake.wildcards.law
 initial = [InitialState(name, **state) for name, state in params.initial.items()]
-models = [model_of(params.model, law, a, len(initial[0].position)) for a in params.grid]
+models = [model_of(params.model, law, a, params.model["chain"]["blocks"]) for a in params.grid]
 settings, motion = SearchSettings(**params.attractors), MotionSettings(**params.motion)
 refine = Refine(**params.refine)
 share = {"processes": snakemake.resources.cpus_per_task, "folder": params.kept}

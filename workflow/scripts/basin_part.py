@@ -14,7 +14,7 @@ from burridge_knopoff.summaries.basins import pairs, tile
 
 params, number = snakemake.params, snakemake.wildcards.get("tile")
 plane = BasinSettings(initial=InitialState(**params.state), threads=snakemake.resources.cpus_per_task, **params.basins)
-model = model_of(params.model, snakemake.wildcards.law, params.a, len(plane.initial.position))
+model = model_of(params.model, snakemake.wildcards.law, params.a, params.model["chain"]["blocks"])
 known = known_attractors(*map(open_summary, snakemake.input), model)
 search = SearchSettings(**params.attractors)
 if number is None:

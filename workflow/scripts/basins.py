@@ -14,7 +14,7 @@ from burridge_knopoff.summaries.results import write_results
 
 params = snakemake.params
 plane = BasinSettings(initial=InitialState(**params.state), **params.basins)
-blocks = len(plane.initial.position)
+blocks = params.model["chain"]["blocks"]
 tiles, pairs = ([open_summary(path) for path in paths] for paths in (snakemake.input.tiles, snakemake.input.pairs))
 maps = [
     (model_of(params.model, law, a, blocks), tiles[n * plane.tiles : (n + 1) * plane.tiles], pairs[n])

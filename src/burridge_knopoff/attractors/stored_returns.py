@@ -31,7 +31,7 @@ VARIABLES = {
     "return_count": Variable(
         ("attractor",), "i4", "section returns of the attractor", {"sample_dimension": "section_return"}
     ),
-    "section_block": Variable(("attractor",), "i2", "block at whose stops the returns are taken"),
+    "section_block": Variable(("attractor",), "i4", "block at whose stops the returns are taken"),
     "spacing": Variable(("attractor",), "f8", "distance between neighbouring returns"),
     "position": Variable(
         _RETURN,

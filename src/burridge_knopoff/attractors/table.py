@@ -100,7 +100,7 @@ def slot_variables(place: str) -> dict[str, Variable]:
 
 def slot_coordinates(blocks: int) -> dict[str, Any]:
     """Return the coordinates that slots have besides a."""
-    return {"block": ("block", np.arange(1, blocks + 1, dtype="i2"), {"long_name": "block number", "units": "1"})}
+    return {"block": ("block", np.arange(1, blocks + 1, dtype="i4"), {"long_name": "block number", "units": "1"})}
 
 
 def missing(name: str, item: Variable) -> Any:

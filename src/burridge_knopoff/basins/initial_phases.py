@@ -12,30 +12,32 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import seed_at
 
 
-def ends_are_neighbours(chain: Chain) -> bool:
-    """Tell whether a spring joins the end blocks, as with two blocks and in a ring, or one block is both of them.
+def has_free_ends(chain: Chain) -> bool:
+    """Tell whether the chain is a row of three blocks or more with open ends.
 
-    Then neither slides uniformly while the other oscillates, and K_ii says nothing of their frequencies: with equal
-    phases of two blocks ω² is K_11 − k, with opposite ones K_11 + k, k the spring, and with others there is no one ω.
+    A network has no ends. If a spring joins the end blocks, as with two blocks and in a ring, neither slides uniformly
+    while the other oscillates, and K_ii says nothing of their frequencies: with equal phases of two blocks ω² is
+    K_11 − k, with opposite ones K_11 + k, k the spring, and with others there is no one ω.
     """
-    return bool(chain.stiffness[0, -1] != 0.0)
+    return chain.blocks > 2 and chain.ends == "open" and not chain.is_network
 
 
 def block_frequencies(model: Model) -> np.ndarray:
     """Return the angular frequency ω of each block while its neighbours slide uniformly, shape (blocks,).
 
-    ω² = K_ii: in the paper's chain 2 for the end blocks and 4 for the inner one. Opposite phases of the end blocks are
-    a normal mode of the sliding chain of three blocks, in which the inner one does not oscillate. The slope of the
+    ω² = K_ii/m_i: in the paper's chain 2 for the end blocks and 4 for the inner one. Opposite phases of the end blocks
+    are a normal mode of the sliding chain of three blocks, in which the inner one does not oscillate. The slope of the
     friction law, which lets oscillations grow, makes ω smaller by the share a²/16 at most.
 
-    Raises ValueError, one line, if a spring joins the end blocks: see `ends_are_neighbours`.
+    Raises ValueError, one line, for any other chain than a row with open ends: see `has_free_ends`.
     """
-    if ends_are_neighbours(model.chain):
-        given = f"{model.chain.blocks} blocks, {model.chain.ends}"
+    chain = model.chain
+    if not has_free_ends(chain):
+        given = f"{chain.blocks} blocks, {'network' if chain.is_network else chain.ends}"
         raise ValueError(
-            f"chain: got {given}, expected no spring that joins the end blocks, for states by their phases"
+            f"chain: got {given}, expected three blocks or more in a row with open ends, for states by their phases"
         )
-    return np.sqrt(model.chain.diagonal)
+    return np.sqrt(chain.diagonal / chain.masses)
 
 
 def slipping_amplitude(model: Model, inner_share: float = 0.0) -> float:

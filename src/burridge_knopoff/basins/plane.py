@@ -8,7 +8,7 @@ import numpy as np
 
 
 def plane(
-    position: Sequence[float], first: np.ndarray, last: np.ndarray, velocity: Sequence[float]
+    position: Sequence[float] | np.ndarray, first: np.ndarray, last: np.ndarray, velocity: Sequence[float] | np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the initial states of a plane, U(0) and U'(0), each of shape (len(last) len(first), blocks).
 
@@ -19,7 +19,7 @@ def plane(
 
 
 def states(
-    position: Sequence[float], first: np.ndarray, last: np.ndarray, velocity: Sequence[float]
+    position: Sequence[float] | np.ndarray, first: np.ndarray, last: np.ndarray, velocity: Sequence[float] | np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return initial states, U(0) and U'(0), each of shape (n, blocks): a given one but for U_1(0) and U_N(0), (n,)."""
     positions = np.tile(np.array(position, dtype=float), (len(first), 1))

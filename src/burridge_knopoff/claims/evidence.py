@@ -12,7 +12,7 @@ import numpy as np
 from burridge_knopoff.claims.verdict import NotTestableError, Range, Verdict
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.paper import PAPER_A, PAPER_LAWS, PAPER_TRANSIENT, PAPER_V, PAPER_WINDOW
 
@@ -54,11 +54,11 @@ class Evidence:
         ]
 
     def check_setting(self) -> None:
-        """Raise NotTestableError if the driver velocity, springs or thresholds are not the paper's."""
+        """Raise NotTestableError if the driver velocity, springs, masses or thresholds are not the paper's."""
         if self.config["v"] != PAPER_V:
             raise NotTestableError(f"the paper's driver has v = {PAPER_V}, that of the study v = {self.config['v']:g}")
-        if not Chain(self._blocks, **self.config["chain"]).is_like(Chain(self._blocks)):
-            raise NotTestableError("the study's chain has other springs or static friction than the paper's")
+        if not Chain(**self.config["chain"]).is_like(Chain(self._blocks)):
+            raise NotTestableError("the study's chain has other springs, masses or static friction than the paper's")
 
     def check_laws(self, laws: Iterable[str]) -> None:
         """Raise NotTestableError if the study lacks one of these laws of the paper, or uses its name for another."""
@@ -84,7 +84,7 @@ class Evidence:
 
     @property
     def _blocks(self) -> int:
-        return len(next(iter(self.config["initial"].values()))["position"])
+        return Chain(**self.config["chain"]).blocks
 
     def summary(self, name: str) -> xarray.Dataset:
         """Return a summary, for the paper's laws only; raises NotTestableError if the study does not have it."""
@@ -125,7 +125,7 @@ class Evidence:
             raise NotTestableError(f"the study has no initial state {initial}")
         paper = PAPER_STATES[initial]
         own = states[initial]
-        if list(own["position"]) != list(paper.position) or list(own["velocity"]) != list(paper.velocity):
+        if InitialState(initial, **own) != paper:
             raise NotTestableError(f"the study's initial state {initial} is not the paper's")
 
     def choose(self, dataset: xarray.Dataset, a: Range, least: int = LEAST_VALUES) -> xarray.Dataset:

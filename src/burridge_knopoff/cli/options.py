@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 from burridge_knopoff.laws import LAWS, Law, law_of
 from burridge_knopoff.library.coercion import OWN
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
-from burridge_knopoff.model.fields import REQUIRED, fields_of
+from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, Whole
@@ -47,6 +47,9 @@ count = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
 _numbers = _reader(
     r"[-+.0-9a-zA-Z,]+", "numbers with commas between them", lambda text: tuple(map(float, text.split(",")))
 )
+_counts = _reader(
+    r"[0-9]{1,9}(,[0-9]{1,9})*", "whole numbers with commas between them", lambda text: tuple(map(int, text.split(",")))
+)
 _named_number = _reader(
     r"(?!(?:name|law|formula)=)[A-Za-z_][A-Za-z0-9_]*=.*",
     "NAME=NUMBER, as sigma=0.01",
@@ -55,8 +58,8 @@ _named_number = _reader(
 
 
 def _strength(text: str) -> str | float | tuple[float, ...]:
-    values = NEIGHBOURS if text == NEIGHBOURS else _numbers(text)
-    return values[0] if len(values) == 1 else values
+    values = text if text == NEIGHBOURS or text.startswith("random=") else _numbers(text)
+    return values[0] if isinstance(values, tuple) and len(values) == 1 else values
 
 
 #: The converter for each range of a setting; for other ranges the text is kept.
@@ -73,6 +76,9 @@ _METAVARS = {
     "coupling": "K1,K2,...",
     "pulling": "D1,D2,...",
     "threshold": "F1,F2,...",
+    "mass": "M1,M2,...",
+    "grid": "NX,NY",
+    "springs": "FILE",
     "position": "U1,U2,...",
     "velocity": "U1',U2',...",
 }
@@ -98,12 +104,12 @@ def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any
     """
     for name in names or fields_of(kind):
         field, key = fields_of(kind)[name], name + suffix
-        default = defaults.get(name, None if field.default is REQUIRED else field.default)
+        default = defaults.get(name, None if field.default in (REQUIRED, FOLLOWS) else field.default)
         words = field.description.replace("%", "%%")
         shown = ",".join(f"{item:g}" for item in default) if isinstance(default, tuple) else default
         option = group.add_argument(
             f"--{key.replace('_', '-')}",
-            type=_READERS.get(type(field.range), str),
+            type=_counts if name == "grid" else _READERS.get(type(field.range), str),
             default=default,
             metavar="LOW,HIGH" if isinstance(field.range, Interval) else _METAVARS.get(key),
             help=words if default is None else f"{words} (default: {shown})",
@@ -178,10 +184,16 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
         if given == (None, None):
             return None
         usual = PAPER_STATES["minus"]
-        if None in given and len(given[0] or given[1]) != len(usual.position):
+        told = given[1] if given[0] is None else given[0]
+        if None in given and not (isinstance(told, tuple) and len(told) == usual.blocks):
             missing = "position" if given[0] is None else "velocity"
             raise ValueError(f"{missing}: missing, expected numbers, one a block, unless there are three blocks")
-        name, given = OWN, (given[0] or usual.position, given[1] or usual.velocity)
+        name = OWN
+        position, velocity = given
+        given = (
+            usual.position if position is None else position,
+            usual.velocity if velocity is None else velocity,
+        )
     elif name in PAPER_STATES and (given[0] is None) != (given[1] is None):
         raise ValueError(
             f"initial: got {shown(name)} with other numbers than the paper's, expected another name, or none"
@@ -204,10 +216,12 @@ def model_of(options: argparse.Namespace, state: InitialState | None) -> Model:
 
     Raises ValueError as `Chain`, `law_of` and `Model` do.
     """
-    usual = fields_of(Chain)["blocks"].default if state is None else len(state.position)
-    chain = Chain(
-        usual if options.blocks is None else options.blocks, **{key: getattr(options, key) for key in CHAIN_OPTIONS}
-    )
+    blocks = options.blocks
+    if blocks is None and options.grid is None and options.springs is None and state is not None:
+        blocks = state.blocks
+        if blocks is None:
+            raise ValueError("blocks: missing, expected the number of blocks, which a drawn state does not tell")
+    chain = Chain(blocks, **{key: getattr(options, key) for key in CHAIN_OPTIONS})
     return Model(chain, simulated_law(options), options.v, options.contact)
 
 

@@ -39,7 +39,7 @@ _V = Variable
 POINT_VARIABLES: dict[str, Variable] = {
     "a": _V((), "f8", "friction parameter a", coordinate=True),
     "v": _V((), "f8", "driver velocity v", coordinate=True),
-    "block": _V(("block",), "i2", "block number, 1 to N along the chain", coordinate=True),
+    "block": _V(("block",), "i4", "block number, 1 to N along the chain", coordinate=True),
     "initial_position": _V(("block",), "f8", "initial position U(0)"),
     "initial_velocity": _V(("block",), "f8", "initial velocity U'(0)"),
     "initially_slipping": _V(
@@ -79,17 +79,17 @@ POINT_VARIABLES: dict[str, Variable] = {
     "batch_lyapunov_exponent": _V(("batch", "exponent"), "f8", "Lyapunov exponents in one batch of the window"),
     "lyapunov_infinite_count": _V(
         (),
-        "i2",
+        "i4",
         "number of Lyapunov exponents known to be -infinity: at least the most blocks stuck at once in the window",
         {"comment": "exact if all 2 N exponents were computed; -1 if none were"},
     ),
     "time": _V(("sample",), "f8", "time tau of a sample of J"),
     "distance": _V(("sample",), "f8", "phase-space distance J(tau) between the end blocks"),
     "earlier_event_time": _V(("earlier_event",), "f8", "time tau of an event before those with states"),
-    "earlier_event_block": _V(("earlier_event",), "i2", "block that stops or starts before those with states"),
+    "earlier_event_block": _V(("earlier_event",), "i4", "block that stops or starts before those with states"),
     "earlier_event_kind": _V(("earlier_event",), "i1", "kind of event before those with states", KIND),
     "event_time": _V(("event",), "f8", "time tau of an event"),
-    "event_block": _V(("event",), "i2", "block that stops or starts"),
+    "event_block": _V(("event",), "i4", "block that stops or starts"),
     "event_kind": _V(("event",), "i1", "kind of event", KIND),
     "event_position": _V(("event", "block"), "f8", "positions of all blocks at an event", RELATIVE),
     "event_velocity": _V(("event", "block"), "f8", "velocities U' of all blocks at an event"),
@@ -106,12 +106,13 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
     """Return the values of all point variables."""
     settings = trajectory.settings
     width = settings.window / settings.batches
+    position, velocity = trajectory.initial.numbers(trajectory.model.blocks)
     special = {
         "a": trajectory.model.a,
         "v": trajectory.model.v,
         "block": np.arange(1, trajectory.model.blocks + 1),
-        "initial_position": np.array(trajectory.initial.position),
-        "initial_velocity": np.array(trajectory.initial.velocity),
+        "initial_position": position,
+        "initial_velocity": velocity,
         "status": Status[trajectory.status.upper()],
         "batch": trajectory.begin_time + settings.transient + width * (np.arange(settings.batches) + 0.5),
     }
@@ -139,7 +140,7 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
         "law": model.law.name,
         "law_formula": model.law.formula,
         **{f"law_{key}": value for key, value in model.law.numbers.items()},
-        **{f"chain_{key}": getattr(model.chain, key) for key in CHAIN_OPTIONS},
+        **{f"chain_{key}": value for key in CHAIN_OPTIONS if (value := getattr(model.chain, key)) is not None},
         "solver": settings.solver,
         "initial": trajectory.initial.name,
         "contact": model.contact,

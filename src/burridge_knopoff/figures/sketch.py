@@ -23,7 +23,7 @@ CAPTION = """\
 The chain of the study. Springs join neighbouring blocks (blue, strength above) and join blocks to a driver that moves
 with velocity v (red, strength D_i beside). Dry friction holds a block up to its static friction F. U_i is the position
 of block i. Strengths are in units of the spring constant k. Friction is in units of F(0), which is its value if none is
-given. Of a long chain, only the first two blocks and the last are drawn.
+given. Of a long chain, only the first two blocks and the last are drawn, and of a network no springs between blocks.
 """
 
 #: Longer chains are drawn in part.
@@ -56,17 +56,23 @@ def draw(chain_description: Mapping[str, Any]) -> Figure:
             # The driver is ahead.
             _spring(panel, (x + 0.25, SIDE), (x + 0.8, TOP), color(1))
             panel.text(x + 0.75, 1.4, f"${chain.driving[block]:g}$", color=color(1))
-        if len(set(chain.thresholds)) > 1:
+        if np.ptp(chain.thresholds) > 0.0:
             panel.text(x, -0.38, f"$F={chain.thresholds[block]:g}$", ha="center", va="top")
     for one, other in pairwise(shown):
         start, end = place[one] + SIDE / 2, place[other] - SIDE / 2
-        if other != one + 1:
+        if other != one + 1 or chain.is_network:
             panel.text(0.5 * (start + end), SIDE / 2, "· · ·", ha="center", va="center", fontsize=14.0)
             continue
         _spring(panel, (start, SIDE / 2), (end, SIDE / 2), color(0))
         panel.text(0.5 * (start + end), 0.62, f"${chain.after[one]:g}$", ha="center", color=color(0))
+    words = ""
     if chain.ends == "ring":
         words = f"a spring of strength ${chain.after[-1]:g}$ couples block {count} to block 1"
+    elif chain.grid:
+        words = f"springs of strength ${chain.coupling:g}$ couple a grid of {chain.grid[0]} × {chain.grid[1]} blocks"
+    elif chain.springs:
+        words = "springs of a network couple the blocks to each other"
+    if words:
         panel.text(0.5 * (left + right), -0.75, words, ha="center", va="top", color=color(0))
     panel.set(
         xlim=(left - 0.05, right + 0.05),

@@ -66,7 +66,7 @@ def basin_map(
     from burridge_knopoff.summaries.multistability import coexisting_attractors
 
     state = given_state(initial)
-    model = given_model(law, a, len(state.position), chain, v, contact)
+    model = given_model(law, a, state.blocks, chain, v, contact)
     # The map shows the basin fractions itself.
     options = {"samples": samples, "seed": seed, "fraction_width": 0.1, **search}
     settings = settings_of(SearchSettings, None, options)

@@ -61,11 +61,16 @@ def _plain(values: Any) -> Any:
 
 
 def given_model(
-    law: Model | GivenLaw, a: float | None, blocks: int, chain: Chain | None, v: float | None, contact: str | None
+    law: Model | GivenLaw,
+    a: float | None,
+    blocks: int | None,
+    chain: Chain | None,
+    v: float | None,
+    contact: str | None,
 ) -> Model:
     """Return a model, or make one of a law and the other arguments.
 
-    blocks : number of blocks if there is no chain
+    blocks : number of blocks if there is no chain; None if nothing tells it
     Raises ValueError, one line, for a wrong argument, and for arguments that repeat what the model has.
     """
     if isinstance(law, Model):
@@ -76,6 +81,10 @@ def given_model(
         raise ValueError("a: got None without a Model, expected a number of at least 0")
     if isinstance(law, Mapping):
         law = law_of(law.get("law", "formula"), a, law)
-    chain = Chain(blocks) if chain is None else chain
+    if chain is None and blocks is None:
+        raise ValueError(
+            "chain: missing, expected a Chain for an initial state that does not tell the number of blocks"
+        )
+    chain = Chain(blocks) if chain is None else chain  # type: ignore[arg-type]
     own: dict[str, Any] = {name: value for name, value in (("v", v), ("contact", contact)) if value is not None}
     return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), **own)

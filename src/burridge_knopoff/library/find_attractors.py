@@ -69,7 +69,7 @@ def find_attractors(
         raise refusal("starts", starts, "a list of initial states")
     states = [given_state(state) for state in starts]
     # Without states and chain, the paper's chain.
-    blocks = len(states[0].position) if states else 3
+    blocks = states[0].blocks if states else 3
     model = given_model(law, a, blocks, chain, v, contact)
     return attractors.find_attractors(
         model, settings_of(SearchSettings, settings, by_name), motion, starts=states, start=start

@@ -93,5 +93,6 @@ def simulate(
             raise ValueError("settings: got two, expected one")
         a, initial, settings = None, a, settings if initial is None else initial
     state = initial if isinstance(initial, ChainState) else given_state("minus" if initial is None else initial)
-    model = given_model(law, a, len(state.position), chain, v, contact)
+    blocks = len(state.position) if isinstance(state, ChainState) else state.blocks
+    model = given_model(law, a, blocks, chain, v, contact)
     return Run(**vars(run(model, state, settings_of(Settings, settings, by_name))))

@@ -68,7 +68,7 @@ def sweep(
     if isinstance(law, Model):
         models = [given_model(law, None, 0, chain, v, contact).at(value) for value in values]
     else:
-        models = [given_model(law, value, len(state.position), chain, v, contact) for value in values]
+        models = [given_model(law, value, state.blocks, chain, v, contact) for value in values]
     value, count = Counter(model.a for model in models).most_common(1)[0]
     if count > 1:
         raise ValueError(f"a: got {shown(value)} twice, expected each value once")

@@ -6,42 +6,60 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from burridge_knopoff.model.drawn import Drawn, Numbers, numbers_of
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.ranges import Either, Number, OneOf, Several, Whole
-from burridge_knopoff.values import read_only
+from burridge_knopoff.model.solving import static_displacement
+from burridge_knopoff.model.springs import (
+    MAXIMUM_BLOCKS,
+    STRENGTH,
+    Neighbours,
+    SpringsFile,
+    along,
+    has_digest,
+    of_edges,
+    of_grid,
+    read_edges,
+)
+from burridge_knopoff.values import read_only, refusal
 
-MAXIMUM_BLOCKS = 1024
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
 ENDS = ("open", "ring")
 NEIGHBOURS = "neighbours"
+#: Number of blocks if nothing tells it: the paper's.
+BLOCKS = 3
 
-#: Spring constants or thresholds: one number for all, or a list with one number each.
-Numbers = float | Sequence[float]
-_STRENGTH = Number(1e-6, 1e6)
-_STRENGTHS = Either((_STRENGTH, Several(_STRENGTH)))
-_PULLING = Number(1e-6, 1e6, or_zero=True)
+_STRENGTHS = Either((STRENGTH, Several(STRENGTH)))
+_OF_BLOCKS = Either((STRENGTH, Several(STRENGTH), Drawn(STRENGTH)))
+_PULLING = Number(STRENGTH.least, STRENGTH.most, or_zero=True)
+_SIDE = Whole(1, MAXIMUM_BLOCKS)
 
 
 @settings
 @dataclass(frozen=True)
 class Chain:
-    """N blocks of equal mass in a row or in a ring.
+    """N blocks in a row, a ring, a grid, or any network of springs.
 
-    A row has N − 1 springs between neighbours. A ring has N: the last spring joins the last block to the first. A
-    slipping block feels the friction threshold · Φ.
+    A row has N − 1 springs between neighbours. A ring has N: the last spring joins the last block to the first. A grid
+    of nx × ny blocks has open edges; block 1 + ix + nx·iy is in column ix and row iy, both from 0. A file of springs
+    has a line `block block strength` for each, with blocks numbered from 1. A block of mass m obeys
+    m U'' = s − threshold · Φ(U') while it slips.
 
     The spring force on block i is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian of the springs plus diag(D),
     so that K·1 = D. The defaults give the paper's chain (Eq. 2) for N = 3. The train model that the paper cites is
     pulled at its first block only: `Chain(2, pulling=(1.0, 0.0))`. A single block hangs on one spring to the driver.
 
-    Raises ValueError for a number of blocks, a number of springs or a strength out of range, and if no block is pulled,
-    since K is then singular.
+    Raises ValueError for a number of blocks, a number of springs or a strength out of range, for a file that is no list
+    of springs, and if the driver pulls no block of a connected part of the chain, since K is then singular.
 
     Positions are in units of F(0)/k, strengths in units of the paper's spring constant k (its Section II), thresholds
-    in units of F(0).
+    in units of F(0), masses in units of the mass of the paper's blocks.
 
     >>> from burridge_knopoff import Chain
     >>> chain = Chain(3, coupling=(1.0, 1.5))
@@ -49,26 +67,55 @@ class Chain:
     [[2.0, -1.0, 0.0], [-1.0, 4.5, -1.5], [0.0, -1.5, 2.5]]
     >>> chain.is_mirror_symmetric, Chain(5, ends="ring").is_mirror_symmetric
     (False, True)
+    >>> Chain(grid=(2, 2)).neighbours.index.tolist()
+    [1, 2, 0, 3, 3, 0, 2, 1]
     """
 
-    blocks: Annotated[int, Whole(1, MAXIMUM_BLOCKS), "number of blocks N"] = 3
-    coupling: Annotated[Numbers, _STRENGTHS, "springs between neighbours: one number for all, or one a spring"] = 1.0
+    blocks: Annotated[
+        int,
+        Whole(1, MAXIMUM_BLOCKS),
+        "number of blocks N; by default that of the grid, the largest in the file of springs, or that of the positions",
+    ] = None  # type: ignore[assignment]
+    coupling: Annotated[
+        float | Sequence[float],
+        _STRENGTHS,
+        "springs between neighbours: one number for all, or one a spring of a row or a ring",
+    ] = 1.0
     pulling: Annotated[
-        Numbers | str,
+        float | Sequence[float] | str,
         Either((OneOf((NEIGHBOURS,)), _PULLING, Several(_PULLING))),
         "springs to the driver: one number for all, or one a block (0: no spring); neighbours: the number of the "
         "block's neighbours, as in the paper (1 for a single block)",
     ] = NEIGHBOURS
-    threshold: Annotated[Numbers, _STRENGTHS, "static friction: one number for all, or one a block"] = 1.0
+    threshold: Annotated[Numbers, _OF_BLOCKS, "static friction: one number for all, one a block, or drawn"] = 1.0
     ends: Annotated[str, OneOf(ENDS), "open, or ring: the last block is coupled to the first"] = "open"
+    mass: Annotated[Numbers, _OF_BLOCKS, "mass: one number for all, one a block, or drawn"] = 1.0
+    grid: Annotated[
+        Sequence[int] | None, Several(_SIDE, 2, 2), "[nx, ny]: nx columns and ny rows of blocks, instead of a row"
+    ] = None
+    springs: Annotated[
+        str | None,
+        SpringsFile(),
+        "file of the springs between blocks, instead of a row: lines `block block strength`, blocks numbered from 1",
+    ] = None
 
     def __post_init__(self) -> None:
+        is_new = isinstance(self.springs, str) and not has_digest(self.springs)
         check_fields(self, "chain.")
-        springs = self.blocks - (self.ends == "open")
+        if self.grid and self.springs:
+            raise refusal("chain.grid", list(self.grid), "none beside chain.springs")
+        if self.grid and math.prod(self.grid) > MAXIMUM_BLOCKS:
+            raise refusal("chain.grid", list(self.grid), f"at most {MAXIMUM_BLOCKS} blocks")
+        if self.is_network:
+            self._check_network()
+        elif self.blocks is None:
+            object.__setattr__(self, "blocks", BLOCKS)
+        springs = 1 if self.is_network else self.blocks - (self.ends == "open")
         for key, count, of in (
             ("coupling", springs, "springs"),
             ("pulling", self.blocks, "blocks"),
             ("threshold", self.blocks, "blocks"),
+            ("mass", self.blocks, "blocks"),
         ):
             value = getattr(self, key)
             if isinstance(value, tuple) and len(value) != count:
@@ -79,20 +126,75 @@ class Chain:
             raise ValueError("chain.ends: got ring, expected open for one block")
         if not isinstance(self.pulling, str) and not np.any(self.pulling):
             raise ValueError(f"chain.pulling: got {self.pulling!r}, expected a number above 0 for one block or more")
+        if is_new:
+            self.check_springs()
+
+    def _check_network(self) -> None:
+        given = "chain.grid" if self.grid else "chain.springs"
+        if self.ends != "open":
+            raise ValueError(f"chain.ends: got {self.ends}, expected open beside {given}")
+        if isinstance(self.coupling, tuple):
+            raise ValueError(f"chain.coupling: got {len(self.coupling)} numbers, expected one beside {given}")
+        if self.grid:
+            count = math.prod(self.grid)
+            if self.blocks not in (None, count):
+                raise ValueError(f"chain.blocks: got {self.blocks}, expected {count} for chain.grid {list(self.grid)}")
+            object.__setattr__(self, "blocks", count)
+        elif self.coupling != 1.0:
+            raise ValueError(f"chain.coupling: got {self.coupling!r}, expected none beside {given}")
+        elif self.blocks is None:
+            one, other, _ = read_edges(str(self.springs))
+            object.__setattr__(self, "blocks", int(max(one.max(), other.max())) + 1)
+
+    def check_springs(self) -> None:
+        """Read the file of springs, if there is one.
+
+        Raises ValueError, one line, if it is no list of springs between these blocks, and if the driver pulls no block
+        of a connected part, since K is then singular.
+        """
+        if self.springs is None:
+            return
+        from scipy.sparse.csgraph import connected_components
+
+        part = connected_components(self._matrix(self.neighbours.strength), directed=False)[1]
+        slack = np.flatnonzero(np.bincount(part, self.driving)[part] == 0.0)
+        if len(slack):
+            count = int((part == part[slack[0]]).sum())
+            raise ValueError(
+                f"chain.pulling: got 0 for all of the {count} blocks connected to block {slack[0] + 1}, expected a "
+                "number above 0 for one of them or more"
+            )
 
     def is_like(self, other: Chain) -> bool:
-        """Tell whether another chain has the same springs and static friction, in whatever form they were given."""
-        names = ("stiffness", "driving", "thresholds")
-        return all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
+        """Tell whether another chain has the same springs, masses and static friction, in whatever form.
+
+        A network is like no row, which has a mirror image.
+        """
+        if self.is_network != other.is_network:
+            return False
+        pairs = [(getattr(self, name), getattr(other, name)) for name in ("driving", "thresholds", "masses")]
+        return all(np.array_equal(*pair) for pair in (*pairs, *zip(self.neighbours, other.neighbours, strict=True)))
+
+    @property
+    def is_network(self) -> bool:
+        """Whether the blocks form a grid or any other network, which has no ends, mirror image or shift."""
+        return self.grid is not None or self.springs is not None
 
     @cached_property
     def thresholds(self) -> np.ndarray:
         """Static friction of each block, shape (blocks,)."""
-        return read_only(np.broadcast_to(self.threshold, self.blocks))
+        return read_only(numbers_of(self.threshold, self.blocks, "threshold"))
+
+    @cached_property
+    def masses(self) -> np.ndarray:
+        """Mass of each block, shape (blocks,)."""
+        return read_only(numbers_of(self.mass, self.blocks, "mass"))
 
     @cached_property
     def before(self) -> np.ndarray:
-        """Strength of the spring to the previous block, shape (blocks,); 0 at an open end."""
+        """Strength of the spring to the previous block of a row or ring, shape (blocks,); 0 at an open end."""
+        if self.is_network:
+            raise ValueError("chain: got a network of springs, expected a row or a ring")
         strengths = np.zeros(self.blocks)
         springs = self.blocks - (self.ends == "open")
         strengths[:springs] = self.coupling
@@ -100,62 +202,94 @@ class Chain:
 
     @cached_property
     def after(self) -> np.ndarray:
-        """Strength of the spring to the next block, shape (blocks,); 0 at an open end."""
+        """Strength of the spring to the next block of a row or ring, shape (blocks,); 0 at an open end."""
         return read_only(np.roll(self.before, -1))
+
+    @cached_property
+    def neighbours(self) -> Neighbours:
+        """The neighbours of each block and the springs to them; raises ValueError as `check_springs` does.
+
+        In a row or ring the previous block comes first, in a grid left, right, down, up, in a network from a file the
+        smallest number. The two blocks of a ring are joined by two springs.
+        """
+        if self.grid:
+            columns, rows = self.grid
+            return of_grid(columns, rows, float(self.coupling))  # type: ignore[arg-type]
+        if self.springs is None:
+            return along(self.before, self.after)
+        one, other, strength = read_edges(self.springs)
+        largest = int(max(one.max(), other.max())) + 1
+        if largest > self.blocks:
+            raise ValueError(f"chain.springs: got block {largest}, expected at most chain.blocks ({self.blocks})")
+        return of_edges(one, other, strength, self.blocks)
 
     @cached_property
     def driving(self) -> np.ndarray:
         """Strengths D of the springs to the driver, shape (blocks,)."""
         if isinstance(self.pulling, str):
-            neighbours = (self.before > 0.0).astype(float) + (self.after > 0.0)
-            return read_only(neighbours if self.blocks > 1 else np.ones(1))
+            return read_only(np.diff(self.neighbours.start).astype(float) if self.blocks > 1 else np.ones(1))
         return read_only(np.broadcast_to(self.pulling, self.blocks))
 
-    @property
+    @cached_property
     def diagonal(self) -> np.ndarray:
         """Diagonal of K: the total strength of the springs at each block, shape (blocks,)."""
-        return self.before + self.after + self.driving
+        coupled = np.bincount(self.neighbours.block, self.neighbours.strength, self.blocks)
+        return read_only(coupled + self.driving)
 
     @property
     def stiffness(self) -> np.ndarray:
-        """The matrix K, shape (blocks, blocks)."""
+        """The matrix K, dense, shape (blocks, blocks)."""
         matrix = np.diag(self.diagonal)
-        for i in range(self.blocks):
-            matrix[i, i - 1] -= self.before[i]
-            matrix[i, (i + 1) % self.blocks] -= self.after[i]
+        np.subtract.at(matrix, (self.neighbours.block, self.neighbours.index), self.neighbours.strength)
         return matrix
+
+    @property
+    def sparse_stiffness(self) -> csr_array:
+        """The matrix K as a sparse matrix of SciPy, shape (blocks, blocks)."""
+        from scipy.sparse import diags_array
+
+        matrix = (diags_array(self.diagonal) - self._matrix(self.neighbours.strength)).tocsr()
+        matrix.sum_duplicates()
+        return matrix
+
+    def _matrix(self, strength: np.ndarray) -> csr_array:
+        """Return the sparse matrix with a number for each neighbour of each block."""
+        from scipy.sparse import csr_array
+
+        return csr_array((strength, self.neighbours.index, self.neighbours.start), (self.blocks, self.blocks))
 
     @property
     def is_mirror_symmetric(self) -> bool:
         """Whether the chain is its own mirror image, so that mirror blocks can move synchronously.
 
-        False for a single block, which has no mirror block.
+        False for a network, and for a single block, which has no mirror block.
         """
-        pairs = (self.driving, self.driving), (self.thresholds, self.thresholds), (self.before, self.after)
-        return self.blocks > 1 and all(bool((one == other[::-1]).all()) for one, other in pairs)
-
-    @property
-    def _period(self) -> int:
-        """The smallest shift along a ring that leaves springs and thresholds unchanged, in blocks."""
-        values = np.array([self.before, self.driving, self.thresholds])
-        return next(
-            shift for shift in range(1, self.blocks + 1) if np.array_equal(values, np.roll(values, shift, axis=1))
-        )
+        if self.blocks == 1 or self.is_network:
+            return False
+        pairs = [(values, values) for values in (self.driving, self.thresholds, self.masses)]
+        return all(bool((one == other[::-1]).all()) for one, other in (*pairs, (self.before, self.after)))
 
     @property
     def is_uniform(self) -> bool:
-        """Whether coupling, pulling and threshold are each a single number and the ends are open."""
+        """Whether this is a row with open ends, masses of 1, and one number each for coupling, pulling and threshold.
+
+        The solver `map` knows the modes of no other chain.
+        """
         return (
             self.ends == "open"
+            and not self.is_network
             and isinstance(self.coupling, float)
             and (isinstance(self.pulling, float) or self.pulling == NEIGHBOURS)
             and isinstance(self.threshold, float)
+            and self.mass == 1.0
         )
 
     @property
     def highest_frequency(self) -> float:
-        """Upper bound on the angular frequencies of slipping blocks: Gershgorin's bound on the eigenvalues of K."""
-        return math.sqrt(float((self.diagonal + self.before + self.after).max()))
+        """Upper bound on the angular frequencies of slipping blocks: Gershgorin's, on the eigenvalues of M⁻¹K."""
+        bound = self.diagonal.copy()
+        np.add.at(bound, self.neighbours.block, self.neighbours.strength)
+        return math.sqrt(float((bound / self.masses).max()))
 
     @property
     def damping_limit(self) -> float:
@@ -164,6 +298,9 @@ class Chain:
 
     def force(self, position: np.ndarray) -> np.ndarray:
         """Return the spring forces −(K U) at τ = 0 for positions U, shape (…, blocks)."""
+        if self.is_network:
+            flat = position.reshape(-1, self.blocks).T
+            return (self._matrix(self.neighbours.strength) @ flat).T.reshape(position.shape) - self.diagonal * position
         block = np.arange(self.blocks)
         pull = self.before * position[..., block - 1] + self.after * position[..., (block + 1) % self.blocks]
         return pull - self.diagonal * position
@@ -173,36 +310,4 @@ class Chain:
 
         Uniform sliding is U_i = vτ + e_i if `friction` is Φ(v).
         """
-        load = self._solve(self.thresholds.copy())
-        if self.ends == "ring":
-            # The corners of K are a rank-one update: the Sherman-Morrison formula.
-            corner = np.zeros(self.blocks)
-            corner[0] += 1.0
-            corner[-1] += 1.0
-            other = self._solve(corner)
-            strength = self.before[0]
-            load += strength * other * (load[0] + load[-1]) / (1.0 - strength * (other[0] + other[-1]))
-            # Make it periodic to the bit, like the ring, so that a periodic state stays periodic.
-            load = np.tile(load[: self._period], self.blocks // self._period)
-        if self.is_mirror_symmetric:
-            # Make it mirror-symmetric to the bit, like the chain.
-            load = 0.5 * (load + load[::-1])
-        return -friction * load
-
-    def _solve(self, load: np.ndarray) -> np.ndarray:
-        """Solve for the tridiagonal part of K; for a ring, the strength of its corner is added to both ends.
-
-        By elimination, not by LAPACK: the last bit of LAPACK's result depends on the memory addresses of its arguments,
-        so that all numbers of a study would change with the folder it runs in.
-        """
-        pivot = self.diagonal
-        strength = self.after
-        if self.ends == "ring":
-            pivot[0] += self.before[0]
-            pivot[-1] += self.before[0]
-        for i in range(1, self.blocks):
-            pivot[i] -= strength[i - 1] * strength[i - 1] / pivot[i - 1]
-            load[i] += strength[i - 1] * load[i - 1] / pivot[i - 1]
-        for i in range(self.blocks - 1, -1, -1):
-            load[i] = (load[i] + (strength[i] * load[i + 1] if i + 1 < self.blocks else 0.0)) / pivot[i]
-        return load
+        return -friction * static_displacement(self)

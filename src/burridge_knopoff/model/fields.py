@@ -93,6 +93,7 @@ def fields_of(kind: type) -> Mapping[str, Field]:
             if get_origin(hints[item.name]) is Annotated:
                 _, allowed, description = get_args(hints[item.name])
                 default = REQUIRED if item.default is dataclasses.MISSING else item.default
+                default = FOLLOWS if default is None else default
                 found[item.name] = Field(allowed, description, default)
         _KNOWN[kind] = found
     return _KNOWN[kind]
@@ -101,8 +102,12 @@ def fields_of(kind: type) -> Mapping[str, Field]:
 def check_fields(settings: Any, place: str = "") -> None:
     """Convert the settings of a new dataclass to their form: 3 becomes 3.0, a list becomes a tuple.
 
+    None stays where the value is derived from others.
+
     place : prefix of the names in messages
     Raises ValueError, one line, for anything out of range.
     """
     for name, field in fields_of(type(settings)).items():
-        object.__setattr__(settings, name, field.range.form(getattr(settings, name), place + name))
+        value = getattr(settings, name)
+        if not (value is None and field.default is FOLLOWS):
+            object.__setattr__(settings, name, field.range.form(value, place + name))

@@ -2,24 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
-from burridge_knopoff.model.chain import MAXIMUM_BLOCKS
+import numpy as np
+
+from burridge_knopoff.model.drawn import Drawn, Numbers, numbers_of
 from burridge_knopoff.model.fields import check_fields, settings
-from burridge_knopoff.model.ranges import Number, Several, Text
+from burridge_knopoff.model.ranges import Either, Number, Several, Text
+from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
 from burridge_knopoff.values import shown
 
 STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
 COORDINATE = Number(-1e6, 1e6)
-_ONE_A_BLOCK = Several(COORDINATE, 1, MAXIMUM_BLOCKS)
+_OF_BLOCKS = Either((COORDINATE, Several(COORDINATE, 1, MAXIMUM_BLOCKS), Drawn(COORDINATE)))
 
 
 @settings
 @dataclass(frozen=True)
 class InitialState:
-    """A named initial state: positions U(0) and velocities U'(0), one number a block.
+    """A named initial state: positions U(0) and velocities U'(0), one number for all blocks, one a block, or drawn.
 
     `Model.begin` turns it into a `ChainState`, which knows which blocks stick and the position of uniform sliding.
 
@@ -30,18 +32,38 @@ class InitialState:
     >>> from burridge_knopoff import InitialState
     >>> InitialState("own", position=(-0.9, -1.1), velocity=(0.1, 0.1))
     InitialState(name='own', position=(-0.9, -1.1), velocity=(0.1, 0.1))
+    >>> rough = InitialState("rough", {"random": "uniform", "low": -1.5, "high": -0.5, "seed": 1}, 0.0)
+    >>> rough.numbers(4)[0].round(2).tolist()
+    [-1.45, -1.15, -0.55, -0.68]
     """
 
     name: str
-    position: Annotated[tuple[float, ...], _ONE_A_BLOCK, "initial positions U(0)"]
-    velocity: Annotated[tuple[float, ...], _ONE_A_BLOCK, "initial velocities U'(0)"]
+    position: Annotated[Numbers, _OF_BLOCKS, "initial positions U(0): one number for all, one a block, or drawn"]
+    velocity: Annotated[Numbers, _OF_BLOCKS, "initial velocities U'(0): one number for all, one a block, or drawn"]
 
     def __post_init__(self) -> None:
         check_fields(self)
-        if len(self.velocity) != len(self.position):
-            raise ValueError(
-                f"velocity: got {len(self.velocity)} numbers, expected {len(self.position)} for as many positions"
-            )
+        lengths = [len(values) for values in (self.position, self.velocity) if isinstance(values, tuple)]
+        if len({*lengths}) > 1:
+            raise ValueError(f"velocity: got {lengths[1]} numbers, expected {lengths[0]} for as many positions")
+
+    @property
+    def blocks(self) -> int | None:
+        """Number of blocks that the state tells: that of its lists, 1 for numbers alone, None for drawn numbers."""
+        lists = [len(values) for values in (self.position, self.velocity) if isinstance(values, tuple)]
+        drawn = isinstance(self.position, str) or isinstance(self.velocity, str)
+        return lists[0] if lists else None if drawn else 1
+
+    def numbers(self, blocks: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return U(0) and U'(0) of a number of blocks, each of shape (blocks,).
+
+        Raises ValueError, one line, if the state has lists of another length.
+        """
+        for values, words in ((self.position, "positions"), (self.velocity, "velocities")):
+            if isinstance(values, tuple) and len(values) != blocks:
+                given = f"the number of {words} of the initial state {self.name!r}"
+                raise ValueError(f"blocks: got {blocks}, expected {len(values)}, {given}")
+        return numbers_of(self.position, blocks, "position"), numbers_of(self.velocity, blocks, "velocity")
 
 
 _PAPER_VELOCITY = (0.099, 0.1012, 0.1023)
@@ -53,9 +75,7 @@ PAPER_STATES = {
 }
 
 
-def initial_state(
-    name: str, position: Sequence[float] | None = None, velocity: Sequence[float] | None = None
-) -> InitialState:
+def initial_state(name: str, position: Numbers | None = None, velocity: Numbers | None = None) -> InitialState:
     """Return one of the paper's states by its name, or the given numbers under this name.
 
     Raises ValueError for an unknown name without numbers.
@@ -70,4 +90,4 @@ def initial_state(
             )
         position = known.position if position is None else position
         velocity = known.velocity if velocity is None else velocity
-    return InitialState(name, tuple(position), tuple(velocity))
+    return InitialState(name, position, velocity)

@@ -104,19 +104,19 @@ class Model:
         Raises ValueError if the state does not fit the chain, or slips backward under one-sided contact.
         """
         OneOf(STARTS).form(start, "start")
-        if len(initial.position) != self.blocks:
+        u, w = self.numbers_of(initial)
+        stuck = self.starts_stuck(u, start)
+        return ChainState(u - self.sliding_offset, np.where(stuck, 0.0, w), stuck)
+
+    def numbers_of(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
+        """Return U(0) and U'(0) of an initial state, each of shape (blocks,); raises ValueError as `begin` does."""
+        u, w = initial.numbers(self.blocks)
+        if self.contact == "one_sided" and w.min() < 0.0:
             raise ValueError(
-                f"blocks: got {self.blocks}, expected {len(initial.position)}, the number of positions of the initial "
-                f"state {initial.name!r}"
+                f"velocity: got {float(w.min())!r}, expected at least 0 under contact one_sided: blocks only slip "
+                "forward; contact symmetric lets them slip backward"
             )
-        if self.contact == "one_sided" and min(initial.velocity) < 0.0:
-            raise ValueError(
-                f"velocity: got {min(initial.velocity)!r}, expected at least 0 under contact one_sided: blocks only "
-                "slip forward; contact symmetric lets them slip backward"
-            )
-        stuck = self.starts_stuck(np.array(initial.position), start)
-        position = np.array(initial.position) - self.sliding_offset
-        return ChainState(position, np.where(stuck, 0.0, np.array(initial.velocity)), stuck)
+        return u, w
 
     def starts_stuck(self, position: np.ndarray, start: str) -> np.ndarray:
         """Return which blocks stick at τ = 0 for a choice of `start`; same shape as U(0), (…, blocks)."""

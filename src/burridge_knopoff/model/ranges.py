@@ -129,8 +129,9 @@ class Several(Range):
         return items if fits else None
 
     def __str__(self) -> str:
-        limits = [f"at least {self.least}"] if self.least else []
-        limits += [f"at most {self.most}"] if self.most < 10**9 else []
+        limits = [f"at least {self.least}"] if 0 < self.least < self.most else []
+        limits += [f"at most {self.most}"] if self.least < self.most < 10**9 else []
+        limits += [f"of {self.most}"] if self.least == self.most else []
         limits += ["each value once"] if self.distinct else []
         return f"a list ({'; '.join([*limits, f'each {self.each}'])})"
 

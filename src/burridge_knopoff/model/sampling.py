@@ -18,7 +18,6 @@ VELOCITIES = (0.0, 0.2)
 #: Ranges of what a box and a sample are given by.
 POSITION = Interval(COORDINATE)
 VELOCITY = Interval(Number(0.0, 1e6))
-SEED = Whole(0, 2**32 - 1)
 SAMPLES = Whole(1, 100_000)
 
 CONFIDENCE = 0.95

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
+from burridge_knopoff.model.drawn import SEED
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import START, STARTS
@@ -14,7 +15,6 @@ from burridge_knopoff.model.sampling import (
     POSITION,
     POSITIONS,
     SAMPLES,
-    SEED,
     VELOCITIES,
     VELOCITY,
     sampled_states,

@@ -61,7 +61,7 @@ def rate(model: Model, at: ChainState) -> np.ndarray:
     friction = np.where(at.velocity < 0.0, -1.0, 1.0) * model.law(np.abs(at.velocity))
     weakening = model.chain.thresholds * (model.law(model.v) - friction)
     force = weakening - _products(model.chain.stiffness, at.position)
-    return np.concatenate([at.velocity - model.v, np.where(at.stuck, 0.0, force)])
+    return np.concatenate([at.velocity - model.v, np.where(at.stuck, 0.0, force / model.chain.masses)])
 
 
 def _products(vectors: np.ndarray, of: np.ndarray) -> np.ndarray:

@@ -132,7 +132,7 @@ def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
             force = _derivatives(model, position, np.zeros_like(position))[0][:, number]
             # A slip goes in the direction of the spring force at its start, the event before its stop.
             along = np.sign(np.roll(force, 1)) * force
-            decelerations = threshold * float(model.law(0.0)) - along
+            decelerations = (threshold * float(model.law(0.0)) - along) / model.chain.masses[number]
             least[number] = decelerations[own[:, 1] == 0].min(initial=np.inf)
     return least
 
@@ -161,8 +161,9 @@ def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray) -> tu
     force = chain.thresholds * float(model.law(model.v)) - position @ chain.stiffness.T
     force_rate = -(velocity - model.v) @ chain.stiffness.T
     speed = np.abs(velocity)
-    acceleration = force - np.where(velocity < 0.0, -1.0, 1.0) * chain.thresholds * model.law(speed)
-    return force, force_rate, acceleration, force_rate - chain.thresholds * model.law.slope(speed) * acceleration
+    acceleration = (force - np.where(velocity < 0.0, -1.0, 1.0) * chain.thresholds * model.law(speed)) / chain.masses
+    jerk = (force_rate - chain.thresholds * model.law.slope(speed) * acceleration) / chain.masses
+    return force, force_rate, acceleration, jerk
 
 
 def _root(value: np.ndarray, slope: np.ndarray) -> float:

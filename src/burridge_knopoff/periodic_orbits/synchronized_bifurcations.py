@@ -54,7 +54,8 @@ def unit(chain: Chain) -> float:
 
     Springs stronger by a factor make all motion faster by its square root; a mode grows with a times the threshold.
     """
-    return math.sqrt(float(chain.driving[chain.driving > 0.0].min())) / float(chain.thresholds.max())
+    pulled = chain.driving > 0.0
+    return math.sqrt(float((chain.driving * chain.masses)[pulled].min())) / float(chain.thresholds.max())
 
 
 def bifurcations_of(orbits: KnownOrbits) -> list[Bifurcation]:

@@ -65,18 +65,26 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
 
 def chain_text(chain: Chain) -> str:
     """Describe the springs and the static friction of a chain."""
-    parts = [f"coupling {_strengths(chain.coupling)}"]
+    if chain.springs:
+        parts = [f"springs of {chain.springs}"]
+    else:
+        parts = [f"coupling {_numbers(chain.coupling)}"]
     parts.append(
         "pulling as many springs as the block has neighbours"
         if chain.pulling == NEIGHBOURS
-        else f"pulling {_strengths(chain.pulling)}"
+        else f"pulling {_numbers(chain.pulling)}"
     )
-    parts.append(f"static friction {_strengths(chain.threshold)}")
-    return f"{'a ring' if chain.ends == 'ring' else 'open ends'}; {'; '.join(parts)}"
+    parts.append(f"static friction {_numbers(chain.threshold)}")
+    if chain.mass != 1.0:
+        parts.append(f"mass {_numbers(chain.mass)}")
+    shape = "a ring" if chain.ends == "ring" else "open ends"
+    if chain.is_network:
+        shape = f"a grid of {chain.grid[0]} × {chain.grid[1]} blocks" if chain.grid else "a network"
+    return f"{shape}; {'; '.join(parts)}"
 
 
-def _strengths(value: Any) -> str:
-    return ", ".join(text(item) for item in value) if isinstance(value, tuple) else text(value)
+def _numbers(value: Any) -> str:
+    return ", ".join(text(item) for item in value) if isinstance(value, list | tuple) else text(value)
 
 
 def laws_text(models: Mapping[str, Model]) -> str:
@@ -95,7 +103,7 @@ def _grid(items: list[Any]) -> str:
 def initial_states(study: Study) -> list[dict[str, str]]:
     """Return name, U(0) and U'(0) of each initial state."""
     return [
-        {"name": name, **{key: ", ".join(text(value) for value in state[key]) for key in ("position", "velocity")}}
+        {"name": name, **{key: _numbers(state[key]) for key in ("position", "velocity")}}
         for name, state in study.config["initial"].items()
     ]
 

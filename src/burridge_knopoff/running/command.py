@@ -21,6 +21,8 @@ def simulate_command(model: Model, initial: InitialState, settings: Settings) ->
     """Return the command that repeats this run, quoted for a shell; settings with their default are left out."""
     words = ["bk", "simulate", *_law(model.law), "--a", repr(model.law.a)]
     words += [*_changed(model.chain), *_changed(model), "--initial", initial.name]
+    if model.chain.springs or (initial.blocks != model.blocks and not model.chain.grid):
+        words += ["--blocks", f"{model.blocks}"]
     words += [f"--{key}={_text(getattr(initial, key))}" for key in fields_of(InitialState)]
     words += _changed(settings)
     return shlex.join(words)
@@ -41,8 +43,8 @@ def _law(law: Law) -> Iterator[str]:
 def _changed(part: Any) -> Iterator[str]:
     for key, field in fields_of(type(part)).items():
         value = getattr(part, key)
-        # The number of blocks follows from the number of positions.
-        if value != field.default and key != "blocks":
+        # The initial state or the springs tell the number of blocks.
+        if value is not None and value != field.default and key != "blocks":
             yield from (f"--{key.replace('_', '-')}", _text(value))
 
 

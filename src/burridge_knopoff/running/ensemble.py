@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from burridge_knopoff.kernel.ensemble import Ensemble
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.runner import EVENTS_PER_BLOCK_AND_UNIT
+from burridge_knopoff.running.runner import EVENTS_PER_BLOCK_AND_UNIT, check_kernel
 
 
 def new_ensemble(model: Model) -> Ensemble:
     """Return an ensemble that moves many trajectories of a model at once; one thread at a time may use it."""
     chain, law = model.chain, model.law
+    check_kernel(chain)
     codes, constants = law.tape.table
     used = slice(law.tape.value)
     return Ensemble(

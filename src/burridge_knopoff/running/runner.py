@@ -16,10 +16,11 @@ from burridge_knopoff.kernel.springs import Springs
 from burridge_knopoff.kernel.state import State
 from burridge_knopoff.kernel.time_stepping import TimeStepping
 from burridge_knopoff.kernel.vector import WIDTH
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
+from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal, shown
 
 NEVER = 1e300
 
@@ -62,7 +63,7 @@ class Runner:
         if solver == "map" and not model.has_closed_form:
             raise ValueError(
                 "solver: got 'map', expected series | rk4: map needs a closed form, that is a linear friction law, not "
-                "too steep, in a uniform chain with open ends"
+                "too steep, in a uniform chain of masses 1 with open ends"
             )
         self.model = model
         # These decide the steps: a continued run repeats the steps of the whole run only if they are equal.
@@ -177,8 +178,17 @@ def new_friction(model: Model, order: int) -> Friction:
     return Friction(*law.tape.table, law.tape.value, law.tape.slope, law.is_linear, *slopes, columns, order)
 
 
+def check_kernel(chain: Chain) -> None:
+    """Raise ValueError, one line, for a chain that the kernel cannot move: a network, or masses other than 1."""
+    if chain.is_network:
+        raise ValueError("chain: got a network of springs, expected a row or a ring, which the solvers can move")
+    if (chain.masses != 1.0).any():
+        raise ValueError(f"chain.mass: got {shown(chain.mass)}, expected 1.0, which the solvers can move")
+
+
 def _state(model: Model, order: int) -> State:
     chain = model.chain
+    check_kernel(chain)
     springs = Springs(
         chain.diagonal, chain.before, chain.after, chain.thresholds, chain.thresholds * float(model.law(model.v))
     )

@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.ranges import OneOf, Range, Whole
+from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
 
 #: The keys of a section in a config.
 SECTION_KEYS = Keys(

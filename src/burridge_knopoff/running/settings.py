@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.model import START, STARTS
 from burridge_knopoff.model.ranges import Number, OneOf, Whole
+from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
 from burridge_knopoff.running.section import SUM, Section, SectionRange
 from burridge_knopoff.values import MOST_NUMBERS, refusal
 
@@ -95,9 +96,11 @@ class Settings:
         blocks = chain.blocks
         if self.lyapunov_exponents > max(2 * blocks, DEFAULT_EXPONENTS):
             raise refusal("lyapunov_exponents", self.lyapunov_exponents, f"at most {2 * blocks}, two a block")
+        if 2.0 * blocks * self.lyapunov_exponents > MOST_NUMBERS:
+            allowed = f"at most {MOST_NUMBERS / (2.0 * blocks):.3g} with {blocks} blocks"
+            raise refusal("lyapunov_exponents", self.lyapunov_exponents, allowed)
         self.section.check_chain(chain)
-        longest = LONGEST_STEP / chain.highest_frequency
-        if self.solver == "rk4" and self.step > longest:
+        if self.solver == "rk4" and self.step > (longest := LONGEST_STEP / chain.highest_frequency):
             raise refusal("step", self.step, f"at most {longest:.3g} in this chain: longer steps miss events")
         if self.solver == "rk4" and self.duration / self.step * blocks > MOST_STEPS:
             raise refusal("step", self.step, f"at most {MOST_STEPS / blocks:.3g} steps in transient and window")

@@ -38,7 +38,8 @@ def point_lines(result: Result) -> list[str]:
 
 def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     attributes = point.attrs
-    chain = ", ".join(f"{key} {_text(attributes[f'chain_{key}'])}" for key in CHAIN_OPTIONS if key != "ends")
+    given = {key: attributes[name] for key in CHAIN_OPTIONS if key != "ends" and (name := f"chain_{key}") in attributes}
+    chain = ", ".join(f"{key} {_text(value)}" for key, value in given.items())
     yield "chain", f"{point.sizes['block']} blocks, {attributes['chain_ends']}: {chain}"
     numbers = [
         f"{key.removeprefix('law_')} = {value:g}"
@@ -69,7 +70,8 @@ def _run(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
 
 def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[str, str]]:
     run = {str(name): variable.values for name, variable in point.variables.items()}
-    chain = Chain(point.sizes["block"], **{key: _given(point.attrs[f"chain_{key}"]) for key in CHAIN_OPTIONS})
+    given = {key: _given(point.attrs[name]) for key in CHAIN_OPTIONS if (name := f"chain_{key}") in point.attrs}
+    chain = Chain(point.sizes["block"], **given)
     status = Status(point["status"].item()).name.lower()
     yield "status", f"{status} at tau = {point['end_time'].item():g}"
     yield "<J>", plain(with_error(point["mean_distance"].item(), point["mean_distance_error"].item()))

@@ -14,7 +14,7 @@ from typing import Any
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings, PhaseSettings
 from burridge_knopoff.continuation.settings import Refine
-from burridge_knopoff.model.chain import MAXIMUM_BLOCKS, Chain
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
 from burridge_knopoff.model.initial import STATE_NAME, InitialState
 from burridge_knopoff.model.model import LAW_NAME, Model
@@ -145,8 +145,8 @@ CONFIG = Keys(
         "a_digits": Field(Whole(1, 15), "decimals of a in file names", 4),
         "initial": Field(
             Named(STATE_NAME, Keys(_STATE, "; {} for one of the paper's"), 1),
-            "initial states by name, each with position U(0) and velocity U'(0), one number a block, for 1 to "
-            f"{MAXIMUM_BLOCKS} blocks; minus: {{}} and plus: {{}} are the paper's and need no numbers",
+            "initial states by name, each with position U(0) and velocity U'(0): one number for all blocks, one a "
+            "block, or drawn; minus: {} and plus: {} are the paper's and need no numbers",
         ),
         "without": Field(
             Several(OneOf(tuple(OPTIONAL)), distinct=True),
@@ -156,7 +156,7 @@ CONFIG = Keys(
         "laws": Field(
             Named(LAW_NAME, LawKeys(), 1), "friction laws by name; see below", {law: {} for law in PAPER_LAWS}
         ),
-        "chain": _section(_part(Chain, "blocks")),
+        "chain": _section(_part(Chain)),
         **_part(Model),
         **_part(
             Settings,

@@ -20,5 +20,5 @@ def models_of(config: Mapping[str, Any], a: float, blocks: int) -> list[Model]:
 
 def model_of(config: Mapping[str, Any], law: str, a: float, blocks: int) -> Model:
     """Return the model of a study under one of its laws, at one a; raises ValueError if there is none."""
-    chain = Chain(blocks, **config["chain"])
+    chain = Chain(**{**config["chain"], "blocks": blocks})
     return Model(chain, law_of(law, a, config["laws"][law]), config["v"], config["contact"])

@@ -42,7 +42,8 @@ def other_length_config(study: Study, laws: Collection[str] | None = None) -> di
         raise ConfigError(
             f"chain.{key}: got {study.config['chain'][key]}, expected one number for chains of another length"
         )
-    return model_config(study, laws)
+    config = model_config(study, laws)
+    return {**config, "chain": {name: value for name, value in config["chain"].items() if name != "blocks"}}
 
 
 def proved_config(study: Study) -> dict[str, Any]:

@@ -15,6 +15,8 @@ from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.study import Study, load_study
 from burridge_knopoff.values import joined
 
+#: Keys without a default, which the config of a row or a ring does not have.
+_OF_NETWORKS = ("chain.grid", "chain.springs")
 _RUN = re.compile(r"(?:points|solvers/(?P<solver>\w+))/(?P<law>\w+)/(?P<initial>\w+)/a(?P<a>[\d.]+)\.nc")
 
 
@@ -54,5 +56,6 @@ def _other_key(config: Any, keys: Keys, place: str = "") -> str:
         return place
     sections = {name: field.range for name, field in keys.fields.items() if isinstance(field.range, Keys)}
     found = [joined(place, name) for name in sorted(config.keys() ^ keys.fields.keys())]
+    found = [key for key in found if key not in _OF_NETWORKS]
     found += [_other_key(config[name], inside, joined(place, name)) for name, inside in sections.items() if not found]
     return next(filter(None, found), "")

@@ -11,9 +11,9 @@ from functools import reduce
 from operator import getitem
 from typing import Any
 
-from burridge_knopoff.basins.initial_phases import ends_are_neighbours
+from burridge_knopoff.basins.initial_phases import has_free_ends
 from burridge_knopoff.laws import LAWS, law_of
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.chain import BLOCKS, Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
@@ -26,6 +26,8 @@ from burridge_knopoff.values import MOST_NUMBERS, refusal
 
 #: States labelled at once for each pair of nearby states: basins/pair_separation.py.
 _STATES_OF_A_PAIR = 2
+#: Numbers in a list of a config: the command of a run has to hold them.
+MOST_LISTED = 1024
 
 
 @contextmanager
@@ -38,7 +40,7 @@ def under(place: str) -> Iterator[None]:
 
 
 def fill_states(config: Mapping[str, Any]) -> None:
-    """Fill in the numbers of the paper's initial states; require the same number of blocks in all states."""
+    """Fill in the numbers of the paper's initial states."""
     states = config["initial"]
     for name, state in states.items():
         if not state and name not in PAPER_STATES:
@@ -48,10 +50,33 @@ def fill_states(config: Mapping[str, Any]) -> None:
             if state and key not in state:
                 raise ValueError(f"initial.{name}.{key}: got none, expected position and velocity together")
         if not state:
-            state.update(position=list(PAPER_STATES[name].position), velocity=list(PAPER_STATES[name].velocity))
-    if len({len(state["position"]) for state in states.values()}) > 1:
-        counts = ", ".join(f"{name}: {len(state['position'])}" for name, state in states.items())
+            position, velocity = PAPER_STATES[name].numbers(BLOCKS)
+            state.update(position=position.tolist(), velocity=velocity.tolist())
+
+
+def fill_blocks(config: Mapping[str, Any]) -> None:
+    """Fill in the number of blocks, from the springs or the initial states; every state must have as many."""
+    chain, told = config["chain"], {}
+    sections = {"chain": chain, **{f"initial.{name}": state for name, state in config["initial"].items()}}
+    for section, values in sections.items():
+        for key, value in values.items():
+            if isinstance(value, list) and len(value) > MOST_LISTED:
+                raise refusal(f"{section}.{key}", value, f"at most {MOST_LISTED} numbers in a list, or drawn numbers")
+    for name, state in config["initial"].items():
+        with under(f"initial.{name}."):
+            told[name] = InitialState(name, **state).blocks
+    lists = {name: told[name] for name, state in config["initial"].items() if list in map(type, state.values())}
+    if len({*lists.values()}) > 1:
+        counts = ", ".join(f"{name}: {count}" for name, count in lists.items())
         raise ValueError(f"initial: got different numbers of positions ({counts}), expected one for all states")
+    if not {"blocks", "grid", "springs"} & chain.keys():
+        chain["blocks"] = next(iter(lists.values()), max(count or 0 for count in told.values()))
+        if not chain["blocks"]:
+            raise ValueError("chain.blocks: missing, expected the number of blocks, which drawn states do not tell")
+    chain["blocks"] = Chain(**chain).blocks
+    for name, count in lists.items():
+        if count != chain["blocks"]:
+            raise ValueError(f"initial.{name}: got numbers for {count} blocks, expected {chain['blocks']}")
 
 
 def fill_names(config: dict[str, Any]) -> None:
@@ -75,9 +100,9 @@ def _by_law(allowed: Range, usual: Mapping[str, Any]) -> Keys:
     return Keys({law: Field(allowed, "", value) for law, value in usual.items()})
 
 
-def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int) -> None:
+def check_models(config: Mapping[str, Any], grid: Iterable[float]) -> None:
     """Check the chain, every law at every a where it is used, its solver, and that every initial state can start."""
-    chain, laws = Chain(blocks, **config["chain"]), config["laws"]
+    chain, laws = Chain(**config["chain"]), config["laws"]
     for name, solver in config["solver"].items():
         tapes = []
         for a in grid:
@@ -102,7 +127,7 @@ def check_models(config: Mapping[str, Any], grid: Iterable[float], blocks: int) 
                     law_of(name, a, laws[name])
     for name, state in config["initial"].items():
         with under(f"initial.{name}."):
-            model.begin(InitialState(name, **state), config["start"])
+            model.numbers_of(InitialState(name, **state))
 
 
 def _reason(model: Model) -> str:
@@ -110,13 +135,13 @@ def _reason(model: Model) -> str:
     if not model.law.is_linear:
         return "as its friction is not linear in the speed"
     if not model.chain.is_uniform:
-        return "which needs open ends and a single number each for coupling, pulling and threshold"
+        return "which needs a row with open ends, masses of 1 and one number each for coupling, pulling and threshold"
     return f"as a slope steeper than {model.chain.damping_limit:g} overdamps the blocks"
 
 
 def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int, shown: float) -> None:
     """Check the values of a in all sections against the grid and fill in defaults; `shown` is that of single runs."""
-    chain = Chain(blocks, **config["chain"])
+    chain = Chain(**config["chain"])
     of_paper = chain == Chain(3)
     maps = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in config["laws"]}
     usual = {law: [a for a in values if a in grid and blocks > 1] for law, values in maps.items()}
@@ -126,8 +151,8 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
     phases["a"] = sorted(phases.get("a", [a for a in PAPER_PHASES if a in grid and of_paper]))
     solvers["a"] = sorted(solvers.get("a", [a for a in PAPER_COMPARED if a in grid] or [shown]))
     config["figures"].setdefault("a", shown)
-    if phases["a"] and ends_are_neighbours(chain):
-        raise refusal("phases.a", phases["a"], "[] where a spring joins the end blocks: one or two blocks, or a ring")
+    if phases["a"] and not has_free_ends(chain):
+        raise refusal("phases.a", phases["a"], "[] unless the chain is a row of three blocks or more with open ends")
     if blocks == 1 and any(basins["a"].values()):
         raise ValueError(f"basins.a: got {basins['a']}, expected no values for one block: a map needs two end blocks")
     for key, values in (
@@ -156,10 +181,10 @@ def leave_out(config: Mapping[str, Any], stages: Collection[str]) -> None:
         config["basins"]["a"] = {law: [] for law in config["laws"]}
 
 
-def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
+def check_size(config: Mapping[str, Any], values: int, blocks: int, without: Collection[str]) -> None:
     """Check that Snakemake can plan the jobs of a study and that no job holds too many numbers.
 
-    config : with all defaults; values : number of values of a
+    config : with all defaults; values : number of values of a; without : stages that are left out
     """
     states, laws = config["initial"], config["laws"]
     points = len(laws) * len(states) * values
@@ -183,7 +208,7 @@ def check_size(config: Mapping[str, Any], values: int, blocks: int) -> None:
         ("chains.samples", max(len(chains["a"]), 2 * max(chains["blocks"])) * chains["samples"]),
         ("chains.two_blocks.samples", len(two_blocks["a"]) * two_blocks["samples"]),
     ):
-        if numbers > MOST_NUMBERS:
+        if numbers > MOST_NUMBERS and key.partition(".")[0] not in without:
             value = reduce(getitem, key.split("."), config)
             raise refusal(key, value, f"at most {MOST_NUMBERS:.0e} numbers held by a job, not {numbers:.1e}")
     if maps * basins["tiles"] > MAXIMUM_POINTS:

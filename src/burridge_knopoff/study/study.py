@@ -5,14 +5,19 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from pathlib import Path
 from typing import Any, TypeVar
+
+import numpy as np
 
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.springs import has_digest
 from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.proof.scope import is_covered
+from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.study import rules, stages
@@ -51,7 +56,7 @@ class Study:
     @property
     def blocks(self) -> int:
         """Number of blocks of the chain."""
-        return len(next(iter(self.config["initial"].values()))["position"])
+        return self.config["chain"]["blocks"]
 
     @property
     def shown_point(self) -> str:
@@ -84,7 +89,7 @@ class Study:
     @property
     def chain_description(self) -> dict[str, Any]:
         """The chain as arguments of `Chain`."""
-        return {"blocks": self.blocks, **self.config["chain"]}
+        return dict(self.config["chain"])
 
     @property
     def has_several_laws(self) -> bool:
@@ -146,18 +151,19 @@ class Study:
 
     @property
     def single_length_key(self) -> str:
-        """Key of the chain with a number for each spring or block, which fixes the chain's length; empty if none."""
-        return next((key for key, value in self.config["chain"].items() if isinstance(value, list)), "")
+        """Key of the chain that fixes its length: a list, or a file of springs; empty if none."""
+        chain = self.config["chain"]
+        return next((key for key, value in chain.items() if isinstance(value, list) or key == "springs"), "")
 
     @property
     def marked_states(self) -> dict[str, tuple[float, float]]:
         """U_1(0) and U_N(0) of the initial states in the plane of the basin maps, by name."""
-        states = self.config["initial"]
-        plane = states[self.config["basins"]["initial"]]
+        states = {name: self.state(name).numbers(self.blocks) for name in self.initial}
+        plane, speed = states[self.config["basins"]["initial"]]
         return {
-            name: (state["position"][0], state["position"][-1])
-            for name, state in states.items()
-            if state["position"][1:-1] == plane["position"][1:-1] and state["velocity"] == plane["velocity"]
+            name: (float(position[0]), float(position[-1]))
+            for name, (position, velocity) in states.items()
+            if np.array_equal(position[1:-1], plane[1:-1]) and np.array_equal(velocity, speed)
         }
 
     def model(self, law: str, a: float) -> Model:
@@ -233,22 +239,29 @@ def load_study(config: Mapping[str, Any], file: str, written: Mapping[str, Any] 
     written : content of the file if the command line changes it; errors that this content lacks are blamed on --config
     Raises ConfigError, one line: file, key, value, expected values.
     """
+    folder = Path(file).parent
     try:
-        return _study(config)
+        return _study(config, folder)
     except ValueError as error:
-        place = file if written in (None, config) or _fault(written) == str(error) else "--config"
+        place = file if written in (None, config) or _fault(written, folder) == str(error) else "--config"
         raise ConfigError(f"{place}: {error}") from error
 
 
-def _fault(config: Mapping[str, Any]) -> str:
+def _fault(config: Mapping[str, Any], folder: Path) -> str:
     try:
-        _study(config)
+        _study(config, folder)
     except ValueError as error:
         return str(error)
     return ""
 
 
-def _study(config: Mapping[str, Any]) -> Study:
+def _study(config: Mapping[str, Any], folder: Path) -> Study:
+    chain_keys = config.get("chain")
+    springs = chain_keys.get("springs") if isinstance(chain_keys, Mapping) else None
+    # The config of a record names the file of springs with the digest of its content.
+    is_new = isinstance(springs, str) and not has_digest(springs)
+    if isinstance(chain_keys, Mapping) and is_new:
+        config = {**config, "chain": {**chain_keys, "springs": display_path(folder / f"{springs}")}}
     # Use the types of YAML: lists instead of tuples.
     filled = json.loads(json.dumps(CONFIG.form(config, "")))
     # Keep the ranges of a as the user wrote them; `grid` has the values.
@@ -259,11 +272,16 @@ def _study(config: Mapping[str, Any]) -> Study:
     if "transient" in config and filled["lyapunov_alignment"] > filled["transient"] and "lyapunov_alignment" in config:
         raise refusal("lyapunov_alignment", filled["lyapunov_alignment"], "at most transient, of which it is a part")
     rules.fill_states(filled)
+    rules.fill_blocks(filled)
     rules.fill_chains(filled)
     rules.fill_names(filled)
-    rules.check_models(filled, values, study.blocks)
+    rules.check_models(filled, values)
     chain = study.model(study.laws[0], values[0]).chain
-    for law in study.laws:
+    if is_new:
+        chain.check_springs()
+    # Results may be read where the file of springs is not; it was checked when the study ran.
+    has_springs = chain.springs is None or is_new
+    for law in study.laws if has_springs else ():
         study.settings(law).check_chain(chain)
     # The default is three exponents; a single block has only two.
     filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponents_of(chain)
@@ -272,11 +290,11 @@ def _study(config: Mapping[str, Any]) -> Study:
     with rules.under("chains."):
         _settings_of(Sample, filled["chains"])
     rules.fill_values(filled, set(values), study.blocks, study.shown_a)
-    for law in study.laws if "solvers" in study.stages else ():
+    for law in study.laws if has_springs and "solvers" in study.stages else ():
         for solver in study.other_solvers(law):
             with rules.under("solvers."):
                 study.settings(law, solver).check_chain(chain)
-    rules.check_size(filled, len(grid), study.blocks)
+    rules.check_size(filled, len(grid), study.blocks, study.left_out)
     rules.leave_out(filled, study.left_out)
     return study
 

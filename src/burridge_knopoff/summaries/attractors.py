@@ -204,23 +204,27 @@ def _rounded(
     for k, place in enumerate(found.grid):
         model = found.models[place]
         for n, state in enumerate(states):
-            if model.contact == "symmetric" or min(state.velocity) >= 0.0:
-                starts = [model.begin(corner, start) for corner in corners(state, model.contact)]
+            if _is_allowed(state, model.contact, model.blocks):
+                starts = [model.begin(corner, start) for corner in corners(state, model.contact, model.blocks)]
                 reached, _ = label(model, found.attractors[place], starts, label_limit)
                 known = reached != UNDETERMINED
                 values["rounded_branch"][n, k, known] = found.branch[place][reached[known]]
     return values
 
 
-def corners(state: InitialState, contact: str) -> list[InitialState]:
+def _is_allowed(state: InitialState, contact: str, blocks: int) -> bool:
+    """Tell whether blocks may have the velocities of a state: under one-sided contact none slips backward."""
+    return contact == "symmetric" or bool(state.numbers(blocks)[1].min() >= 0.0)
+
+
+def corners(state: InitialState, contact: str, blocks: int) -> list[InitialState]:
     """Return CORNERS states, each number of which is ROUNDING above or below that of a state.
 
     With three blocks these are all corners of the box around it; in longer chains numbers six apart move together.
     contact : if one_sided, velocities are 0 at least
     """
-    blocks = len(state.position)
     above = np.arange(CORNERS)[:, None] >> (np.arange(2 * blocks) % 6) & 1
-    numbers = np.array([*state.position, *state.velocity]) + ROUNDING * (2 * above - 1)
+    numbers = np.concatenate(state.numbers(blocks)) + ROUNDING * (2 * above - 1)
     if contact == "one_sided":
         numbers[:, blocks:] = np.maximum(numbers[:, blocks:], 0.0)
     return [InitialState(state.name, tuple(row[:blocks].tolist()), tuple(row[blocks:].tolist())) for row in numbers]
@@ -233,7 +237,7 @@ def _labels_of_states(
     labels = np.full((len(CONTACTS), len(STARTS), len(states)), UNDETERMINED)
     for i, contact in enumerate(CONTACTS):
         other = replace(model, contact=contact)
-        allowed = [n for n, state in enumerate(states) if contact == "symmetric" or min(state.velocity) >= 0]
+        allowed = [n for n, state in enumerate(states) if _is_allowed(state, contact, model.blocks)]
         cases = [(j, n) for j in range(len(STARTS)) for n in allowed]
         reached, _ = label(other, attractors, [other.begin(states[n], STARTS[j]) for j, n in cases], label_limit)
         for (j, n), index in zip(cases, reached, strict=True):

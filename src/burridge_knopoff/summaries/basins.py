@@ -80,7 +80,8 @@ def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit
     """
     first = pixel_centres(basins.first_position, basins.pixels)
     last = np.array_split(pixel_centres(basins.last_position, basins.pixels), basins.tiles)[number]
-    position, velocity = plane(basins.initial.position, first, last, basins.initial.velocity)
+    u, w = basins.initial.numbers(known.model.blocks)
+    position, velocity = plane(u, first, last, w)
     labels, times = _labels(known, position, velocity, basins, label_limit, start)
     shape = (len(last), len(first))
     values = {
@@ -96,9 +97,11 @@ def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit
 def pairs(known: KnownAttractors, basins: BasinSettings, label_limit: float, seed: int, start: str) -> xarray.Dataset:
     """Label pairs of near states of the plane of a map, for the uncertainty exponent of its boundary; see `tile`."""
 
+    u, w = basins.initial.numbers(known.model.blocks)
+
     def label(points: np.ndarray) -> np.ndarray:
         first, last = points.T
-        position, velocity = states(basins.initial.position, first, last, basins.initial.velocity)
+        position, velocity = states(u, first, last, w)
         return _labels(known, position, velocity, basins, label_limit, start)[0]
 
     found = follow_pairs(label, basins.first_position, basins.last_position, basins.pairs, seed)
@@ -171,13 +174,14 @@ def merge(
     coordinates["law"] = ("map", np.array([laws.index(model.law.name) for model in models], dtype="i1"), law)
     a = {"long_name": "friction parameter a", "units": "1"}
     coordinates["a"] = ("map", np.array([model.a for model in models]), a)
+    u, w = basins.initial.numbers(models[0].blocks)
     attributes = {
         "history": "snakemake, from attractors.nc",
         "v": models[0].v,
         "contact": models[0].contact,
         "start": start,
-        "plane_position": np.array(basins.initial.position),
-        "plane_velocity": np.array(basins.initial.velocity),
+        "plane_position": u,
+        "plane_velocity": w,
         "first_range": np.array(basins.first_position),
         "last_range": np.array(basins.last_position),
         "label_limit": label_limit,

@@ -81,7 +81,7 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
         {
             "history": "snakemake chains",
             "blocks": first.blocks,
-            **{name: getattr(first.chain, name) for name in ("coupling", "pulling", "threshold", "ends")},
+            **{name: getattr(first.chain, name) for name in ("coupling", "pulling", "threshold", "ends", "mass")},
             "friction": friction_words(model.law for model in models),
             "v": first.v,
             "contact": first.contact,

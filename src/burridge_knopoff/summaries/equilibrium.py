@@ -1,9 +1,10 @@
 """Uniform sliding over law and a: where the blocks lie, and how perturbations of it grow.
 
-In uniform sliding U_i = vτ + e_i with K e = −Φ(v)·threshold. A perturbation obeys δU'' = −K δU + G δU' with the
-diagonal matrix G of g_i = −threshold_i·dΦ/dU' at U' = v; under the linearized law with thresholds of 1 they are a. Its
-growth rates are the eigenvalues λ of the Jacobian [[0, 1], [−K, G]]. Where all g_i are one g, a normal mode of K with
-the eigenvalue κ has λ² − gλ + κ = 0, so that λ = g/2 ± i sqrt(κ − g²/4): real parts of modes that oscillate are g/2.
+In uniform sliding U_i = vτ + e_i with K e = −Φ(v)·threshold. A perturbation obeys δU'' = −M⁻¹K δU + G δU' with the
+diagonal matrices M of the masses and G of g_i = −threshold_i·dΦ/dU'/m_i at U' = v; under the linearized law with
+thresholds and masses of 1 they are a. Its growth rates are the eigenvalues λ of the Jacobian [[0, 1], [−M⁻¹K, G]].
+Where all g_i are one g, a normal mode of M⁻¹K with the eigenvalue κ has λ² − gλ + κ = 0, so that
+λ = g/2 ± i sqrt(κ − g²/4): real parts of modes that oscillate are g/2.
 """
 
 from __future__ import annotations
@@ -34,6 +35,9 @@ SLIDING = "uniform sliding attracts here; it has no stops and is not looked for"
 
 PARTS = ("real", "imaginary")
 
+#: Limit on the number of blocks: the modes of larger chains take hours, and their matrices more than any memory.
+MOST_BLOCKS = 1024
+
 # Digits kept of numbers that come from LAPACK, whose last bits depend on the machine.
 DIGITS = 12
 
@@ -62,8 +66,8 @@ VARIABLES = {
     ),
 }
 _COORDINATES = {
-    "block": Variable(("block",), "i2", "block number, 1 to N along the chain", coordinate=True),
-    "mode": Variable(("mode",), "i2", "number of the eigenvalue, from the slowest oscillation on", coordinate=True),
+    "block": Variable(("block",), "i4", "block number, 1 to N along the chain", coordinate=True),
+    "mode": Variable(("mode",), "i4", "number of the eigenvalue, from the slowest oscillation on", coordinate=True),
     "part": Variable(("part",), "O", "part of a complex number", coordinate=True),
 }
 
@@ -71,13 +75,15 @@ _COORDINATES = {
 def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     """Return position, simulated drift, eigenvalues and simulated growth rate of uniform sliding at each a of a grid.
 
+    They are NaN for more than MOST_BLOCKS blocks.
+
     models : one for each law, at any a, of one chain and velocity
     """
     blocks = models[0].blocks
     sizes = {"law": len(models), "a": len(grid), "block": blocks, "mode": 2 * blocks, "part": len(PARTS)}
     values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
     for i, of_law in enumerate(models):
-        for k, a in enumerate(grid):
+        for k, a in enumerate(grid if blocks <= MOST_BLOCKS else ()):
             model = of_law.at(a)
             position = sliding_position(model)
             values["equilibrium_position"][i, k] = position
@@ -108,15 +114,15 @@ def sliding_position(model: Model) -> np.ndarray:
     chain = model.chain
     load = -float(model.law(model.v)) * chain.thresholds
     # SciPy refuses a band matrix of one number.
-    if chain.ends == "ring" or chain.blocks == 1:
+    if chain.ends == "ring" or chain.blocks == 1 or chain.is_network:
         return np.array([_rounded(value) for value in solve(chain.stiffness, load, assume_a="pos")])
     bands = np.stack([np.append(0.0, np.diag(chain.stiffness, 1)), np.diag(chain.stiffness)])
     return solveh_banded(bands, load)
 
 
 def damping(model: Model) -> np.ndarray:
-    """Return g = −threshold·dΦ/dU' of each block at the velocity of the driver, shape (blocks,)."""
-    return -model.chain.thresholds * float(model.law.slope(model.v))
+    """Return g = −threshold·dΦ/dU'/m of each block at the velocity of the driver, shape (blocks,)."""
+    return -model.chain.thresholds * float(model.law.slope(model.v)) / model.chain.masses
 
 
 def eigenvalues(model: Model) -> np.ndarray:
@@ -125,21 +131,25 @@ def eigenvalues(model: Model) -> np.ndarray:
     From the slowest oscillation to the fastest, of a pair the positive imaginary part first; those without oscillation
     come before, the one that grows most first.
     """
-    stiffness, rates = model.chain.stiffness, damping(model)
+    stiffness, rates, root = model.chain.stiffness, damping(model), np.sqrt(model.chain.masses)
     if (rates != rates[0]).any():
         blocks = model.blocks
-        jacobian = np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-stiffness, np.diag(rates)]])
+        jacobian = np.block(
+            [[np.zeros((blocks, blocks)), np.eye(blocks)], [-stiffness / model.chain.masses[:, None], np.diag(rates)]]
+        )
         found = [complex(_rounded(value.real), _rounded(value.imag)) for value in np.linalg.eigvals(jacobian)]
         return np.array(sorted(found, key=lambda value: (abs(value.imag), value.imag < 0.0, -value.real)))
     half = 0.5 * rates[0]
-    if model.chain.ends == "ring":
+    # The symmetric matrix with the eigenvalues of M⁻¹K.
+    stiffness = stiffness / np.outer(root, root)
+    if model.chain.ends == "ring" or model.chain.is_network:
         kappa = eigvalsh(stiffness)
     else:
         kappa = eigvalsh_tridiagonal(np.diag(stiffness), np.diag(stiffness, 1), lapack_driver="sterf")
     square = kappa - half**2
-    root = np.array([_rounded(value) for value in np.sqrt(np.abs(square))])
+    shift = np.array([_rounded(value) for value in np.sqrt(np.abs(square))])
     # A mode that does not oscillate has two real eigenvalues.
-    shift = np.where(square > 0.0, 1j, 1.0) * root
+    shift = np.where(square > 0.0, 1j, 1.0) * shift
     return (half + shift[:, None] * np.array([1.0, -1.0])).ravel()
 
 

@@ -27,7 +27,7 @@ VARIABLES = {
     "lyapunov_error": Variable(
         (*_AXES, "exponent"), "f8", "error of a Lyapunov exponent, of the batches and of the window"
     ),
-    "lyapunov_infinite_count": Variable(_AXES, "i2", "number of Lyapunov exponents known to be -infinity"),
+    "lyapunov_infinite_count": Variable(_AXES, "i4", "number of Lyapunov exponents known to be -infinity"),
     "run_kind": Variable(
         _AXES,
         "i1",

@@ -81,7 +81,7 @@ def one_law(
     for name, item in COORDINATES.items():
         coordinates[name] = (name, np.array(getattr(phases, name)), item.all_attributes())
     coordinates["state"] = ("state", np.arange(1, phases.samples + 1, dtype=STATE.dtype), STATE.all_attributes())
-    coordinates["inner_block"] = ("inner_block", np.arange(2, inner + 2, dtype="i2"), INNER_BLOCK)
+    coordinates["inner_block"] = ("inner_block", np.arange(2, inner + 2, dtype="i4"), INNER_BLOCK)
     attributes = {
         "law": model.law.name,
         "history": "snakemake, from attractors.nc",

@@ -13,6 +13,7 @@ import xarray
 
 from burridge_knopoff.dataset.point import point_about
 from burridge_knopoff.dataset.summary import axes
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.seal import check_seal
@@ -69,7 +70,7 @@ class Grid:
     @property
     def blocks(self) -> int:
         """Number of blocks."""
-        return len(next(iter(self.initial.values())).position)
+        return Chain(**self.models["chain"]).blocks
 
     @property
     def is_mirror_symmetric(self) -> bool:

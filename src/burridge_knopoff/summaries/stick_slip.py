@@ -55,7 +55,7 @@ VARIABLES = {
         _BLOCK, "f8", "half of the range of the position relative to the driver, of the samples of the kept trajectory"
     ),
 }
-BLOCK = Variable(("block",), "i2", "block number, 1 to N along the chain", coordinate=True)
+BLOCK = Variable(("block",), "i4", "block number, 1 to N along the chain", coordinate=True)
 _READ = ["status", "position", "velocity", "trajectory_time", "event_position", "event_velocity", *EVENTS]
 
 

@@ -94,7 +94,8 @@ def train(chain: Chain, blocks: int) -> Chain:
     chain : one number gives each of its strengths; the spring to the driver is 1 where it is `neighbours`
     """
     first = 1.0 if isinstance(chain.pulling, str) else chain.pulling
-    return Chain(blocks, chain.coupling, (first, *(blocks - 1) * (0.0,)), chain.threshold)  # type: ignore[arg-type]
+    pulling = (first, *(blocks - 1) * (0.0,))
+    return Chain(blocks, chain.coupling, pulling, chain.threshold, mass=chain.mass)  # type: ignore[arg-type]
 
 
 def run_settings(**settings: Any) -> Settings:
@@ -139,10 +140,11 @@ def summarize(
         for name, item in VARIABLES.items()
     }
     for j, state in enumerate(initial):
-        values["initial_position"][j], values["initial_velocity"][j] = state.position, state.velocity
+        values["initial_position"][j], values["initial_velocity"][j] = state.numbers(BLOCKS)
     trains = [replace(model, chain=train(model.chain, BLOCKS)) for model in models]
     alone = [replace(model, chain=train(model.chain, 1)) for model in models]
-    first = InitialState(initial[0].name, initial[0].position[:1], initial[0].velocity[:1])
+    position, velocity = initial[0].numbers(BLOCKS)
+    first = InitialState(initial[0].name, tuple(position[:1]), tuple(velocity[:1]))
     with shared_out(processes) as each:
         for c, (name, chosen) in enumerate(zip(CHAINS, (trains, models), strict=True)):
             of_one = partial(_at, chosen, initial=initial, settings=settings, search=search, motion=motion)

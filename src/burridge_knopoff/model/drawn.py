@@ -1,0 +1,67 @@
+"""Numbers for the blocks: one for all, one a block, or drawn at random with a fixed seed."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from burridge_knopoff.model.fields import Field, Keys
+from burridge_knopoff.model.ranges import Number, OneOf, Range, Whole
+from burridge_knopoff.values import refusal
+
+#: One number for all blocks, a list with one number each, or the keys or the text of a `Drawn`.
+Numbers = float | Sequence[float] | Mapping[str, Any] | str
+
+SEED = Whole(0, 2**32 - 1)
+
+
+@dataclass(eq=False, repr=False)
+class Drawn(Range):
+    """Numbers drawn independently for the blocks, uniform between `low` and `high`.
+
+    each : range of `low` and `high`
+
+    Its form is a text that a file and a command line can hold, such as `random=uniform,low=0.9,high=1.1,seed=1`.
+    """
+
+    each: Number
+
+    def _fit(self, value: Any, key: str) -> str | None:
+        if isinstance(value, str) and value.startswith("random="):
+            value = {name: _plain(text) for name, _, text in (part.partition("=") for part in value.split(","))}
+        if not isinstance(value, Mapping):
+            return None
+        limit = Field(self.each, str(self.each))
+        fields = {"random": Field(OneOf(("uniform",)), "uniform"), "low": limit, "high": limit}
+        drawn = Keys({**fields, "seed": Field(SEED, str(SEED))}).form(value, key)
+        if drawn["high"] < drawn["low"]:
+            raise refusal(f"{key}.high", drawn["high"], f"at least low ({drawn['low']!r})")
+        return ",".join(f"{name}={item}" for name, item in drawn.items())
+
+    def __str__(self) -> str:
+        return "{random: uniform, low, high, seed}"
+
+
+def _plain(text: str) -> Any:
+    for kind in (int, float):
+        with contextlib.suppress(ValueError):
+            return kind(text)
+    return text
+
+
+def numbers_of(given: Numbers, blocks: int, name: str) -> np.ndarray:
+    """Return the numbers of all blocks, shape (blocks,).
+
+    name : of the quantity; different quantities of one seed are independent
+
+    The first numbers drawn for more blocks are those drawn for fewer.
+    """
+    if not isinstance(given, str):
+        return np.array(np.broadcast_to(given, blocks), dtype=float)  # type: ignore[arg-type]
+    drawn = {key: _plain(text) for key, _, text in (part.partition("=") for part in given.split(","))}
+    unit = np.random.default_rng([drawn["seed"], *name.encode()]).random(blocks)
+    return np.minimum(drawn["low"] + (drawn["high"] - drawn["low"]) * unit, drawn["high"])

@@ -1,0 +1,136 @@
+"""Solution of K x = load for the stiffness matrix K of a chain, with the same bits on every machine."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+    from burridge_knopoff.model.chain import Chain
+
+#: Rows and rings of up to this many blocks are solved by elimination.
+ELIMINATED = 1024
+#: Corrections of a solution at most; each one gains several digits.
+_CORRECTIONS = 20
+#: Relative error at which a solution is right in twice the digits of a double.
+_ENOUGH = 1e-31
+_SPLITTER = 2.0**27 + 1.0
+
+
+def static_displacement(chain: Chain) -> np.ndarray:
+    """Return x with K x = threshold, shape (blocks,), as symmetric to the bit as the chain."""
+    if chain.is_network or chain.blocks > ELIMINATED:
+        return nearest_solution(chain.sparse_stiffness, chain.thresholds)
+    solve = ring_eliminated if chain.ends == "ring" else eliminated
+    found = solve(chain.diagonal, chain.after, chain.thresholds.copy())
+    if chain.ends == "ring":
+        # Make it periodic to the bit, like the ring, so that a periodic state stays periodic.
+        period = _period(chain)
+        found = np.tile(found[:period], chain.blocks // period)
+    if chain.is_mirror_symmetric:
+        # Make it mirror-symmetric to the bit, like the chain.
+        found = 0.5 * (found + found[::-1])
+    return found
+
+
+def _period(ring: Chain) -> int:
+    """Return the smallest shift along a ring that leaves springs and thresholds unchanged, in blocks."""
+    values = np.array([ring.before, ring.driving, ring.thresholds])
+    return next(shift for shift in range(1, ring.blocks + 1) if np.array_equal(values, np.roll(values, shift, axis=1)))
+
+
+def eliminated(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Solve a tridiagonal system by elimination; changes `load`.
+
+    strength : of the spring from each block to the next one, shape (blocks,)
+
+    Not by LAPACK: the last bit of LAPACK's result depends on the memory addresses of its arguments, so that all numbers
+    of a study would change with the folder it runs in.
+    """
+    pivot = diagonal.copy()
+    for i in range(1, len(load)):
+        pivot[i] -= strength[i - 1] * strength[i - 1] / pivot[i - 1]
+        load[i] += strength[i - 1] * load[i - 1] / pivot[i - 1]
+    for i in range(len(load) - 1, -1, -1):
+        load[i] = (load[i] + (strength[i] * load[i + 1] if i + 1 < len(load) else 0.0)) / pivot[i]
+    return load
+
+
+def ring_eliminated(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Solve the system of a ring, a tridiagonal one with corners; strength[-1] is that of the corners."""
+    # The corners are a rank-one update: the Sherman-Morrison formula.
+    pivot, corner = diagonal.copy(), np.zeros(len(load))
+    for end in (0, -1):
+        pivot[end] += strength[-1]
+        corner[end] += 1.0
+    load = eliminated(pivot, strength, load)
+    other = eliminated(pivot, strength, corner)
+    return load + strength[-1] * other * (load[0] + load[-1]) / (1.0 - strength[-1] * (other[0] + other[-1]))
+
+
+def nearest_solution(matrix: csr_array, load: np.ndarray) -> np.ndarray:
+    """Return the doubles nearest to the exact solution of a sparse, positive definite system.
+
+    SuperLU solves it, and iterative refinement in twice the precision makes the result independent of the rounding of
+    SuperLU, which differs from run to run, and as symmetric as the system.
+
+    Reference: N. J. Higham, Accuracy and Stability of Numerical Algorithms (2002), chapter 12.
+    """
+    from scipy.sparse.linalg import splu
+
+    options = {"SymmetricMode": True, "Equil": False}
+    factors = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options=options)
+    high, low, last = factors.solve(load), np.zeros(len(load)), np.inf
+    for _ in range(_CORRECTIONS):
+        change = factors.solve(_residual(matrix, load, high, low))
+        size = float(np.abs(change).max())
+        if not size < 0.5 * last:
+            break
+        last, low = size, low + change
+        high, low = _sum(high, low)
+        if size <= _ENOUGH * float(np.abs(high).max()):
+            break
+    return high
+
+
+def _sum(high: np.ndarray, low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rounded sum of large and small numbers, and its rounding error."""
+    total = high + low
+    return total, low - (total - high)
+
+
+def _product(one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the rounded product and its rounding error (Dekker)."""
+    product = one * other
+    parts = []
+    for factor in (one, other):
+        upper = _SPLITTER * factor
+        upper = upper - (upper - factor)
+        parts.append((upper, factor - upper))
+    (a, b), (c, d) = parts
+    return product, ((a * c - product) + a * d + b * c) + b * d
+
+
+def _residual(matrix: csr_array, load: np.ndarray, high: np.ndarray, low: np.ndarray) -> np.ndarray:
+    """Return load − K (high + low), to twice the precision of a double.
+
+    The terms of each row are cut into parts whose sums are exact, so that their order does not count (S. M. Rump,
+    T. Ogita and S. Oishi, SIAM J. Sci. Comput. 31 (2008) 189).
+    """
+    start, count = matrix.indptr[:-1], np.diff(matrix.indptr)
+    first = np.zeros(matrix.nnz)
+    first[start] = load
+    products = (*_product(-matrix.data, high[matrix.indices]), *_product(-matrix.data, low[matrix.indices]))
+    terms = np.stack([first, *products])
+    extra = int(np.ceil(np.log2(len(terms) * count.max()))) + 1
+    total = np.zeros(len(load))
+    for _ in range(3):
+        largest = np.maximum.reduceat(np.abs(terms), start, axis=1).max(axis=0)
+        unit = np.repeat(np.ldexp(1.0, np.frexp(largest)[1] + extra), count)
+        part = (unit + terms) - unit
+        total += np.add.reduceat(part, start, axis=1).sum(axis=0)
+        terms = terms - part
+    return total

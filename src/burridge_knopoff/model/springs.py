@@ -1,0 +1,150 @@
+"""The springs between blocks as lists of neighbours, for rows, rings, grids and networks from a file."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+import warnings
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from burridge_knopoff.model.ranges import Number, Range
+from burridge_knopoff.values import read_only
+
+#: Limit on the number of blocks.
+MAXIMUM_BLOCKS = 10**6
+STRENGTH = Number(1e-6, 1e6)
+_LINES = f"lines `block block strength`, with blocks from 1 to {MAXIMUM_BLOCKS} and strength {STRENGTH}"
+_STATED = re.compile(r"(?s:(.+))@([0-9a-f]{16})")
+
+
+class Neighbours(NamedTuple):
+    """The neighbours of each block in compressed rows; the arrays are read-only.
+
+    Those of block i (0 …) are index[start[i]:start[i + 1]]; springs of strength[start[i]:start[i + 1]] join them to it.
+
+    start : shape (blocks + 1,), int64; index : shape (n,), int64; strength : shape (n,), above 0
+    """
+
+    start: np.ndarray
+    index: np.ndarray  # type: ignore[assignment]
+    strength: np.ndarray
+
+    @property
+    def block(self) -> np.ndarray:
+        """The block to which each entry belongs, shape (n,)."""
+        return np.repeat(np.arange(len(self.start) - 1), np.diff(self.start))
+
+
+def _listed(index: np.ndarray, strength: np.ndarray) -> Neighbours:
+    """Return neighbours from a table with a row for each block; entries of strength 0 are left out."""
+    joined = strength > 0.0
+    start = np.concatenate([[0], np.cumsum(joined.sum(axis=1))])
+    arrays = start.astype(np.int64), index[joined].astype(np.int64), strength[joined].astype(float)
+    return Neighbours(*map(read_only, arrays))
+
+
+def along(before: np.ndarray, after: np.ndarray) -> Neighbours:
+    """Return the neighbours in a row or a ring: the previous block, then the next one.
+
+    before, after : strengths of the springs to them, shape (blocks,), 0 at an open end
+    """
+    block = np.arange(len(before))
+    index = np.stack([np.roll(block, 1), np.roll(block, -1)], axis=1)
+    return _listed(index, np.stack([before, after], axis=1))
+
+
+def of_grid(columns: int, rows: int, strength: float) -> Neighbours:
+    """Return the neighbours in a grid with open edges: left, right, down, up; block number is ix + columns * iy."""
+    block = np.arange(columns * rows)
+    ix, iy = block % columns, block // columns
+    joined = np.stack([ix > 0, ix < columns - 1, iy > 0, iy < rows - 1], axis=1)
+    return _listed(block[:, None] + np.array([-1, 1, -columns, columns]), strength * joined)
+
+
+def of_edges(one: np.ndarray, other: np.ndarray, strength: np.ndarray, blocks: int) -> Neighbours:
+    """Return the neighbours in a network, in ascending order; one, other : the blocks (0 …) that each spring joins."""
+    block, index = np.concatenate([one, other]), np.concatenate([other, one])
+    order = np.lexsort((index, block))
+    start = np.concatenate([[0], np.cumsum(np.bincount(block, minlength=blocks))])
+    arrays = start.astype(np.int64), index[order].astype(np.int64), np.concatenate([strength, strength])[order]
+    return Neighbours(*map(read_only, arrays))
+
+
+class SpringsFile(Range):
+    """The name of a file of springs. Its form ends with a digest of the content: `faults.txt@0123456789abcdef`.
+
+    The digest makes a changed file another value, so that results made with the old one are out of date. A name that
+    has a digest already is not read before its springs are needed.
+    """
+
+    def _fit(self, value: Any, key: str) -> str | None:
+        if not isinstance(value, str) or not value:
+            return None
+        return value if has_digest(value) else f"{value}@{_digest(_content(value))}"
+
+    def __str__(self) -> str:
+        return "name of a text file"
+
+
+def has_digest(springs: str) -> bool:
+    """Tell whether a name of a file of springs ends with the digest of its content."""
+    return _STATED.fullmatch(springs) is not None
+
+
+@lru_cache(maxsize=4)
+def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return the springs of a file: the blocks (0 …) that each one joins, and its strength.
+
+    springs : name of the file and digest, as `SpringsFile` returns it
+
+    Raises ValueError, one line, if the file cannot be read, has other content, or is no list of springs.
+    """
+    path, digest = _STATED.fullmatch(springs).groups()  # type: ignore[union-attr]
+    content = _content(path)
+    if _digest(content) != digest:
+        raise ValueError(f"chain.springs: got {path} with the digest {_digest(content)}, expected {digest}")
+    try:
+        with warnings.catch_warnings():
+            # An empty file is refused below.
+            warnings.simplefilter("ignore", UserWarning)
+            table = np.loadtxt(content.decode().splitlines(), ndmin=2)
+    except ValueError as error:
+        raise _refused(path, str(error).split(";")[0].rstrip(".")) from None
+    if not table.size or table.shape[1] != 3:
+        raise _refused(path, f"{table.shape[1] if table.size else 0} columns")
+    blocks, strength = table[:, :2], table[:, 2]
+    pair = np.sort(blocks, axis=1)
+    order = np.lexsort(pair.T)
+    twice = np.zeros(len(pair), dtype=bool)
+    twice[order[1:]] = (pair[order[1:]] == pair[order[:-1]]).all(axis=1)
+    inside = (blocks >= 1) & (blocks <= MAXIMUM_BLOCKS) & (blocks == np.floor(blocks))
+    for wrong, reason in (
+        (~inside.all(axis=1), ""),
+        (~((strength >= STRENGTH.least) & (strength <= STRENGTH.most)), ""),
+        (pair[:, 0] == pair[:, 1], ", a block joined to itself"),
+        (twice, ", a pair of blocks that is listed twice"),
+    ):
+        if wrong.any():
+            row = table[np.flatnonzero(wrong)[0]]
+            raise _refused(path, f"{' '.join(f'{value:g}' for value in row)}{reason}")
+    one, other = blocks.T.astype(np.int64) - 1
+    return read_only(one), read_only(other), read_only(strength)
+
+
+def _content(path: str) -> bytes:
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise ValueError(f"chain.springs: {path}: cannot be read: {error.strerror}") from None
+
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
+def _refused(path: str, given: str) -> ValueError:
+    return ValueError(f"chain.springs: {path}: got {given}, expected {_LINES}")

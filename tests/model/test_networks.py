@@ -1,0 +1,254 @@
+"""Grids, networks from a file, masses and drawn numbers: against dense matrices, and what is refused."""
+
+from fractions import Fraction
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
+
+from burridge_knopoff import Chain, InitialState, Model, law_of
+from burridge_knopoff.model.solving import nearest_solution
+from burridge_knopoff.model.springs import read_edges
+from tests.refused import refused
+
+strength = st.floats(0.1, 5.0)
+UNIFORM = {"random": "uniform", "low": 0.5, "high": 1.5, "seed": 3}
+
+
+def written(folder, edges):
+    """Return the path of a file of springs."""
+    path = folder / "springs.txt"
+    path.write_text("# block block strength\n" + "".join(f"{i} {k} {s!r}\n" for (i, k), s in edges.items()))
+    return str(path)
+
+
+@st.composite
+def networks(draw):
+    """Blocks and springs of a network, connected or not, and the springs to the driver that keep it in place."""
+    blocks = draw(st.integers(2, 9))
+    pairs = st.tuples(st.integers(1, blocks), st.integers(1, blocks)).filter(lambda pair: pair[0] != pair[1])
+    edges = draw(st.dictionaries(pairs, strength, min_size=1, max_size=15))
+    edges = {pair: value for pair, value in edges.items() if pair[::-1] not in edges or pair[0] < pair[1]}
+    pulling = draw(st.lists(st.one_of(st.just(0.0), strength), min_size=blocks, max_size=blocks))
+    for part in connected(blocks, edges):
+        if not any(pulling[block] for block in part):
+            pulling[min(part)] = 1.0
+    return blocks, edges, pulling
+
+
+def connected(blocks, edges):
+    """Return the sets of connected blocks (0 …)."""
+    part = list(range(blocks))
+    for _ in range(blocks):
+        for i, k in edges:
+            part[i - 1] = part[k - 1] = min(part[i - 1], part[k - 1])
+    return [{block for block in range(blocks) if part[block] == root} for root in set(part)]
+
+
+def dense(chain):
+    """Return K from the lists of neighbours, summed by hand."""
+    matrix = np.diag(chain.driving).astype(float)
+    start, index, strengths = chain.neighbours
+    for block in range(chain.blocks):
+        for place in range(start[block], start[block + 1]):
+            matrix[block, block] += strengths[place]
+            matrix[block, index[place]] -= strengths[place]
+    return matrix
+
+
+def check_algebra(chain):
+    """Require that all forms of the springs are those of one symmetric matrix K with K·1 = D."""
+    matrix, blocks = dense(chain), chain.blocks
+    assert np.allclose(chain.stiffness, matrix, rtol=0, atol=1e-12)
+    assert (chain.sparse_stiffness.toarray() == chain.stiffness).all()
+    assert (chain.stiffness == chain.stiffness.T).all()
+    assert np.allclose(matrix @ np.ones(blocks), chain.driving, rtol=0, atol=1e-12)
+    position = np.sin(1.0 + 3.0 * np.arange(3.0 * blocks)).reshape(3, blocks)
+    assert np.allclose(chain.force(position), -position @ matrix, rtol=0, atol=1e-11)
+    expected = np.linalg.solve(matrix, -0.7 * chain.thresholds)
+    assert np.allclose(chain.sliding_offset(0.7), expected, rtol=1e-9, atol=1e-12)
+    modes = np.linalg.eigvals(matrix / chain.masses[:, None])
+    assert np.sqrt(modes.real.max()) <= chain.highest_frequency * (1 + 1e-12)
+
+
+@hypothesis_settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(networks())
+def test_a_network_from_a_file(tmp_path, network):
+    blocks, edges, pulling = network
+    masses = [1.0 + 0.1 * block for block in range(blocks)]
+    chain = Chain(blocks, pulling=pulling, threshold=UNIFORM, mass=masses, springs=written(tmp_path, edges))
+    expected = np.zeros((blocks, blocks))
+    for (i, k), value in edges.items():
+        expected[i - 1, k - 1] = expected[k - 1, i - 1] = -value
+    assert (chain.stiffness - np.diag(chain.diagonal) == expected).all()
+    assert all((np.diff(index) > 0).all() for index in np.split(chain.neighbours.index, chain.neighbours.start[1:-1]))
+    check_algebra(chain)
+    assert not chain.is_mirror_symmetric
+    assert not chain.is_uniform
+
+
+@given(st.integers(1, 5), st.integers(1, 5), strength, st.sampled_from([0.3, "neighbours"]))
+def test_a_grid(columns, rows, coupling, pulling):
+    chain = Chain(grid=[columns, rows], coupling=coupling, pulling=pulling, threshold=UNIFORM)
+    assert chain.blocks == columns * rows
+    for block in range(chain.blocks):
+        ix, iy = block % columns, block // columns
+        around = [(ix - 1, iy), (ix + 1, iy), (ix, iy - 1), (ix, iy + 1)]
+        expected = [x + columns * y for x, y in around if 0 <= x < columns and 0 <= y < rows]
+        start, end = chain.neighbours.start[block : block + 2]
+        assert chain.neighbours.index[start:end].tolist() == expected
+        if pulling == "neighbours":
+            assert chain.driving[block] == (len(expected) if chain.blocks > 1 else 1)
+    assert (chain.neighbours.strength == coupling).all()
+    check_algebra(chain)
+
+
+@pytest.mark.parametrize(
+    ("chain", "start", "index", "springs"),
+    [
+        (Chain(3, coupling=(1.0, 2.0)), [0, 1, 3, 4], [1, 0, 2, 1], [1, 1, 2, 2]),
+        (Chain(3, (1.0, 2.0, 3.0), ends="ring"), [0, 2, 4, 6], [2, 1, 0, 2, 1, 0], [3, 1, 1, 2, 2, 3]),
+        (Chain(2, (1.0, 2.0), ends="ring"), [0, 2, 4], [1, 1, 0, 0], [2, 1, 1, 2]),
+        (Chain(1), [0, 0], [], []),
+    ],
+)
+def test_the_previous_block_comes_first_in_a_row_or_ring(chain, start, index, springs):
+    assert [values.tolist() for values in chain.neighbours] == [start, index, springs]
+    assert [values.dtype.str for values in chain.neighbours] == ["<i8", "<i8", "<f8"]
+    for values in (*chain.neighbours, chain.diagonal, chain.masses, chain.driving):
+        assert not values.flags.writeable
+    check_algebra(chain)
+
+
+def solved(matrix, load):
+    """Return the solution in rational arithmetic, rounded."""
+    rows = [[Fraction(value) for value in row] for row in np.column_stack([matrix, load]).tolist()]
+    for i, row in enumerate(rows):
+        for k, other in enumerate(rows):
+            if k != i and other[i]:
+                rows[k] = [value - other[i] / row[i] * own for value, own in zip(other, row, strict=True)]
+    return np.array([float(row[-1] / row[i]) for i, row in enumerate(rows)])
+
+
+@given(st.integers(2, 4), st.integers(2, 3), strength, st.integers(0, 2**32 - 1))
+def test_a_network_slides_where_the_exact_solution_rounds_to(columns, rows, coupling, seed):
+    """Also where the driver hardly holds it, so that a double solution has few digits."""
+    blocks = columns * rows
+    drawn = {"random": "uniform", "low": 0.5, "high": 2.0, "seed": seed}
+    chain = Chain(grid=(columns, rows), coupling=coupling, pulling=[1e-6, *(blocks - 1) * [0.0]], threshold=drawn)
+    assert (-chain.sliding_offset(1.0) == solved(chain.stiffness, chain.thresholds)).all()
+
+
+def test_long_rows_and_rings_slide_as_short_ones_do():
+    for chain in (Chain(40, 7.0, 0.3, UNIFORM), Chain(40, 7.0, 0.3, UNIFORM, "ring")):
+        expected = -0.7 * nearest_solution(chain.sparse_stiffness, chain.thresholds)
+        assert np.allclose(chain.sliding_offset(0.7), expected, rtol=1e-13, atol=0)
+    for ends in ("open", "ring"):
+        chain = Chain(100_000, 100.0, ends=ends)
+        offset = chain.sliding_offset(0.7)
+        assert (offset == offset[::-1]).all()
+        assert np.abs(chain.force(offset) - 0.7).max() < 1e-12
+
+
+def test_a_grid_is_as_symmetric_as_it_is():
+    offset = Chain(grid=(60, 60), coupling=30.0).sliding_offset(1.0).reshape(60, 60)
+    assert all((offset == other).all() for other in (offset.T, offset[::-1], offset[:, ::-1]))
+
+
+def test_masses_break_the_mirror():
+    assert Chain(3, mass=2.0).is_mirror_symmetric
+    assert not Chain(3, mass=(1.0, 1.0, 2.0)).is_mirror_symmetric
+    assert not Model(Chain(3, mass=2.0), law_of("linearized", 0.1)).has_closed_form
+    assert not Chain(3, mass=2.0).is_like(Chain(3))
+    assert Chain(3, mass=(1.0, 1.0, 1.0)).is_like(Chain(3))
+
+
+def test_drawn_numbers_are_those_of_their_seed():
+    chain, longer = Chain(50, threshold=UNIFORM, mass=UNIFORM), Chain(80, threshold=UNIFORM)
+    assert (chain.thresholds == Chain(50, threshold=chain.threshold).thresholds).all()
+    assert (chain.thresholds == longer.thresholds[:50]).all()
+    assert chain.threshold == "random=uniform,low=0.5,high=1.5,seed=3"
+    assert (chain.thresholds != Chain(50, threshold={**UNIFORM, "seed": 4}).thresholds).all()
+    # Quantities of one seed are independent.
+    assert abs(np.corrcoef(chain.thresholds, chain.masses)[0, 1]) < 0.5
+    assert 0.5 <= chain.thresholds.min() < 0.6
+    assert 1.4 < chain.thresholds.max() <= 1.5
+    assert (Chain(5, threshold={**UNIFORM, "low": 1.5}).thresholds == 1.5).all()
+
+
+def test_initial_states_of_any_number_of_blocks():
+    rough = InitialState("rough", UNIFORM, 0.25)
+    assert rough.blocks is None
+    position, velocity = rough.numbers(60)
+    assert (position == rough.numbers(70)[0][:60]).all()
+    assert velocity.tolist() == 60 * [0.25]
+    at = Model(Chain(60), law_of("linearized", 0.1)).begin(rough)
+    assert at.velocity.tolist() == 60 * [0.25]
+    assert (InitialState("own", 0.5, 0.0).blocks, InitialState("own", UNIFORM, (0.0, 0.1)).blocks) == (1, 2)
+    with refused("blocks: got 3, expected 2, the number of velocities of the initial state 'own'"):
+        InitialState("own", UNIFORM, (0.0, 0.1)).numbers(3)
+
+
+@pytest.mark.parametrize(
+    ("lines", "message"),
+    [
+        ("", "got 0 columns, expected lines `block block strength`"),
+        ("1 2\n", "got 2 columns"),
+        ("1 2 1.0 3\n", "got 4 columns"),
+        ("1 2 strong\n", "could not convert string 'strong'"),
+        ("1 2 1\n2 3\n", "the number of columns changed"),
+        ("0 1 1.0\n", "got 0 1 1, expected"),
+        ("1 2.5 1.0\n", "got 1 2.5 1, expected"),
+        ("1 1000001 1.0\n", "got 1 1e+06 1, expected"),
+        ("1 2 0\n", "got 1 2 0, expected"),
+        ("1 2 nan\n", "got 1 2 nan, expected"),
+        ("2 2 1.0\n", "got 2 2 1, a block joined to itself"),
+        ("1 2 1\n3 1 1\n2 1 1\n", "got 2 1 1, a pair of blocks that is listed twice"),
+    ],
+)
+def test_files_that_are_no_list_of_springs(tmp_path, lines, message):
+    path = tmp_path / "springs.txt"
+    path.write_text(lines)
+    with refused(f"chain.springs: {path}: ", message):
+        Chain(springs=str(path))
+
+
+def test_refused_networks(tmp_path):
+    path = written(tmp_path, {(1, 2): 1.0, (3, 4): 2.0})
+    assert Chain(springs=path).blocks == 4
+    for options, message in (
+        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for one block or more"),
+        ({"pulling": [1, 0, 0, 0]}, "chain.pulling: got 0 for all of the 2 blocks connected to block 3, expected"),
+        ({"blocks": 5}, "chain.pulling: got 0 for all of the 1 blocks connected to block 5, expected"),
+        ({"blocks": 3, "pulling": 1}, "chain.springs: got block 4, expected at most chain.blocks (3)"),
+        ({"coupling": 2.0}, "chain.coupling: got 2.0, expected none beside chain.springs"),
+        ({"ends": "ring"}, "chain.ends: got ring, expected open beside chain.springs"),
+        ({"grid": (2, 2)}, "chain.grid: got [2, 2], expected none beside chain.springs"),
+        ({"mass": [1, 2]}, "chain.mass: got 2 numbers, expected 1, or 4"),
+    ):
+        with refused(message):
+            Chain(**{"springs": path, **options})
+    for options, message in (
+        ({"blocks": 5}, "chain.blocks: got 5, expected 4 for chain.grid [2, 2]"),
+        ({"grid": (2,)}, "chain.grid: got (2,), expected a list (of 2;"),
+        ({"grid": (2000, 2000)}, "chain.grid: got [2000, 2000], expected at most 1000000 blocks"),
+        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for one block or more"),
+        ({"threshold": {**UNIFORM, "high": 0.25}}, "chain.threshold.high: got 0.25, expected at least low (0.5)"),
+        ({"threshold": "random=uniform,low=1"}, "chain.threshold.high: missing"),
+        ({"threshold": {}}, "chain.threshold.random: missing"),
+    ):
+        with refused(message):
+            Chain(**{"grid": (2, 2), **options})
+
+
+def test_a_changed_file_is_another_chain(tmp_path):
+    path = written(tmp_path, {(1, 2): 1.0})
+    chain = Chain(springs=path)
+    assert Chain(springs=chain.springs) == chain
+    written(tmp_path, {(1, 2): 2.0})
+    assert Chain(springs=path) != chain
+    read_edges.cache_clear()
+    with refused(f"chain.springs: got {path} with the digest ", f"expected {chain.springs[-16:]}"):
+        _ = Chain(2, springs=chain.springs).neighbours

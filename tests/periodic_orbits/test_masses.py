@@ -1,0 +1,33 @@
+"""The equation of motion with masses, m U'' = s − θ Φ(U'), in what orbits are found and judged by."""
+
+import numpy as np
+
+from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff.periodic_orbits.flow import rate
+from burridge_knopoff.periodic_orbits.grazing_distances import _derivatives
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import unit
+
+LIGHT = Model(Chain(3, coupling=2.0, threshold=(1.0, 1.5, 0.7)), law_of("nonlinear", 0.3), 0.2)
+HEAVY = Model(Chain(3, coupling=2.0, threshold=(1.0, 1.5, 0.7), mass=(1.0, 4.0, 0.5)), LIGHT.law, 0.2)
+POSITION, VELOCITY = np.array([0.1, -0.2, 0.05]), np.array([0.3, 0.1, 0.2])
+
+
+def test_forces_are_divided_by_masses():
+    state = ChainState(POSITION, VELOCITY, np.zeros(3, dtype=bool))
+    light, heavy = rate(LIGHT, state), rate(HEAVY, state)
+    assert (heavy[:3] == light[:3]).all()
+    assert np.allclose(heavy[3:], light[3:] / HEAVY.chain.masses, rtol=1e-14)
+    force, force_rate, acceleration, jerk = (
+        values[0] for values in _derivatives(HEAVY, POSITION[None], VELOCITY[None])
+    )
+    assert np.allclose(acceleration, heavy[3:], rtol=1e-13)
+    # The jerk is the rate of the acceleration along the motion.
+    step = 1e-6
+    ahead = _derivatives(HEAVY, (POSITION + step * (VELOCITY - 0.2))[None], (VELOCITY + step * acceleration)[None])
+    assert np.allclose((ahead[0][0] - force) / step, force_rate, atol=1e-5)
+    assert np.allclose((ahead[2][0] - acceleration) / step, jerk, atol=1e-5)
+
+
+def test_the_scale_of_a_is_that_of_damping():
+    """In units of time and a that fit a mass m, a block of m moves as one of mass 1."""
+    assert unit(Chain(3, mass=4.0)) == 2.0 * unit(Chain(3))

@@ -1,0 +1,101 @@
+"""Studies of grids, networks from a file, masses and drawn numbers: what decides their runs, and who can read them."""
+
+import json
+import shlex
+
+import pytest
+
+from burridge_knopoff import Chain, simulate
+from burridge_knopoff.cli import build_parser
+from burridge_knopoff.cli.options import join_signed, model_of, state_of
+from burridge_knopoff.model.springs import read_edges
+from burridge_knopoff.study.study import load_study
+from tests.refused import refused
+
+UNIFORM = {"random": "uniform", "low": 0.5, "high": 1.5, "seed": 1}
+ROUGH = {"rough": {"position": {**UNIFORM, "low": -1.5}, "velocity": 0}}
+
+
+def load(chain, initial=ROUGH, **keys):
+    return load_study({"study": "x", "a": [0.1], "initial": initial, "chain": chain, **keys}, "config/mine.yaml")
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder with a file of springs beside a config; it is where programs run."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "config").mkdir()
+    (tmp_path / "config" / "faults.txt").write_text("1 2 1.5  # the first fault\n3 2 0.5\n")
+    return tmp_path
+
+
+@pytest.mark.parametrize(
+    ("chain", "blocks"),
+    [
+        ({"grid": [3, 2], "coupling": 2, "mass": UNIFORM, "threshold": UNIFORM}, 6),
+        ({"springs": "faults.txt", "mass": [1, 2, 1]}, 3),
+        ({"springs": "faults.txt", "blocks": 4, "pulling": 1}, 4),
+        ({"blocks": 5, "ends": "ring", "mass": 2}, 5),
+        ({"blocks": 10_000, "coupling": 100, "pulling": 1}, 10_000),
+    ],
+)
+def test_the_command_of_a_run_tells_the_chain_and_the_state(folder, chain, blocks):
+    study = load(chain, without=["solvers", "attractors"])
+    assert study.blocks == study.config["chain"]["blocks"] == blocks
+    command = study.command("linearized", "rough", "0.1000")
+    assert len(command) < 500
+    options = build_parser().parse_args(join_signed([*shlex.split(command)[1:], "--out", "x"]))
+    state = state_of(options)
+    assert state == study.state("rough")
+    assert model_of(options, state) == study.model("linearized", 0.1)
+
+
+def test_a_changed_file_of_springs_is_another_run(folder):
+    chain = {"springs": "faults.txt"}
+    study = load(chain)
+    assert study.config["chain"]["springs"].startswith("config/faults.txt@")
+    assert load(chain).config == study.config
+    (folder / "config" / "faults.txt").write_text("1 2 1.5\n3 2 0.25\n")
+    assert load(chain).command("linearized", "rough", "0.1000") != study.command("linearized", "rough", "0.1000")
+    assert load({"springs": str(folder / "config" / "faults.txt")}).config["chain"] == load(chain).config["chain"]
+    with refused("config/mine.yaml: chain.springs: config/other.txt: cannot be read: No such file"):
+        load({"springs": "other.txt"})
+    (folder / "config" / "faults.txt").write_text("1 2 1.5\n3 4 0.25\n")
+    with refused("config/mine.yaml: chain.pulling: got 0 for all of the 2 blocks connected to block 3"):
+        load({"springs": "faults.txt", "pulling": [1, 0, 0, 0]})
+
+
+def test_results_are_read_without_the_file_of_springs(folder, monkeypatch):
+    study = load({"springs": "faults.txt"})
+    (folder / "config" / "faults.txt").unlink()
+    read_edges.cache_clear()
+    again = load_study(json.loads(json.dumps(study.config)), "elsewhere/study.json")
+    assert again.config == study.config
+    assert not again.is_mirror_symmetric
+    assert again.command("linearized", "rough", "0.1000") == study.command("linearized", "rough", "0.1000")
+
+
+def test_a_study_of_runs_alone_may_be_large():
+    chain = {"grid": [400, 500], "pulling": 1}
+    assert load(chain, without=["attractors", "solvers"], trajectory=1).blocks == 200_000
+    with refused("attractors.samples: got 1000, expected at most 1e+08 numbers"):
+        load(chain, attractors={"samples": 1000}, without=["solvers"], trajectory=1)
+
+
+def test_a_network_has_neither_phases_nor_other_lengths():
+    study = load({"grid": [3, 1]})
+    assert (study.single_length_key, study.is_mirror_symmetric) == ("grid", False)
+    assert study.config["phases"]["a"] == []
+    assert not {"proof", "phases", "two_blocks"} & {*study.stages}
+
+
+def test_lists_are_as_long_as_a_command_can_be():
+    with refused("chain.mass: got [1.0, 1.0,", "expected at most 1024 numbers in a list, or drawn numbers"):
+        load({"blocks": 2000, "mass": 2000 * [1]})
+    assert load({"mass": 2}, {"one": {"position": -0.5, "velocity": 0}}).blocks == 1
+
+
+@pytest.mark.parametrize("chain", [Chain(grid=(3, 1)), Chain(3, mass=2.0)])
+def test_what_the_solvers_cannot_move(chain):
+    with refused("chain", "expected", "which the solvers can move"):
+        simulate("linearized", 0.1, "minus", chain=chain)
