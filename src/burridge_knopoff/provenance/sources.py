@@ -32,7 +32,7 @@ _WORD = re.compile(rf"""#[^\n]*|{_TEXT}|"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'""", 
 _DOCSTRING = re.compile(rf"(\A(?:#[^\n]*\n)*|(?<!\*):[ \t]*\n)\s*{_TEXT}[ \t]*$", re.DOTALL | re.MULTILINE)
 #: Comments that Cython obeys.
 _DIRECTIVE = re.compile(r"#\s*(cython|distutils)\s*:")
-# What C++ may hold a comment in without it being one, and comments, in the group.
+# Words of C++ that are, or may hold, what looks like a comment; the group is a comment.
 _CPP = re.compile(
     r"""R"(\w*)\((?s:.*?)\)\1"|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'|\b\d[\w'.]*|(?P<comment>//.*|/\*(?s:.*?)\*/)"""
 )
