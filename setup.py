@@ -28,7 +28,7 @@ WORK = tempfile.TemporaryDirectory(prefix="burridge-knopoff-", ignore_cleanup_er
 
 
 def core(folder: str, flags: tuple[str, ...]) -> Extension:
-    """Return the compiled module, in a folder of the kernel that the package finds it in."""
+    """Return the compiled module for some vectors; `folder` is where in the kernel it lies."""
     return Extension(
         ".".join(filter(None, ("burridge_knopoff.kernel", folder, "_core"))),
         [source.as_posix() for source in sorted(KERNEL.glob("*.cpp"))],
@@ -76,7 +76,7 @@ class RecordedBuild(build_ext):
 
         def compile_together(sources: list[str], **options: object) -> list[str]:
             if sources[0].endswith(".cpp"):
-                # The longest first; not among the sources of a module, which lie in the tree.
+                # Only here, since setuptools wants the sources of a module in the tree; first, since it takes longest.
                 sources = [NANOBIND, *sources]
             with ThreadPoolExecutor(os.cpu_count()) as pool:
                 return list(chain.from_iterable(pool.map(compile_file, sources, repeat(options))))
