@@ -7,7 +7,7 @@
 
 PYTHON ?= python3
 BIN := .venv/bin
-KERNEL := $(wildcard src/burridge_knopoff/kernel/*.py src/burridge_knopoff/kernel/*.pxd) \
+KERNEL := $(foreach suffix,cpp h py pxd,$(wildcard src/burridge_knopoff/kernel/*.$(suffix))) \
 	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py processor.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # pip compiles one file after the other, and the packages' own tests as well. Where Python may write no bytecode, the
@@ -158,4 +158,5 @@ lock:
 		$$name.in -o $$name.lock; done
 
 clean:
-	rm -rf .venv .venv-benchmark .venv-oldest .venv-mutants build .snakemake src/*.egg-info src/burridge_knopoff/kernel/*.so
+	rm -rf .venv .venv-benchmark .venv-oldest .venv-mutants build .snakemake src/*.egg-info src/burridge_knopoff/kernel/*.so \
+		src/burridge_knopoff/kernel/v[234]

@@ -14,7 +14,7 @@ if not workflow.configfiles:
 report: "workflow/report/workflow.rst"
 
 
-# A minimal image in which `make setup` works: Python, a C compiler and make. Only used to run jobs in containers.
+# A minimal image in which `make setup` works: Python, a C++ compiler and make. Only used to run jobs in containers.
 container: "docker://python:3.11"
 
 

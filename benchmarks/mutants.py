@@ -3,10 +3,11 @@
     make mutants                                         # 300 changes: up to two hours on two idle cores
     .venv-mutants/bin/python benchmarks/mutants.py --count 40 --rooms kernel --seed 7
 
-Cosmic Ray makes the changes (an operator, a comparison, a constant, a condition); mutmut 3 calls its mutants through
-wrappers of Python functions, which a compiled kernel does not have. Each runs in a copy of the tree, where the changed
-module of the kernel is compiled. Printed are the changes that no test noticed, and the share that was. A change that
-changes no result is listed in mutants.toml, with why. The declarations of the kernel (.pxd) are not changed.
+Cosmic Ray makes the changes (an operator, a comparison, a constant, a condition), and mutants_cpp.py those of C++;
+mutmut 3 calls its mutants through wrappers of Python functions, which a compiled kernel does not have. Each runs in a
+copy of the tree, where a changed kernel is compiled. Printed are the changes that no test noticed, and the share that
+was. A change that changes no result is listed in mutants.toml, with why. The declarations of the kernel (.pxd) are not
+changed.
 """
 
 from __future__ import annotations
@@ -25,14 +26,20 @@ import sys
 import tempfile
 import tomllib
 from collections import defaultdict
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import parso
 from cosmic_ray.ast import ast_nodes
 from cosmic_ray.mutating import mutate_code
 from cosmic_ray.plugins import get_operator, operator_names
+
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+
+from mutants_cpp import changes_of_cpp
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = Path("src/burridge_knopoff")
@@ -80,7 +87,7 @@ from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, DIRECTIVES, 
 from burridge_knopoff.provenance.kernel_build import KERNEL, write_record
 path = Path(sys.argv[1])
 name = f"burridge_knopoff.kernel.{path.stem}"
-extension = Extension(name, [str(path)], extra_compile_args=[*COMPILER_FLAGS, *vector_flags()])
+extension = Extension(name, [str(path)], extra_compile_args=[*COMPILER_FLAGS, *next(iter(vector_flags().values()))])
 shared = "burridge_knopoff.kernel._shared"
 built = cythonize([extension], force=True, quiet=True, build_dir="build/cython", shared_utility_qualified_name=shared,
                   compiler_directives=DIRECTIVES)
@@ -90,6 +97,10 @@ command.ensure_finalized()
 command.run()
 write_record(KERNEL)
 """
+
+
+#: Compiles all of the kernel: its C++ is one module.
+BUILD = ["setup.py", "--quiet", "build_ext", "--inplace"]
 
 
 @dataclass(frozen=True)
@@ -108,20 +119,23 @@ class Mutant:
 
 def sample(rooms: list[str], count: int, seed: int) -> list[Mutant]:
     """Return changes at places drawn at random, of a kind drawn at random, no two at one place."""
-    places = sorted({place for room in rooms for path in (ROOT / PACKAGE / room).glob("*.py") for place in spots(path)})
+    paths = [
+        path for room in rooms for path in (ROOT / PACKAGE / room).iterdir() if path.suffix in (".py", ".cpp", ".h")
+    ]
+    places = sorted({place for path in paths for place in spots(path)})
     generator = random.Random(seed)
     generator.shuffle(places)
     found: list[Mutant] = []
     for path, position in places:
         if len(found) == count:
             break
-        mutant = change(path, *generator.choice(changes(path)[position]))
+        mutant = change(path, generator.choice(changes(path)[position]))
         if mutant:
             found.append(mutant)
     return found
 
 
-def spots(path: Path) -> list[tuple[Path, tuple[int, int]]]:
+def spots(path: Path) -> list[tuple[Path, object]]:
     """Return where a file can be changed."""
     return [(path, position) for position in changes(path)]
 
@@ -132,20 +146,28 @@ PATIENCE = 30
 #: Address space of a process in KB, several times what the tests take: a change may make a list grow for ever.
 MEMORY = 8_000_000
 
-KNOWN: dict[Path, dict[tuple[int, int], list[tuple[str, int]]]] = {}
+#: {file: {place: functions that return the file with a change there}}.
+KNOWN: dict[Path, dict[object, list[Callable[[], str]]]] = {}
 
 
-def changes(path: Path) -> dict[tuple[int, int], list[tuple[str, int]]]:
-    """Return {(line, column): [(operator, occurrence), …]} of a file."""
+def changes(path: Path) -> dict[object, list[Callable[[], str]]]:
+    """Return {place: functions that return the file with a change there}."""
     if path not in KNOWN:
-        KNOWN[path] = defaultdict(list)
-        nodes = list(ast_nodes(parso.parse(path.read_text(encoding="utf-8"))))
-        for name in filter(is_used, operator_names()):
-            operator = get_operator(name)()
-            spans = [span for node in nodes for span in operator.mutation_positions(node)]
-            for occurrence, (begin, _) in enumerate(spans):
-                KNOWN[path][begin].append((name, occurrence))
+        text = path.read_text(encoding="utf-8")
+        KNOWN[path] = changes_of_python(text) if path.suffix == ".py" else changes_of_cpp(text)
     return KNOWN[path]
+
+
+def changes_of_python(text: str) -> dict[object, list[Callable[[], str]]]:
+    """Return {(line, column): functions that return Python code with a change there}."""
+    found = defaultdict(list)
+    nodes = list(ast_nodes(parso.parse(text)))
+    for name in filter(is_used, operator_names()):
+        operator = get_operator(name)()
+        spans = [span for node in nodes for span in operator.mutation_positions(node)]
+        for occurrence, (begin, _) in enumerate(spans):
+            found[begin].append(partial(mutate_code, text, operator, occurrence))
+    return found
 
 
 def is_used(name: str) -> bool:
@@ -156,12 +178,11 @@ def is_used(name: str) -> bool:
     return kind not in LEFT_ALONE
 
 
-def change(path: Path, operator: str, occurrence: int) -> Mutant | None:
+def change(path: Path, make: Callable[[], str]) -> Mutant | None:
     """Return a changed file, or None if it is no Python any more or changed in annotations only."""
-    original = path.read_text(encoding="utf-8")
-    text = mutate_code(original, get_operator(operator)(), occurrence)
+    original, text = path.read_text(encoding="utf-8"), make()
     try:
-        if bare(text) == bare(original):
+        if path.suffix == ".py" and bare(text) == bare(original):
             return None
     except SyntaxError:
         return None
@@ -184,7 +205,7 @@ def bare(text: str) -> str:
 def tests_of(file: str) -> list[str]:
     """Return the tests that meet a change of a file, those of the file itself first."""
     room, name = file.split("/")
-    wanted = [f"{room}/test_{name}", room, *TESTS.get(room, ())]
+    wanted = [f"{room}/test_{Path(name).stem}.py", room, *TESTS.get(room, ())]
     return [f"tests/{test}" for test in wanted if (ROOT / "tests" / test).exists()]
 
 
@@ -227,12 +248,13 @@ class Copy:
     def survives(self, mutant: Mutant, limit: float) -> bool:
         """Return whether the tests do not notice a change."""
         path = self.folder / PACKAGE / mutant.file
-        kept = {item: item.read_bytes() for item in [path, *path.parent.glob(f"{path.stem}.*.so")]}
-        kept.update({item: item.read_bytes() for item in path.parent.glob("build.json")})
+        compiled = [*path.parent.glob("*.so"), *path.parent.glob("build.json")]
+        kept = {item: item.read_bytes() for item in [path, *compiled]}
         try:
             path.write_text(mutant.text, encoding="utf-8")
-            compiled = path.parent.name == "kernel"
-            if compiled and not self.run(["-c", COMPILE, str(path.relative_to(self.folder))], limit):
+            in_python = path.suffix == ".py"
+            build = ["-c", COMPILE, str(path.relative_to(self.folder))] if in_python else BUILD
+            if compiled and not self.run(build, limit):
                 return False
             return self.passes(mutant.file, limit)
         finally:

@@ -48,7 +48,7 @@ class Installation:
 def install(repository: Path, folder: Path) -> None:
     """Build both distributions and install the wheel, without a network.
 
-    The kernel is compiled for vectors of two and without optimisation: that is quicker, and tests/kernel/test_builds.py
+    The kernel is compiled for all vectors and without optimisation: that is quicker, and tests/kernel/test_builds.py
     holds its numbers against those of the checkout's.
     """
     tree = folder / "tree"
@@ -76,7 +76,7 @@ def install(repository: Path, folder: Path) -> None:
     offline = ["--no-index", "--no-deps"]
     subprocess.run(
         [*pip, "wheel", "--no-build-isolation", *offline, "--wheel-dir", str(folder / "dist"), str(unpacked)],
-        env={**os.environ, "BURRIDGE_KNOPOFF_LANES": "2"},
+        env={**os.environ, "BURRIDGE_KNOPOFF_LANES": "all"},
         check=True,
     )
     after = content_of(unpacked)

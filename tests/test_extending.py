@@ -49,7 +49,7 @@ changed = {PACKAGE / name for name in now if now[name] != before.get(name)}
 names = {path: f"burridge_knopoff.kernel.{path.stem}" for path in sorted(KERNEL.glob("*.py")) if "__" not in path.stem}
 stale = {path: name for path, name in names.items() if changed.intersection(sources_of(name))}
 print(*(path.stem for path in stale))
-flags = [*COMPILER_FLAGS, *vector_flags(), "-O1"]
+flags = [*COMPILER_FLAGS, *next(iter(vector_flags().values())), "-O1"]
 extensions = [Extension(name, [str(path.relative_to(PACKAGE.parents[1]))], extra_compile_args=flags)
               for path, name in stale.items()]
 setup(script_args=["-q", "build_ext", "--inplace", "--force"], package_dir={"": "src"}, ext_modules=cythonize(

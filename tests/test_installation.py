@@ -78,7 +78,11 @@ def test_the_command_works(installed, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name", ["kernel/series.py", "kernel/series.pxd", "report/templates/laws.jinja", "py.typed", "__init__.pyi"]
+    "name",
+    [
+        *("kernel/series.py", "kernel/series.pxd", "kernel/module.cpp", "kernel/_core.pyi"),
+        *("report/templates/laws.jinja", "py.typed", "__init__.pyi"),
+    ],
 )
 def test_both_distributions_hold(installed, name):
     assert f"burridge_knopoff/{name}" in zipfile.ZipFile(installed.wheel).namelist()

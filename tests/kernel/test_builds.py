@@ -7,6 +7,7 @@ import sys
 import pytest
 
 from burridge_knopoff.provenance.compilation import vector_flags
+from burridge_knopoff.provenance.processor import compiled_to, lacking
 
 RUNS = """
 import hashlib
@@ -34,6 +35,17 @@ for blocks, ends in ((3, "open"), (9, "open"), (5, "ring")):
         print("together", hashlib.sha256(b"".join(values.tobytes() for values in found.values())).hexdigest())
 """
 
+LOADED = """
+import sys
+from pathlib import Path
+from burridge_knopoff.provenance import processor
+
+processor.instructions = lambda: frozenset(sys.argv[1:])
+from burridge_knopoff.kernel import _core
+
+print(Path(_core.__file__).parent.name)
+"""
+
 
 def output(*python):
     environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
@@ -48,16 +60,28 @@ def test_vectors_of_two_without_optimisation_make_the_bits_of_the_kernel(install
     assert found == expected
 
 
-@pytest.mark.parametrize("lanes", ["2", "4", "8", None, "3", ""])
+def test_a_wheel_for_all_processors_loads_the_widest_module_that_runs(installed, monkeypatch):
+    monkeypatch.setenv("BURRIDGE_KNOPOFF_LANES", "all")
+    for folder, flags in vector_flags().items():
+        needed = compiled_to(flags)
+        if not lacking(needed):
+            command = [installed.python, "-I", "-c", LOADED, *needed]
+            run = subprocess.run(command, check=True, capture_output=True, text=True)
+            assert run.stdout.strip() == (folder or "kernel")
+
+
+@pytest.mark.parametrize("lanes", ["2", "4", "8", "all", None, "3", ""])
 def test_flags_for_vectors(monkeypatch, lanes):
     monkeypatch.setattr("platform.machine", lambda: "x86_64")
     monkeypatch.delenv("BURRIDGE_KNOPOFF_LANES", raising=False)
     if lanes is not None:
         monkeypatch.setenv("BURRIDGE_KNOPOFF_LANES", lanes)
     if lanes in ("3", ""):
-        with pytest.raises(ValueError, match=f"BURRIDGE_KNOPOFF_LANES: got '{lanes}', expected 2 | 4 | 8"):
+        with pytest.raises(ValueError, match=f"BURRIDGE_KNOPOFF_LANES: got '{lanes}', expected 2 . 4 . 8 . all"):
             vector_flags()
     else:
-        assert vector_flags()[0].startswith("-march=")
+        folders = ["v2", "v3", "v4"] if lanes == "all" else [""]
+        assert list(vector_flags()) == folders
+        assert all(flag.startswith("-march=") for (flag,) in vector_flags().values())
     monkeypatch.setattr("platform.machine", lambda: "arm64")
-    assert vector_flags() == ()
+    assert vector_flags() == {"": ()}

@@ -12,7 +12,7 @@ from burridge_knopoff.provenance import kernel_build
 from burridge_knopoff.provenance.sources import PACKAGE
 
 RUN = "from burridge_knopoff import simulate; print(simulate(transient=0.0, window=2.0).status)"
-SERIES = Path("kernel/series.py")
+MODULE = Path("kernel/module.cpp")
 
 
 @pytest.fixture
@@ -28,7 +28,8 @@ def run(package, code=RUN):
 
 
 def change(path, code=True):
-    path.write_text(path.read_text() + ("\nMORE = 1\n" if code else "\n# more words\n"))
+    comment = "#" if path.suffix in (".py", ".pxd") else "//"
+    path.write_text(path.read_text() + ("\nMORE = 1\n" if code else f"\n{comment} more words\n"))
 
 
 def refusal(package):
@@ -41,14 +42,16 @@ def test_the_kernel_here_is_that_of_its_sources():
     kernel_build.check_kernel(compiled=True)
     recorded = json.loads((kernel_build.KERNEL / kernel_build.RECORD).read_text())
     assert recorded == kernel_build.current_build()
-    assert {"kernel/series.py", "kernel/series.pxd", "provenance/compilation.py"} <= recorded["sources"].keys()
+    assert {"kernel/series.py", "kernel/series.pxd", str(MODULE), "provenance/compilation.py"} <= recorded[
+        "sources"
+    ].keys()
 
 
 def test_as_it_was_built_it_runs(package):
     assert run(package).stdout == "completed\n"
 
 
-@pytest.mark.parametrize("name", ["kernel/series.py", "kernel/series.pxd", "provenance/compilation.py"])
+@pytest.mark.parametrize("name", ["kernel/series.py", "kernel/series.pxd", str(MODULE), "provenance/compilation.py"])
 def test_changed_code_is_refused_with_the_command_that_rebuilds(package, name):
     change(package / name)
     rebuild = "run `pip install --force-reinstall burridge-knopoff`"
@@ -60,16 +63,21 @@ def test_changed_code_is_refused_with_the_command_that_rebuilds(package, name):
 
 
 def test_a_comment_is_no_change(package):
-    change(package / SERIES, code=False)
+    change(package / "kernel/series.py", code=False)
+    change(package / MODULE, code=False)
     assert run(package).stdout == "completed\n"
 
 
-def test_a_new_source_and_one_less_are_seen(package):
-    (package / "kernel" / "more.py").write_text("x = 1\n")
-    assert "kernel/more.py: has changed" in refusal(package)
-    (package / "kernel" / "more.py").unlink()
-    (package / "kernel" / "record.pxd").unlink()
-    assert "kernel/record.pxd: has changed" in refusal(package)
+@pytest.mark.parametrize("name", ["more.py", "more.h", "more.cpp"])
+def test_a_new_source_is_seen(package, name):
+    (package / "kernel" / name).write_text("x = 1\n")
+    assert f"kernel/{name}: has changed" in refusal(package)
+
+
+@pytest.mark.parametrize("name", ["record.pxd", MODULE.name])
+def test_a_missing_source_is_seen(package, name):
+    (package / "kernel" / name).unlink()
+    assert f"kernel/{name}: has changed" in refusal(package)
 
 
 @pytest.mark.parametrize("content", [None, "", "{", "[1]", "[" * 9999, '{"sources": 1, "instructions": []}'])
@@ -92,8 +100,9 @@ def test_a_kernel_for_a_newer_processor_is_refused_before_it_is_loaded(package):
     """Its first instruction that this machine lacks would end Python by a signal, without a word."""
     path = package / "kernel" / kernel_build.RECORD
     record = json.loads(path.read_text())
-    path.write_text(json.dumps({**record, "instructions": [*record["instructions"], "avx1024"]}))
+    (needed,) = record["instructions"].values()
+    path.write_text(json.dumps({**record, "instructions": {"": [*needed, "avx1024"]}}))
     reason = "the kernel was compiled for a processor with avx1024, which this one lacks: run `pip install"
     assert reason in refusal(package)
-    path.write_text(json.dumps({**record, "instructions": []}))
+    path.write_text(json.dumps({**record, "instructions": {"": []}}))
     assert run(package).stdout == "completed\n"

@@ -47,6 +47,13 @@ def test_the_lanes_asked_for_decide_and_not_the_machine(machine, lanes, lacks):
     assert (lacks in processor.lacking(needed)) if lacks else (processor.lacking(needed) == [])
 
 
+@pytest.mark.parametrize(("flags", "chosen"), [(NEW, "8"), (OLD, "2"), ("sse2", "2"), (None, "2")])
+def test_of_several_builds_the_widest_that_runs_is_chosen(machine, flags, chosen):
+    """Where the processor is not told, the narrowest: a wider one could end Python by a signal."""
+    machine(flags)
+    assert processor.widest({lanes: processor.compiled_to([flag]) for lanes, flag in LEVELS.items()}) == chosen
+
+
 @pytest.mark.parametrize("flags", [None, ""])
 def test_where_the_processor_is_not_told_nothing_is_refused(machine, flags):
     machine(flags)

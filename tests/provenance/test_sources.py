@@ -12,7 +12,15 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.provenance.sources import PACKAGE, PLUMBING, code_of, files_of, source_fingerprint, sources_of
+from burridge_knopoff.provenance.sources import (
+    PACKAGE,
+    PLUMBING,
+    code_of,
+    code_of_cpp,
+    files_of,
+    source_fingerprint,
+    sources_of,
+)
 
 SCRIPTS = sorted((PACKAGE.parent.parent / "workflow" / "scripts").glob("*.py"))
 SOURCES = sorted([*PACKAGE.rglob("*.py"), *PACKAGE.rglob("*.pxd"), *SCRIPTS])
@@ -40,6 +48,29 @@ def test_comments_and_docstrings_go_and_code_stays():
     assert code_of('x = (\n    """kept"""\n    # gone\n)\n') == 'x = (\n    """kept"""\n)'
     assert code_of('cdef extern from *:\n    """C"""\n') == 'cdef extern from *:\n    """C"""'
     assert code_of("cdef class A:\n    cdef double x  # why\n") == "cdef class A:\n    cdef double x"
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("int a;  // why\n\n  // more\nint b;\n", "int a;\nint b;"),
+        ("int /* one\nand\n\nmore */ a; /**/ int b;", "int   a;   int b;"),
+        ("x = a / b / c * d;", "x = a / b / c * d;"),
+        ('f("http://a", "\\"//"); // why', 'f("http://a", "\\"//");'),
+        ("f('\\'', '\"', 1'000, 10'000'000); // don't", "f('\\'', '\"', 1'000, 10'000'000);"),
+        ("x = 10'000, b = '\"', c = \"//\";", "x = 10'000, b = '\"', c = \"//\";"),
+        ('R"(a " // b)" // why', 'R"(a " // b)"'),
+        ('R"word(a)" /* b */ )word"; // why', 'R"word(a)" /* b */ )word";'),
+    ],
+)
+def test_comments_of_cpp_go_and_code_stays(text, code):
+    assert code_of_cpp(text) == code
+
+
+def test_the_sources_of_the_compiled_module_are_all_of_its_files():
+    kernel = PACKAGE / "kernel"
+    expected = {*kernel.glob("*.cpp"), *kernel.glob("*.h"), PACKAGE / "provenance/compilation.py"}
+    assert set(sources_of("burridge_knopoff.kernel._core")) == expected
 
 
 def words(text):

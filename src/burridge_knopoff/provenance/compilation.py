@@ -5,7 +5,10 @@ import platform
 
 #: Neither contraction to fused multiply-add nor reassociation: a compiler must not change a result.
 #: docs/performance.md explains on which machines results agree to the bit.
-COMPILER_FLAGS = ("-O3", "-g0", "-ffp-contract=off", "-fno-fast-math")
+COMPILER_FLAGS = ("-std=c++20", "-O3", "-g0", "-ffp-contract=off", "-fno-fast-math", "-fvisibility=hidden")
+
+#: For nanobind itself, which hands arrays over and computes nothing.
+NANOBIND_FLAGS = ("-std=c++20", "-Os", "-g0", "-fno-strict-aliasing", "-fvisibility=hidden")
 
 #: {doubles in a vector: oldest x86-64 processors that have it}. The numbers are the same with each.
 LEVELS = {"2": "-march=x86-64-v2", "4": "-march=x86-64-v3", "8": "-march=x86-64-v4"}
@@ -23,16 +26,21 @@ DIRECTIVES = {
 }
 
 
-def vector_flags() -> tuple[str, ...]:
-    """Return the flags that choose the vectors: this processor's, or as many lanes as BURRIDGE_KNOPOFF_LANES asks for.
+def vector_flags() -> dict[str, tuple[str, ...]]:
+    """Return {folder in the kernel: flags that choose the vectors} of every module to compile, the narrowest first.
 
-    Raises ValueError if that is not 2, 4 or 8.
+    By default there is one module, for this processor. BURRIDGE_KNOPOFF_LANES chooses the number of doubles in a
+    vector, or "all" for three modules, of which the widest that the processor runs is imported.
+
+    Raises ValueError if BURRIDGE_KNOPOFF_LANES is none of 2, 4, 8 and all.
     """
     if platform.machine().lower() not in ("x86_64", "amd64"):
-        return ()
+        return {"": ()}
     lanes = os.environ.get("BURRIDGE_KNOPOFF_LANES")
     if lanes is None:
-        return ("-march=native",)
+        return {"": ("-march=native",)}
+    if lanes == "all":
+        return {flag.rpartition("-")[2]: (flag,) for flag in LEVELS.values()}
     if lanes not in LEVELS:
-        raise ValueError(f"BURRIDGE_KNOPOFF_LANES: got {lanes!r}, expected {' | '.join(LEVELS)}")
-    return (LEVELS[lanes],)
+        raise ValueError(f"BURRIDGE_KNOPOFF_LANES: got {lanes!r}, expected {' | '.join(LEVELS)} | all")
+    return {"": (LEVELS[lanes],)}

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from burridge_knopoff.provenance.compilation import vector_flags
-from burridge_knopoff.provenance.processor import compiled_to, lacking
-from burridge_knopoff.provenance.sources import COMPILATION, PACKAGE, code_digest
+from burridge_knopoff.provenance.processor import compiled_to, lacking, widest
+from burridge_knopoff.provenance.sources import CODE, COMPILATION, PACKAGE, code_digest
 
 KERNEL = PACKAGE / "kernel"
 #: File beside the compiled modules with their sources and instruction sets, see `current_build`.
@@ -27,13 +27,14 @@ class KernelError(ImportError):
 
 def kernel_sources() -> dict[str, str]:
     """Return {name: SHA-256 of its code} of all sources of the kernel, as they are on disk."""
-    paths = [COMPILATION, *KERNEL.glob("*.py"), *KERNEL.glob("*.pxd")]
+    paths = [COMPILATION, *(path for path in KERNEL.iterdir() if path.suffix in CODE)]
     return {path.relative_to(PACKAGE).as_posix(): code_digest(path) for path in sorted(paths)}
 
 
 def current_build() -> dict[str, Any]:
-    """Return what a build now would be made of: its sources, and the instruction sets that it may use."""
-    return {"sources": kernel_sources(), "instructions": compiled_to(vector_flags())}
+    """Return what a build now would be made of: its sources, and the instruction sets that each module may use."""
+    instructions = {folder: compiled_to(flags) for folder, flags in vector_flags().items()}
+    return {"sources": kernel_sources(), "instructions": instructions}
 
 
 def write_record(folder: Path) -> None:
@@ -45,20 +46,22 @@ def recorded_build() -> dict[str, Any] | None:
     """Return the record of the kernel's build, in the form of `current_build`; None if it cannot be read."""
     try:
         record = json.loads((KERNEL / RECORD).read_text(encoding="utf-8"))
-        return {"sources": dict(record["sources"]), "instructions": list(record["instructions"])}
+        return {"sources": dict(record["sources"]), "instructions": dict(record["instructions"])}
     except (OSError, ValueError, TypeError, KeyError, RecursionError):
         return None
 
 
-def check_kernel(*, compiled: bool = False) -> None:
-    """Raise KernelError if the compiled kernel does not match the sources on disk, or needs another processor.
+def check_kernel(*, compiled: bool = False) -> Path:
+    """Return the folder of the compiled module for this processor.
 
-    compiled : refuse an uncompiled kernel too, which in pure Python is a hundred times slower
+    compiled : refuse an uncompiled kernel too
+
+    Raises KernelError if the compiled kernel does not match the sources on disk, or needs another processor.
     """
-    if not any(path.suffix in (".so", ".pyd") for path in KERNEL.iterdir()):
+    if not any(path.suffix in (".so", ".pyd") for path in KERNEL.rglob("*")):
         if compiled:
             raise KernelError("the kernel is not compiled")
-        return
+        return KERNEL
     recorded = recorded_build()
     if recorded is None:
         raise KernelError(f"kernel/{RECORD}: cannot be read; the kernel was not compiled whole")
@@ -66,5 +69,7 @@ def check_kernel(*, compiled: bool = False) -> None:
     if changed:
         raise KernelError(f"{min(changed)}: has changed since the kernel was compiled")
     # Its first missing instruction would end Python with a signal (SIGILL), without a message.
-    if missing := lacking(recorded["instructions"]):
+    folder = widest(recorded["instructions"])
+    if missing := lacking(recorded["instructions"][folder]):
         raise KernelError(f"the kernel was compiled for a processor with {missing[0]}, which this one lacks")
+    return KERNEL / folder

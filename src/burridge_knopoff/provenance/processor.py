@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 #: Linux's description of the processors; other systems have no such file.
@@ -41,3 +41,9 @@ def lacking(needed: Sequence[str]) -> list[str]:
     """Return those of some instruction sets that this machine lacks; empty if its own are unknown."""
     own = instructions()
     return [name for name in needed if name not in own] if own else []
+
+
+def widest(builds: Mapping[str, Sequence[str]]) -> str:
+    """Return the last of some builds, {name: instruction sets}, that this machine runs, or else the first."""
+    run = [name for name, needed in builds.items() if instructions() and not lacking(needed)]
+    return run[-1] if run else next(iter(builds))

@@ -32,6 +32,10 @@ _WORD = re.compile(rf"""#[^\n]*|{_TEXT}|"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'""", 
 _DOCSTRING = re.compile(rf"(\A(?:#[^\n]*\n)*|(?<!\*):[ \t]*\n)\s*{_TEXT}[ \t]*$", re.DOTALL | re.MULTILINE)
 #: Comments that Cython obeys.
 _DIRECTIVE = re.compile(r"#\s*(cython|distutils)\s*:")
+# Words of C++ that are, or may hold, what looks like a comment; the group is a comment.
+_CPP = re.compile(
+    r"""R"(\w*)\((?s:.*?)\)\1"|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'|\b\d[\w'.]*|(?P<comment>//.*|/\*(?s:.*?)\*/)"""
+)
 _IMPORT = re.compile(r"^[ \t]*(?:from\s+(\S+)\s+)?c?import\s+(\([^)]*\)|.+)", re.MULTILINE)
 
 
@@ -74,8 +78,13 @@ def _name(path: Path) -> str:
 
 @cache
 def files_of(module: str) -> list[Path]:
-    """Return the files of a module: its Python file, Cython declarations, and files that it reads; empty for others."""
+    """Return the files of a module: its Python file, Cython declarations, and files that it reads; empty for others.
+
+    Those of the compiled module are all of its sources.
+    """
     path = PACKAGE.joinpath(*module.split(".")[1:])
+    if path == PACKAGE / "kernel" / "_core":
+        return [COMPILATION, *sorted(source for source in path.parent.iterdir() if source.suffix in (".cpp", ".h"))]
     if path.is_dir():
         return [path / "__init__.py"]
     files = [path.with_suffix(suffix) for suffix in (".py", ".pxd") if path.with_suffix(suffix).is_file()]
@@ -93,20 +102,32 @@ def _assets(folder: Path) -> list[Path]:
 
 @cache
 def code_digest(path: Path) -> str:
-    """Return the SHA-256 of the code in a file; for Python and Cython without comments, docstrings and empty lines."""
-    return hashlib.sha256(_code(path).encode() if path.suffix in (".py", ".pxd") else path.read_bytes()).hexdigest()
+    """Return the SHA-256 of a file; of source code, without comments, docstrings and empty lines."""
+    return hashlib.sha256(_code(path).encode() if path.suffix in CODE else path.read_bytes()).hexdigest()
 
 
 @cache
 def _code(path: Path) -> str:
-    return code_of(path.read_text(encoding="utf-8"))
+    return CODE[path.suffix](path.read_text(encoding="utf-8"))
 
 
 def code_of(text: str) -> str:
     """Return Python or Cython code without comments, docstrings, empty lines and trailing blanks."""
     text = _WORD.sub(lambda word: "" if word[0][0] == "#" and not _DIRECTIVE.match(word[0]) else word[0], text)
-    lines = _DOCSTRING.sub(r"\1", text).splitlines()
-    return "\n".join(line.rstrip() for line in lines if line.strip())
+    return _without_blanks(_DOCSTRING.sub(r"\1", text))
+
+
+def code_of_cpp(text: str) -> str:
+    """Return C++ code without comments, empty lines and trailing blanks."""
+    return _without_blanks(_CPP.sub(lambda word: " " if word["comment"] else word[0], text))
+
+
+def _without_blanks(text: str) -> str:
+    return "\n".join(line.rstrip() for line in text.splitlines() if line.strip())
+
+
+#: {ending of a file: function that returns its code without comments}.
+CODE = {".py": code_of, ".pxd": code_of, ".cpp": code_of_cpp, ".h": code_of_cpp}
 
 
 @cache
