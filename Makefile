@@ -7,7 +7,7 @@
 
 PYTHON ?= python3
 BIN := .venv/bin
-KERNEL := $(foreach suffix,cpp h py pxd,$(wildcard src/burridge_knopoff/kernel/*.$(suffix))) \
+KERNEL := $(foreach suffix,cpp h py,$(wildcard src/burridge_knopoff/kernel/*.$(suffix))) \
 	$(addprefix src/burridge_knopoff/provenance/,compilation.py kernel_build.py processor.py sources.py)
 PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # pip compiles one file after the other, and the packages' own tests as well. Where Python may write no bytecode, the
@@ -65,6 +65,7 @@ types: .venv/test
 style: .venv/kernel .venv/test
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
+	$(BIN)/clang-format --dry-run --Werror src/burridge_knopoff/kernel/*.h src/burridge_knopoff/kernel/*.cpp
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/snakemake --lint
 
@@ -98,6 +99,7 @@ benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/floor.py
 	.venv-benchmark/bin/python benchmarks/peers.py
 	.venv-benchmark/bin/python benchmarks/chain_length.py
+	.venv-benchmark/bin/python benchmarks/long_chains.py
 	.venv-benchmark/bin/python benchmarks/lyapunov.py
 	.venv-benchmark/bin/python benchmarks/basins.py
 	.venv-benchmark/bin/python benchmarks/point_job.py

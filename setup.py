@@ -8,7 +8,6 @@ from itertools import chain, repeat
 from pathlib import Path
 
 import nanobind
-from Cython.Build import cythonize
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
@@ -16,13 +15,11 @@ sys.path.insert(0, "src")
 # A build for another environment changes nothing in the tree, which may run a study meanwhile.
 sys.dont_write_bytecode = True
 
-from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, DIRECTIVES, NANOBIND_FLAGS, vector_flags
+from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, NANOBIND_FLAGS, vector_flags
 from burridge_knopoff.provenance.kernel_build import RECORD, current_build, recorded_build, write_record
 
 KERNEL = Path("src/burridge_knopoff/kernel")
 NANOBIND = f"{nanobind.source_dir()}/nb_combined.cpp"
-#: What Cython puts beside every module, compiled once for all of them: half of the time.
-SHARED = "burridge_knopoff.kernel._shared"
 #: Where all is made before it goes to its place; removed when this process ends.
 WORK = tempfile.TemporaryDirectory(prefix="burridge-knopoff-", ignore_cleanup_errors=True)
 
@@ -31,7 +28,8 @@ def core(folder: str, flags: tuple[str, ...]) -> Extension:
     """Return the compiled module for some vectors; `folder` is where in the kernel it lies."""
     return Extension(
         ".".join(filter(None, ("burridge_knopoff.kernel", folder, "_core"))),
-        [source.as_posix() for source in sorted(KERNEL.glob("*.cpp"))],
+        # The longest to compile come first.
+        [source.as_posix() for source in sorted(KERNEL.glob("*.cpp"), reverse=True)],
         include_dirs=[nanobind.include_dir(), f"{nanobind.source_dir()}/../ext/robin_map/include"],
         define_macros=[("NB_COMPACT_ASSERTIONS", None)],
         extra_compile_args=[*COMPILER_FLAGS, *flags],
@@ -39,30 +37,11 @@ def core(folder: str, flags: tuple[str, ...]) -> Extension:
     )
 
 
-def extension(name: str, source: Path, *flags: str) -> Extension:
-    """Return a module of the kernel in Cython."""
-    vectors = next(iter(vector_flags().values()))
-    return Extension(name, [str(source)], extra_compile_args=[*COMPILER_FLAGS, *vectors, *flags])
-
-
 class RecordedBuild(build_ext):
     """Compiles the kernel, and records beside it what it was compiled from."""
 
     def run(self) -> None:
         """Compile all of it."""
-        self.parallel = self.parallel or os.cpu_count()
-        # Only here: pip runs this file three times, and a source distribution needs no C.
-        in_cython = [item for item in self.extensions if item.language != "c++"]
-        translated = cythonize(
-            [extension(item.name, Path(item.sources[0])) for item in in_cython],
-            nthreads=os.cpu_count() or 1,
-            force=True,
-            build_dir=f"{WORK.name}/cython",
-            shared_utility_qualified_name=SHARED,
-            compiler_directives=DIRECTIVES,
-        )
-        for item, in_c in zip(in_cython, translated, strict=True):
-            item.sources = in_c.sources
         super().run()
         write_record(Path(self.get_ext_fullpath("burridge_knopoff.kernel._core")).parent)
 
@@ -75,11 +54,10 @@ class RecordedBuild(build_ext):
             return compile_files([source], **{**options, **own})
 
         def compile_together(sources: list[str], **options: object) -> list[str]:
-            if sources[0].endswith(".cpp"):
-                # Only here, since setuptools wants the sources of a module in the tree; first, since it takes longest.
-                sources = [NANOBIND, *sources]
+            # Only here, since setuptools wants the sources of a module in the tree.
+            files = [NANOBIND, *sources]
             with ThreadPoolExecutor(os.cpu_count()) as pool:
-                return list(chain.from_iterable(pool.map(compile_file, sources, repeat(options))))
+                return list(chain.from_iterable(pool.map(compile_file, files, repeat(options))))
 
         self.compiler.compile = compile_together
         super().build_extensions()
@@ -93,23 +71,10 @@ class RecordedBuild(build_ext):
             (KERNEL / folder).mkdir(exist_ok=True)
         super().copy_extensions_to_source()
 
-    def get_source_files(self) -> list[str]:
-        """Return what a source distribution holds of the kernel: all but what Cython makes."""
-        return [name for name in super().get_source_files() if Path(name).exists()]
-
 
 setup(
     cmdclass={"build_ext": RecordedBuild},
     # A source distribution has its metadata in the tree.
     options={"build": {"build_base": WORK.name}, "egg_info": {} if "sdist" in sys.argv else {"egg_base": WORK.name}},
-    ext_modules=[
-        *(core(folder, flags) for folder, flags in vector_flags().items()),
-        # It hands arrays over and computes nothing: the longest to compile would take twice as long.
-        extension(SHARED, Path("_shared.c"), "-O1"),
-        *(
-            extension(f"burridge_knopoff.kernel.{source.stem}", source)
-            for source in sorted(KERNEL.glob("*.py"))
-            if source.stem != "__init__"
-        ),
-    ],
+    ext_modules=[core(folder, flags) for folder, flags in vector_flags().items()],
 )

@@ -90,7 +90,7 @@ def earlier() -> dict[str, float]:
 def now() -> dict[str, float]:
     """Measure the kernel of this tree under the same names, and what the earlier one could not do."""
     from burridge_knopoff import Chain, FormulaLaw, Model, Settings, law_of, simulate
-    from burridge_knopoff.kernel.clouds import Clouds
+    from burridge_knopoff.kernel._core import Clouds
     from burridge_knopoff.laws import LAWS as BUILT_IN
     from burridge_knopoff.model.initial import PAPER_STATES
     from burridge_knopoff.running.ensemble import new_ensemble
@@ -123,7 +123,7 @@ def now() -> dict[str, float]:
         kernel, clouds = new_ensemble(Model(Chain(blocks), law_of(law, a))), Clouds([cloud], 2 * blocks, [RADIUS])
         found[f"labels, {law}, N = {blocks}, a = {a:g}"] = least(
             lambda k=kernel, c=clouds, x=position, w=velocity: k.label(
-                x, w, np.zeros_like(x, np.intc), c, [RETURNS], [0], END
+                x, w, np.zeros(x.shape, bool), c, [RETURNS], [0], END
             )
         )
     for name, kind in BUILT_IN.items():

@@ -6,8 +6,7 @@
 Cosmic Ray makes the changes (an operator, a comparison, a constant, a condition), and mutants_cpp.py those of C++;
 mutmut 3 calls its mutants through wrappers of Python functions, which a compiled kernel does not have. Each runs in a
 copy of the tree, where a changed kernel is compiled. Printed are the changes that no test noticed, and the share that
-was. A change that changes no result is listed in mutants.toml, with why. The declarations of the kernel (.pxd) are not
-changed.
+was. A change that changes no result is listed in mutants.toml, with why.
 """
 
 from __future__ import annotations
@@ -76,28 +75,6 @@ DESELECTED = ("--deselect", "tests/kernel/test_builds.py")
 #: Operators that give a number where there was one; every other replacement is a TypeError that any test notices.
 ARITHMETIC = ("Add", "Sub", "Mul", "Div")
 LEFT_ALONE = ("RemoveDecorator", "ExceptionReplacer", "VariableReplacer", "VariableInserter")
-
-COMPILE = """
-import sys
-sys.path.insert(0, "src")
-from pathlib import Path
-from Cython.Build import cythonize
-from setuptools import Distribution, Extension
-from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, DIRECTIVES, vector_flags
-from burridge_knopoff.provenance.kernel_build import KERNEL, write_record
-path = Path(sys.argv[1])
-name = f"burridge_knopoff.kernel.{path.stem}"
-extension = Extension(name, [str(path)], extra_compile_args=[*COMPILER_FLAGS, *next(iter(vector_flags().values()))])
-shared = "burridge_knopoff.kernel._shared"
-built = cythonize([extension], force=True, quiet=True, build_dir="build/cython", shared_utility_qualified_name=shared,
-                  compiler_directives=DIRECTIVES)
-command = Distribution({"ext_modules": built, "package_dir": {"": "src"}}).get_command_obj("build_ext")
-command.inplace = command.force = 1
-command.ensure_finalized()
-command.run()
-write_record(KERNEL)
-"""
-
 
 #: Compiles all of the kernel: its C++ is one module.
 BUILD = ["setup.py", "--quiet", "build_ext", "--inplace"]
@@ -252,9 +229,7 @@ class Copy:
         kept = {item: item.read_bytes() for item in [path, *compiled]}
         try:
             path.write_text(mutant.text, encoding="utf-8")
-            in_python = path.suffix == ".py"
-            build = ["-c", COMPILE, str(path.relative_to(self.folder))] if in_python else BUILD
-            if compiled and not self.run(build, limit):
+            if compiled and not self.run(BUILD, limit):
                 return False
             return self.passes(mutant.file, limit)
         finally:

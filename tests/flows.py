@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from burridge_knopoff.kernel.exponents import Exponents
+from burridge_knopoff.kernel._core import Exponents
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.running.runner import Runner
@@ -82,7 +82,7 @@ def differences(model, start, end, step):
 
 def growth_from(model, start, end, vectors):
     """Return the exponents' kernel after a run from `start` to `end`, all of it in one batch from τ = 0."""
-    exponents = Exponents(model.blocks, vectors, 0.0, [0.0, end])
+    exponents = Exponents(model.blocks, vectors, 0.0, np.array([0.0, end]))
     runner = Runner(model, exponents=exponents)
     runner.begin(start)
     assert runner.run(end) == Status.COMPLETED

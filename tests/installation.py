@@ -69,7 +69,7 @@ def install(repository: Path, folder: Path) -> None:
     assert '"-O3"' in flags.read_text()
     flags.write_text(flags.read_text().replace('"-O3"', '"-O0"'))
     # As in a checkout that has a kernel of its own, which may be at work.
-    for name in ("build.json", f"series{EXTENSION_SUFFIXES[0]}"):
+    for name in ("build.json", f"_core{EXTENSION_SUFFIXES[0]}"):
         (unpacked / "src" / "burridge_knopoff" / "kernel" / name).write_text("of the tree\n")
     before = content_of(unpacked)
     pip = [sys.executable, "-m", "pip", "--quiet", "--disable-pip-version-check"]

@@ -27,7 +27,7 @@ def imports(path):
     for node in ast.walk(ast.parse(path.read_text())):
         names = []
         if isinstance(node, ast.ImportFrom) and node.module:
-            module = node.module.removeprefix("cython.cimports.")
+            module = node.module
             names = [f"{module}.{alias.name}" for alias in node.names] if module == "burridge_knopoff" else [module]
         elif isinstance(node, ast.Constant) and isinstance(node.value, str):
             names = re.findall(r"^burridge_knopoff(?:\.\w+)+$", node.value)

@@ -310,7 +310,7 @@ def test_start_up_imports_no_heavy_library(tmp_path):
     code = (
         "import sys; from burridge_knopoff.cli import main; "
         f"main({[*RUN, '--out', str(tmp_path / 'x.nc')]!r}); "
-        "print(sorted({'xarray', 'pandas', 'scipy', 'matplotlib', 'jsonschema', 'snakemake', 'yaml', 'cython'} "
+        "print(sorted({'xarray', 'pandas', 'scipy', 'matplotlib', 'jsonschema', 'snakemake', 'yaml'} "
         "& set(sys.modules))); "
         "print(sorted(name for name in sys.modules if name.startswith('burridge_knopoff.cli.'))); "
         "heavy = tuple(f'burridge_knopoff.{name}' for name in ('check', 'figures', 'show', 'stability', 'summaries')); "

@@ -1,7 +1,4 @@
-"""docs/extending.md: its edits, applied to a copy of the tree, give a law, an observable, a figure and a claim.
-
-Of the kernel of the copy only what depends on the edits is compiled; tests/kernel/test_builds.py builds all of one.
-"""
+"""docs/extending.md: its edits, applied to a copy of the tree, give a law, an observable, a figure and a claim."""
 
 import os
 import re
@@ -34,28 +31,6 @@ basins: {pixels: 4, pairs: 4, tiles: 1}
 phases: {a: [0.05], amplitude: [0.03], phase_difference: [20, 180], samples: 1}
 solvers: {a: [0.2], step: 0.01}
 chains: {two_blocks: {a: [0.02], samples: 2}}
-"""
-
-COMPILE = """
-import sys
-sys.path.insert(0, "src")
-from Cython.Build import cythonize
-from setuptools import Extension, setup
-from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, DIRECTIVES, vector_flags
-from burridge_knopoff.provenance.kernel_build import KERNEL, kernel_sources, recorded_build, write_record
-from burridge_knopoff.provenance.sources import PACKAGE, sources_of
-before, now = recorded_build()["sources"], kernel_sources()
-changed = {PACKAGE / name for name in now if now[name] != before.get(name)}
-names = {path: f"burridge_knopoff.kernel.{path.stem}" for path in sorted(KERNEL.glob("*.py")) if "__" not in path.stem}
-stale = {path: name for path, name in names.items() if changed.intersection(sources_of(name))}
-print(*(path.stem for path in stale))
-flags = [*COMPILER_FLAGS, *next(iter(vector_flags().values())), "-O1"]
-extensions = [Extension(name, [str(path.relative_to(PACKAGE.parents[1]))], extra_compile_args=flags)
-              for path, name in stale.items()]
-setup(script_args=["-q", "build_ext", "--inplace", "--force"], package_dir={"": "src"}, ext_modules=cythonize(
-    extensions, force=True, quiet=True, build_dir="build/cython", compiler_directives=DIRECTIVES,
-    shared_utility_qualified_name="burridge_knopoff.kernel._shared"))
-write_record(KERNEL)
 """
 
 OBSERVABLE = """
@@ -116,13 +91,11 @@ def extend(folder):
     """Make a copy of the tree with the edits of the page, and compile its kernel."""
     for name in ("config", "src", "workflow", "tests"):
         shutil.copytree(REPOSITORY / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.egg-info"))
-    for name in ("pyproject.toml", "Snakefile"):
+    for name in (".clang-format", "pyproject.toml", "setup.py", "Snakefile"):
         shutil.copy(REPOSITORY / name, folder)
     (folder / "profiles").symlink_to("workflow/profiles")
-    assert len(apply(PAGE, folder)) == 11
-    compiled = run(folder, sys.executable, "-c", COMPILE).split()
-    assert "observe" in compiled
-    assert "series" not in compiled
+    assert len(apply(PAGE, folder)) == 13
+    run(folder, sys.executable, "setup.py", "--quiet", "build_ext", "--inplace")
 
 
 @pytest.fixture(scope="module")
@@ -189,3 +162,6 @@ def test_the_code_of_the_page_is_in_the_projects_style(extended):
     ruff = str(Path(sys.executable).parent / "ruff")
     run(extended, ruff, "check", "--no-cache", "src", "workflow")
     run(extended, ruff, "format", "--no-cache", "--check", "src", "workflow")
+    clang_format = str(Path(sys.executable).parent / "clang-format")
+    kernel = extended / "src/burridge_knopoff/kernel"
+    run(extended, clang_format, "--dry-run", "--Werror", *map(str, [*kernel.glob("*.h"), *kernel.glob("*.cpp")]))

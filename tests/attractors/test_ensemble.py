@@ -5,7 +5,7 @@ import pytest
 
 from burridge_knopoff import Chain, Model, MotionSettings, SearchSettings, label_states, law_of
 from burridge_knopoff.attractors.search import Search
-from burridge_knopoff.kernel.clouds import Clouds
+from burridge_knopoff.kernel._core import Clouds
 from burridge_knopoff.model.sampling import sample_states, sampled_states
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status

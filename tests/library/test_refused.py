@@ -26,7 +26,7 @@ from burridge_knopoff import (
     synchronized_orbit,
     transverse_exponent,
 )
-from burridge_knopoff.kernel.ensemble import Ensemble
+from burridge_knopoff.kernel._core import Ensemble
 from burridge_knopoff.running.ensemble import new_ensemble
 from tests.refused import refused
 

@@ -47,7 +47,6 @@ def test_an_initial_state_with_a_name():
         (("minus", "plus"), "or (position, velocity)"),
         ({"positon": POSITION, "velocity": VELOCITY}, "initial.positon: unknown key"),
         ({"position": POSITION}, "initial.velocity: missing"),
-        ({"position": 1.0, "velocity": VELOCITY}, "initial.position: 1.0"),
         ({"position": POSITION, "velocity": VELOCITY[:2]}, "got 2 numbers, expected 3 for as many positions"),
         ((POSITION, [0.1, "x", 0.1]), "initial.velocity[1]: 'x'"),
         ((POSITION, [0.1, float("nan"), 0.1]), "initial.velocity[1]: nan"),

@@ -23,7 +23,7 @@ from burridge_knopoff.provenance.sources import (
 )
 
 SCRIPTS = sorted((PACKAGE.parent.parent / "workflow" / "scripts").glob("*.py"))
-SOURCES = sorted([*PACKAGE.rglob("*.py"), *PACKAGE.rglob("*.pxd"), *SCRIPTS])
+SOURCES = sorted([*PACKAGE.rglob("*.py"), *SCRIPTS])
 
 TEXT = '''"""What it is."""
 
@@ -44,10 +44,7 @@ class Empty:
 
 def test_comments_and_docstrings_go_and_code_stays():
     assert code_of(TEXT) == 'import os\nx = "not # a comment"\ndef f(a):\n    return a + 1\nclass Empty:'
-    assert code_of("# cython: boundscheck=True\n# plain\nx = 1\n") == "# cython: boundscheck=True\nx = 1"
     assert code_of('x = (\n    """kept"""\n    # gone\n)\n') == 'x = (\n    """kept"""\n)'
-    assert code_of('cdef extern from *:\n    """C"""\n') == 'cdef extern from *:\n    """C"""'
-    assert code_of("cdef class A:\n    cdef double x  # why\n") == "cdef class A:\n    cdef double x"
 
 
 @pytest.mark.parametrize(
@@ -81,8 +78,7 @@ def words(text):
     for token in tokens:
         line.append(token)
         if token.type == tokenize.NEWLINE:
-            verbatim = bool(lines) and lines[-1] == ["cdef", "extern", "from", "*", ":"]
-            if verbatim or not (len(line) == 2 and line[0].type == tokenize.STRING):
+            if not (len(line) == 2 and line[0].type == tokenize.STRING):
                 # Empty lines of a text go as well.
                 lines.append([re.sub(r"\s*\n", "\n", item.string) for item in line[:-1]])
             line = []
@@ -172,8 +168,7 @@ def test_results_depend_on_what_makes_them():
 
     point = {path.relative_to(PACKAGE).as_posix() for path in sources_of("burridge_knopoff.dataset.point")}
     assert {
-        "kernel/series.py",
-        "kernel/series.pxd",
+        "kernel/module.cpp",
         "running/runner.py",
         "laws/stribeck.py",
         "provenance/compilation.py",
@@ -181,8 +176,8 @@ def test_results_depend_on_what_makes_them():
     } <= point
     others = ("stability", "summaries", "figures", "report", "claims", "study")
     assert not {name for name in point if name.startswith(others)}
-    assert "kernel/ensemble.py" not in point
-    assert {"kernel/ensemble.py", "attractors/search.py"} <= names("attractors_of_law")
+    assert "running/ensemble.py" not in point
+    assert {"running/ensemble.py", "attractors/search.py"} <= names("attractors_of_law")
     assert not {"dataset/point.py", "basins/plane.py"} & names("attractors_of_law")
     assert {"figures/agreement.py", "figures/style.py"} <= names("figure_of_summaries figures.agreement")
     drawn = names("figure_of_summaries figures.agreement")

@@ -8,7 +8,7 @@ import time
 import pytest
 
 from burridge_knopoff import simulate
-from burridge_knopoff.kernel import record
+from burridge_knopoff.running import runner
 
 SINGLE = """
 from burridge_knopoff import Chain, simulate
@@ -63,9 +63,9 @@ def test_a_run_that_keeps_too_much_ends_with_one_line(key, numbers, options, mon
     run = simulate("linearized", 0.08, "plus", **options)
     kept = {9: len(run.event_time), 3: len(run.earlier_event_time) or len(run.crossing_time)}[numbers]
     assert kept > 5
-    monkeypatch.setattr(record, "MOST_NUMBERS", numbers * kept)
+    monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * kept)
     assert simulate("linearized", 0.08, "plus", **options).event_count == run.event_count
-    monkeypatch.setattr(record, "MOST_NUMBERS", numbers * (kept - 1))
+    monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * (kept - 1))
     told = rf"^{key}: got more than \S+ numbers to keep by τ = [\d.]+, expected [\w, ]+$"
     with pytest.raises(ValueError, match=told):
         simulate("linearized", 0.08, "plus", **options)

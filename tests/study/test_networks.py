@@ -5,7 +5,6 @@ import shlex
 
 import pytest
 
-from burridge_knopoff import Chain, simulate
 from burridge_knopoff.cli import build_parser
 from burridge_knopoff.cli.options import join_signed, model_of, state_of
 from burridge_knopoff.model.springs import read_edges
@@ -93,9 +92,3 @@ def test_lists_are_as_long_as_a_command_can_be():
     with refused("chain.mass: got [1.0, 1.0,", "expected at most 1024 numbers in a list, or drawn numbers"):
         load({"blocks": 2000, "mass": 2000 * [1]})
     assert load({"mass": 2}, {"one": {"position": -0.5, "velocity": 0}}).blocks == 1
-
-
-@pytest.mark.parametrize("chain", [Chain(grid=(3, 1)), Chain(3, mass=2.0)])
-def test_what_the_solvers_cannot_move(chain):
-    with refused("chain", "expected", "which the solvers can move"):
-        simulate("linearized", 0.1, "minus", chain=chain)

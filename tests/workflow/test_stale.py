@@ -93,9 +93,7 @@ PACKAGE = Path("src/burridge_knopoff")
 NOTHING = (
     ("running/simulation.py", COMMENT),
     ("laws/law.py", DOCSTRING),
-    ("kernel/series.py", COMMENT),
-    ("kernel/modes.py", DOCSTRING),
-    ("kernel/series.pxd", COMMENT),
+    ("kernel/module.cpp", "\n// More words.\n"),
     ("attractors/search.py", DOCSTRING),
     ("figures/style.py", COMMENT),
     ("cli/simulate.py", CODE),
@@ -141,11 +139,11 @@ def test_code_remakes_what_depends_on_it(studied, name, roots):
 
 
 def test_an_edited_kernel_is_refused_until_it_is_built(studied):
-    with Edit(studied.repository / PACKAGE / "kernel/series.py", CODE):
+    with Edit(studied.repository / PACKAGE / "kernel/series.h", CODE):
         run = studied.run("-n")
     lines = [line for line in run.stderr.splitlines() if not line.startswith("Using workflow specific profile")]
     assert run.returncode != 0
-    assert lines == ["kernel/series.py: has changed since the kernel was compiled: run `make kernel`"]
+    assert lines == ["kernel/series.h: has changed since the kernel was compiled: run `make kernel`"]
 
 
 @pytest.fixture(scope="module")
@@ -158,19 +156,9 @@ def uncompiled(studied, tmp_path_factory):
     return Study(folder / "study", studied.config.read_text(), folder)
 
 
-@pytest.mark.parametrize(
-    ("name", "roots"),
-    [
-        ("kernel/state.pxd", (*POINTS, *STABILITY, *SUMMARIES)),
-        (
-            "kernel/ensemble.py",
-            ("attractors_of_law", "basin_tile", "basin_pairs", "basins", "phases_of_law", "stick_slip", "two_blocks"),
-        ),
-    ],
-)
-def test_an_edited_kernel_that_is_not_built_yet_remakes_what_depends_on_it(studied, uncompiled, name, roots):
-    more = CODE if name.endswith(".py") else "\ncdef double MORE\n"
-    with Edit(uncompiled.repository / PACKAGE / name, more):
+def test_an_edited_kernel_that_is_not_built_yet_remakes_what_depends_on_it(studied, uncompiled):
+    roots = (*POINTS, *STABILITY, *SUMMARIES)
+    with Edit(uncompiled.repository / PACKAGE / "kernel/module.cpp", "\nint more;\n"):
         found = jobs(uncompiled.ok("-n"))
     assert set(roots) <= set(found)
     assert found == planned(studied, *roots)

@@ -10,14 +10,16 @@ import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.settings import SEARCH
-from burridge_knopoff.kernel.clouds import Clouds
-from burridge_knopoff.kernel.ensemble import UNDETERMINED
+from burridge_knopoff.kernel._core import Clouds
 from burridge_knopoff.model.model import STARTS, ChainState, Model
 from burridge_knopoff.model.ranges import Number, OneOf, Whole
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.values import each_instance_of, instance_of, real_array
+
+#: Label of a state that comes close to no attractor.
+UNDETERMINED = -1
 
 
 def label(
@@ -67,7 +69,7 @@ def label_together(
         )
         returns = [attractor.close_returns for attractor in attractors]
         section = [attractor.motion.block - 1 for attractor in attractors]
-        begun = position[states], velocity[states], stuck[states].astype(np.intc)
+        begun = position[states], velocity[states], stuck[states].astype(bool)
         return new_ensemble(model).label(*begun, clouds, returns, section, end)
 
     labels, times, last = first(attractors, slice(None), time_limit)
@@ -85,7 +87,7 @@ def label_together(
 def moved(model: Model, starts: Sequence[ChainState], time: float) -> list[ChainState]:
     """Return where states are after a time."""
     position, velocity = (np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity"))
-    stuck = np.array([start.stuck for start in starts], dtype=np.intc)
+    stuck = np.array([start.stuck for start in starts], dtype=bool)
     end = new_ensemble(model).run(position, velocity, stuck, [time])
     return [state_of(state) for state in np.concatenate([end["position"][:, 0], end["velocity"][:, 0]], axis=1)]
 

@@ -1,3 +1,282 @@
 # Made by `python -m tests.kernel.core_stub`.
-def width() -> int:
-    """Return the number of doubles in a vector."""
+from collections.abc import Callable, Sequence
+from typing import Annotated
+
+import numpy
+from numpy.typing import NDArray
+
+LANES: int = ...
+
+SERIES_ORDER: int = ...
+
+STATUS: dict = ...
+
+def first_root(
+    coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+    length: float,
+) -> float:
+    """
+    The first t in [0, length] at which a polynomial, of degree 24 at most, becomes negative; -1 if it never does.
+    """
+
+def maximum(
+    coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+    length: float,
+    floor: float,
+) -> float:
+    """The larger of floor and the maximum of a polynomial over [0, length]."""
+
+def quadrature() -> tuple:
+    """Nodes and weights, of sum 1, of the quadrature rule for J on [-1, 1]."""
+
+class KernelModel:
+    """
+    A chain or network of blocks with its friction law and driver, as the kernel reads it.
+    """
+
+    def __init__(
+        self,
+        diagonal: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        driving: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        threshold: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        sliding_force: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        mass: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        start: Annotated[NDArray[numpy.int64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        neighbour: Annotated[NDArray[numpy.int64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        strength: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        operations: Annotated[NDArray[numpy.int64], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        constants: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        value: int,
+        slope: int,
+        linear: bool,
+        rate: float,
+        steepest: float,
+        v: float,
+        symmetric: bool,
+    ) -> None: ...
+    @property
+    def fastest(self) -> float:
+        """Bound on the angular frequencies of slipping blocks."""
+
+    def friction_series(
+        self, speed: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)]
+    ) -> tuple:
+        """
+        Taylor coefficients of the friction and of its slope along a motion with these coefficients of the speed.
+        """
+
+class Record:
+    """A table that grows: one time and a few values a row."""
+
+    @property
+    def count(self) -> int: ...
+    @property
+    def full(self) -> bool: ...
+    def times(self) -> NDArray[numpy.float64]:
+        """The times, shape (count,)."""
+
+    def values(self) -> NDArray[numpy.float64]:
+        """The values, shape (count, width)."""
+
+class EventLog:
+    """
+    The event sequence of a run: `earlier_events` before `states_from`, with rows (block from 1, kind 0 stop | 1 start); `events` from then on, with rows (block, kind, x_1 ... x_N, U_1' ... U_N').
+    """
+
+    def __init__(
+        self, blocks: int, states_from: float, keep: bool, rate_limit: int, stops_only: bool, most_numbers: float
+    ) -> None: ...
+    @property
+    def count(self) -> int: ...
+    @property
+    def states_from(self) -> float: ...
+    @property
+    def earlier_events(self) -> Record: ...
+    @property
+    def events(self) -> Record: ...
+
+class Observer:
+    """
+    What one run measures: J averaged over batches, J and states at given times, section crossings.
+    """
+
+    def __init__(
+        self,
+        blocks: int,
+        apart: float,
+        edge: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        distance_time: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        trajectory_time: Annotated[
+            NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)
+        ],
+        section_only: bool,
+        section: int,
+        most_numbers: float,
+    ) -> None: ...
+    @property
+    def crossings(self) -> Record: ...
+    @property
+    def section_only(self) -> bool: ...
+    @property
+    def end(self) -> float: ...
+    @property
+    def distance_time(self) -> NDArray[numpy.float64]: ...
+    @property
+    def trajectory_time(self) -> NDArray[numpy.float64]: ...
+    def results(self) -> dict:
+        """All that was measured, as NumPy arrays."""
+
+class Exponents:
+    """
+    Growth of the perturbations of a run: Lyapunov exponents, batch by batch.
+    """
+
+    def __init__(
+        self,
+        blocks: int,
+        vectors: int,
+        start_time: float,
+        edge: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+    ) -> None: ...
+    def carry(
+        self,
+        matrix: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+    ) -> None:
+        """
+        Carry the columns of a matrix (2 blocks, vectors) from now on as they are, never orthonormalised.
+        """
+
+    def matrix(self) -> NDArray[numpy.float64]:
+        """The perturbations as columns, shape (2 blocks, vectors)."""
+
+    def results(self) -> dict:
+        """
+        growth (batches, vectors), -inf for dropped vectors, duration (batches,), and how many exponents are lost.
+        """
+
+class Mark:
+    """What repeats the last pieces of a run that ended."""
+
+class Run:
+    """One run from event to event."""
+
+    def __init__(
+        self,
+        model: KernelModel,
+        log: EventLog,
+        observer: Observer,
+        exponents: Exponents,
+        observing: bool,
+        local: int,
+        step_limit: int,
+    ) -> None: ...
+    def begin(
+        self,
+        position: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        velocity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        stuck: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        time: float = ...,
+    ) -> None: ...
+    def mark(self) -> Mark: ...
+    def resume(self, mark: Mark, time: float) -> None: ...
+    def run(self) -> int: ...
+    def values(self) -> tuple: ...
+    def use_modes(self, solve: Callable) -> None:
+        """
+        Go from event to event in closed form; solve(first, last) gives eigenvalues and modes, one a row, of K for these blocks.
+        """
+
+    @property
+    def halting_block(self) -> int: ...
+    @halting_block.setter
+    def halting_block(self, arg: int, /) -> None: ...
+    @property
+    def end(self) -> float: ...
+    @end.setter
+    def end(self, arg: float, /) -> None: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def local(self) -> bool: ...
+    @property
+    def clock(self) -> float: ...
+
+class TimeStepping:
+    """One run by Runge-Kutta of fourth order with a fixed step."""
+
+    def __init__(self, model: KernelModel, log: EventLog, observer: Observer, step: float) -> None: ...
+    def begin(
+        self,
+        position: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        velocity: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        stuck: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        time: float = ...,
+    ) -> None: ...
+    def mark(self) -> NDArray[numpy.float64]: ...
+    def resume(
+        self,
+        mark: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        time: float,
+    ) -> None: ...
+    def run(self) -> int: ...
+    def values(self) -> tuple: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def clock(self) -> float: ...
+
+class Clouds:
+    """
+    Several clouds of points, each with a radius in the largest difference of a coordinate.
+    """
+
+    def __init__(
+        self,
+        clouds: Sequence[
+            Annotated[NDArray[numpy.float64], dict(shape=(None, None), order="C", device="cpu", writable=False)]
+        ],
+        width: int,
+        radius: Sequence[float],
+    ) -> None: ...
+    @property
+    def count(self) -> int: ...
+    def is_near(
+        self,
+        cloud: int,
+        state: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+    ) -> bool:
+        """
+        Whether a state, shape (width,), is within the radius of a point of a cloud.
+        """
+
+class Ensemble:
+    """Many trajectories of one model at once, a lane of a vector each."""
+
+    def __init__(self, model: KernelModel, rate_limit: int) -> None: ...
+    @property
+    def rounds(self) -> int: ...
+    @property
+    def searches(self) -> int: ...
+    def run(
+        self,
+        position: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        stuck: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        times: Sequence[float],
+        events: int = ...,
+    ) -> dict:
+        """The states of all trajectories at some times, and their first events."""
+
+    def label(
+        self,
+        position: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        velocity: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        stuck: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order="C", device="cpu", writable=False)],
+        clouds: Clouds,
+        returns: Sequence[int],
+        section: Sequence[int],
+        end: float,
+    ) -> tuple:
+        """
+        Which cloud each state comes close to, when that was certain, and where the others are at the end.
+        """

@@ -1,22 +1,426 @@
-// What the kernel shows to Python.
-
+// The kernel's classes as Python sees them.
 #include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
+#include <nanobind/stl/vector.h>
+
+#include "ensemble.h"
+#include "run.h"
+#include "time_stepping.h"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using namespace bk;
 
 namespace {
 
-// Doubles in a vector of the processor that this file is compiled for.
-int width() {
-#if defined(__AVX512F__)
-    return 8;
-#elif defined(__AVX__)
-    return 4;
-#else
-    return 2;
-#endif
+template <class T>
+using Array1 = nb::ndarray<const T, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+template <class T>
+using Array2 = nb::ndarray<const T, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Numbers = Array1<double>;
+using Table = Array2<double>;
+
+template <class T>
+std::vector<T> copied(const Array1<T> &array) {
+    return {array.data(), array.data() + array.size()};
+}
+
+// A NumPy array of its own, of these values.
+template <class T, class From = T>
+nb::ndarray<nb::numpy, T> array(const std::vector<From> &values, std::vector<size_t> shape) {
+    T *made = new T[values.size() ? values.size() : 1];
+    std::copy(values.begin(), values.end(), made);
+    nb::capsule owner(made, [](void *p) noexcept { delete[] static_cast<T *>(p); });
+    return nb::ndarray<nb::numpy, T>(made, shape.size(), shape.data(), owner);
+}
+auto numbers(const std::vector<double> &values, std::vector<size_t> shape) {
+    return array<double>(values, std::move(shape));
+}
+auto numbers(const std::vector<double> &values) {
+    return array<double>(values, {values.size()});
+}
+
+void check_signals() {
+    nb::gil_scoped_acquire held;
+    if (PyErr_CheckSignals() != 0) throw nb::python_error();
+}
+
+Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers sliding_force, Numbers mass,
+                 Array1<int64_t> start, Array1<int64_t> neighbour, Numbers strength, Array2<int64_t> operations,
+                 Table constants, int value, int slope, bool linear, double rate, double steepest, double v,
+                 bool symmetric) {
+    auto model = std::make_unique<Model>();
+    Springs &springs = model->springs;
+    springs.blocks = int(diagonal.size());
+    springs.diagonal = copied(diagonal);
+    springs.driving = copied(driving);
+    springs.threshold = copied(threshold);
+    springs.sliding_force = copied(sliding_force);
+    springs.mass = copied(mass);
+    springs.start = copied(start);
+    springs.neighbour.assign(neighbour.data(), neighbour.data() + neighbour.size());
+    springs.strength = copied(strength);
+    springs.complete();
+    for (size_t k = 0; k < operations.shape(0); k++)
+        model->law.tape.push_back({int(operations(k, 0)), int(operations(k, 1)), int(operations(k, 2)), constants(k, 0),
+                                   constants(k, 1), constants(k, 2)});
+    model->law.value = value;
+    model->law.slope = slope;
+    model->law.linear = linear;
+    model->law.rate = rate;
+    model->law.steepest = steepest;
+    model->law.complete();
+    model->v = v;
+    model->symmetric = symmetric;
+    return model.release();
+}
+
+template <class Solver>
+nb::tuple values(Solver &solver, int blocks) {
+    std::vector<double> x(blocks), u(blocks), slip(blocks);
+    if constexpr (std::is_same_v<Solver, Run>)
+        solver.state(x.data(), u.data(), slip.data());
+    else
+        solver.values(x.data(), u.data(), slip.data());
+    return nb::make_tuple(numbers(x), numbers(u), array<int32_t>(slip, {size_t(blocks)}));
+}
+
+nb::dict outcome(const Outcome &out) {
+    const size_t n = out.count, blocks = out.blocks, times = out.times, kept = out.kept;
+    nb::dict made;
+    made["position"] = numbers(out.position, {n, times, blocks});
+    made["velocity"] = numbers(out.velocity, {n, times, blocks});
+    made["slip"] = array<int8_t>(out.slip, {n, times, blocks});
+    made["status"] = array<int32_t>(out.status, {n});
+    made["end"] = numbers(out.end, {n});
+    made["event_count"] = array<int64_t>(out.event_count, {n});
+    made["event_time"] = numbers(out.event_time, {n, kept});
+    made["event_block"] = array<int32_t>(out.event_block, {n, kept});
+    made["event_kind"] = array<int32_t>(out.event_kind, {n, kept});
+    return made;
+}
+
+void check_shape(const Ensemble &ensemble, const Table &position, const Table &velocity, const Array2<bool> &stuck) {
+    auto fits = [&](auto &table) {
+        return table.shape(0) == position.shape(0) && int(table.shape(1)) == ensemble.model.springs.blocks;
+    };
+    if (fits(position) && fits(velocity) && fits(stuck)) return;
+    auto shape = [](auto &table) {
+        return "(" + std::to_string(table.shape(0)) + ", " + std::to_string(table.shape(1)) + ")";
+    };
+    throw nb::value_error(("position, velocity, stuck: got shapes " + shape(position) + ", " + shape(velocity) + ", " +
+                           shape(stuck) + ", expected (n, " + std::to_string(ensemble.model.springs.blocks) +
+                           ") for each")
+                              .c_str());
 }
 
 }  // namespace
 
-NB_MODULE(_core, module) {
-    module.def("width", &width, "Return the number of doubles in a vector.");
+NB_MODULE(_core, m) {
+    m.attr("LANES") = LANES;
+    m.attr("SERIES_ORDER") = int(Blocks::ORDER);
+    nb::dict status;
+    for (auto [name, value] : {std::pair("HALTED", HALTED),
+                               {"FULL", FULL},
+                               {"COMPLETED", COMPLETED},
+                               {"STEP_LIMIT", STEP_LIMIT},
+                               {"ACCUMULATING_EVENTS", ACCUMULATING_EVENTS},
+                               {"DIVERGED", DIVERGED}})
+        status[name] = int(value);
+    m.attr("STATUS") = status;
+
+    m.def(
+        "first_root",
+        [](Numbers coefficients, double length) {
+            Polynomial polynomial;
+            polynomial.load(coefficients.data(), 1, int(coefficients.size()) - 1);
+            return polynomial.first_root(length);
+        },
+        "coefficients"_a, "length"_a,
+        "The first t in [0, length] at which a polynomial, of degree 24 at most, becomes negative; -1 if it never "
+        "does.");
+    m.def(
+        "maximum",
+        [](Numbers coefficients, double length, double floor) {
+            Polynomial polynomial;
+            polynomial.load(coefficients.data(), 1, int(coefficients.size()) - 1);
+            return polynomial.maximum(length, floor);
+        },
+        "coefficients"_a, "length"_a, "floor"_a,
+        "The larger of floor and the maximum of a polynomial over [0, length].");
+    m.def(
+        "quadrature",
+        [] {
+            const std::vector<double> node(GAUSS.node, GAUSS.node + NODES), weight(GAUSS.weight, GAUSS.weight + NODES);
+            return nb::make_tuple(numbers(node), numbers(weight));
+        },
+        "Nodes and weights, of sum 1, of the quadrature rule for J on [-1, 1].");
+
+    nb::class_<Model>(m, "KernelModel",
+                      "A chain or network of blocks with its friction law and driver, as the kernel reads it.")
+        .def(nb::new_(&new_model), "diagonal"_a, "driving"_a, "threshold"_a, "sliding_force"_a, "mass"_a, "start"_a,
+             "neighbour"_a, "strength"_a, "operations"_a, "constants"_a, "value"_a, "slope"_a, "linear"_a, "rate"_a,
+             "steepest"_a, "v"_a, "symmetric"_a)
+        .def_prop_ro(
+            "fastest", [](const Model &model) { return model.springs.fastest; },
+            "Bound on the angular frequencies of slipping blocks.")
+        .def(
+            "friction_series",
+            [](const Model &model, Numbers speed) {
+                if (model.law.linear) throw nb::value_error("law: got a linear one, expected one with a series");
+                FrictionSeries series(model.law, 1, int(speed.size()));
+                std::vector<double> value(speed.size()), slope(speed.size());
+                for (int n = 0; n < int(speed.size()); n++) {
+                    series.row(0, 0)[n] = splat(speed(n));
+                    series.fill(0, n, 0, int(model.law.tape.size()));
+                    value[n] = series.row(model.law.value, 0)[n][0];
+                    slope[n] = series.row(model.law.slope, 0)[n][0];
+                }
+                return nb::make_tuple(numbers(value), numbers(slope));
+            },
+            "speed"_a,
+            "Taylor coefficients of the friction and of its slope along a motion with these coefficients of the "
+            "speed.");
+
+    nb::class_<Record>(m, "Record", "A table that grows: one time and a few values a row.")
+        .def_prop_ro("count", [](const Record &table) { return table.time.size(); })
+        .def_ro("full", &Record::full)
+        .def(
+            "times", [](const Record &table) { return numbers(table.time); }, "The times, shape (count,).")
+        .def(
+            "values",
+            [](const Record &table) { return numbers(table.value, {table.time.size(), size_t(table.width)}); },
+            "The values, shape (count, width).");
+
+    nb::class_<EventLog>(
+        m, "EventLog",
+        "The event sequence of a run: `earlier_events` before `states_from`, with rows (block from 1, kind 0 stop | 1 "
+        "start); `events` from then on, with rows (block, kind, x_1 ... x_N, U_1' ... U_N').")
+        .def(nb::init<int, double, bool, long long, bool, double>(), "blocks"_a, "states_from"_a, "keep"_a,
+             "rate_limit"_a, "stops_only"_a, "most_numbers"_a)
+        .def_ro("count", &EventLog::count)
+        .def_ro("states_from", &EventLog::states_from)
+        .def_ro("earlier_events", &EventLog::earlier)
+        .def_ro("events", &EventLog::events);
+
+    nb::class_<Observer>(
+        m, "Observer",
+        "What one run measures: J averaged over batches, J and states at given times, section crossings.")
+        .def(
+            "__init__",
+            [](Observer *at, int blocks, double apart, Numbers edge, Numbers distance_time, Numbers trajectory_time,
+               bool section_only, int section, double most_numbers) {
+                new (at) Observer(blocks, apart, copied(edge), copied(distance_time), copied(trajectory_time),
+                                  section_only, section, most_numbers);
+            },
+            "blocks"_a, "apart"_a, "edge"_a, "distance_time"_a, "trajectory_time"_a, "section_only"_a, "section"_a,
+            "most_numbers"_a)
+        .def_ro("crossings", &Observer::crossings)
+        .def_ro("section_only", &Observer::section_only)
+        .def_prop_ro("end", &Observer::end)
+        .def_prop_ro(
+            "distance_time", [](const Observer &o) { return numbers(o.distance_time); }, nb::rv_policy::move)
+        .def_prop_ro(
+            "trajectory_time", [](const Observer &o) { return numbers(o.trajectory_time); }, nb::rv_policy::move)
+        .def(
+            "results",
+            [](const Observer &o) {
+                std::vector<double> integral(o.batch_integral);
+                for (size_t k = 0; k < integral.size(); k++) integral[k] += o.batch_rest[k];
+                const size_t blocks = o.blocks, count = o.trajectory_time.size();
+                nb::dict made;
+                made["batch_integral"] = numbers(integral);
+                made["distance"] = numbers(o.distance_sample);
+                made["position"] = numbers(o.trajectory_position, {count, blocks});
+                made["velocity"] = numbers(o.trajectory_velocity, {count, blocks});
+                made["crossing_time"] = numbers(o.crossings.time);
+                made["crossing"] = numbers(o.crossings.value, {o.crossings.time.size(), 2});
+                made["highest_speed"] = numbers({o.highest_speed[0], o.highest_speed[1]});
+                made["lowest_force"] = numbers({o.lowest_force[0], o.lowest_force[1]});
+                return made;
+            },
+            "All that was measured, as NumPy arrays.");
+
+    nb::class_<Exponents>(m, "Exponents", "Growth of the perturbations of a run: Lyapunov exponents, batch by batch.")
+        .def(
+            "__init__",
+            [](Exponents *at, int blocks, int vectors, double start_time, Numbers edge) {
+                new (at) Exponents(blocks, vectors, start_time, copied(edge));
+            },
+            "blocks"_a, "vectors"_a, "start_time"_a, "edge"_a)
+        .def(
+            "carry",
+            [](Exponents &exponents, Table matrix) {
+                Tangent &tangent = exponents.tangent;
+                for (int v = 0; v < tangent.vectors; v++)
+                    for (int i = 0; i < tangent.blocks; i++) {
+                        tangent.x(v)[i] = matrix(i, v);
+                        tangent.u(v)[i] = matrix(tangent.blocks + i, v);
+                    }
+                exponents.carry();
+            },
+            "matrix"_a,
+            "Carry the columns of a matrix (2 blocks, vectors) from now on as they are, never orthonormalised.")
+        .def(
+            "matrix",
+            [](Exponents &exponents) {
+                Tangent &tangent = exponents.tangent;
+                const size_t n = tangent.blocks, vectors = tangent.vectors;
+                std::vector<double> made(2 * n * vectors);
+                for (size_t v = 0; v < vectors; v++)
+                    for (size_t i = 0; i < n; i++) {
+                        made[i * vectors + v] = tangent.x(int(v))[i];
+                        made[(n + i) * vectors + v] = tangent.u(int(v))[i];
+                    }
+                return numbers(made, {2 * n, vectors});
+            },
+            "The perturbations as columns, shape (2 blocks, vectors).")
+        .def(
+            "results",
+            [](const Exponents &exponents) {
+                const size_t vectors = exponents.tangent.vectors, batches = exponents.duration.size();
+                std::vector<double> growth(exponents.growth);
+                for (size_t k = 0; k < growth.size(); k++)
+                    if (int(k % vectors) >= exponents.alive) growth[k] = -HUGE_VAL;
+                nb::dict made;
+                made["growth"] = numbers(growth, {batches, vectors});
+                made["duration"] = numbers(exponents.duration);
+                made["lost"] = exponents.lost();
+                return made;
+            },
+            "growth (batches, vectors), -inf for dropped vectors, duration (batches,), and how many exponents are "
+            "lost.");
+
+    nb::class_<Mark>(m, "Mark", "What repeats the last pieces of a run that ended.");
+
+    nb::class_<Run>(m, "Run", "One run from event to event.")
+        .def(
+            "__init__",
+            [](Run *at, const Model &model, EventLog &log, Observer &observer, Exponents &exponents, bool observing,
+               int local, long long step_limit) {
+                new (at) Run(model, log, observer, exponents, observing, local, step_limit);
+                at->check_signals = check_signals;
+            },
+            "model"_a, "log"_a, "observer"_a, "exponents"_a, "observing"_a, "local"_a, "step_limit"_a,
+            nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>(), nb::keep_alive<1, 5>())
+        .def(
+            "begin",
+            [](Run &run, Numbers position, Numbers velocity, Array1<bool> stuck, double time) {
+                run.begin(position.data(), velocity.data(), stuck.data(), time);
+            },
+            "position"_a, "velocity"_a, "stuck"_a, "time"_a = 0.0)
+        .def("mark", [](const Run &run) { return run.mark(); })
+        .def("resume", &Run::resume, "mark"_a, "time"_a)
+        .def("run", &Run::run, nb::call_guard<nb::gil_scoped_release>())
+        .def("values", [](Run &run) { return values(run, run.model.springs.blocks); })
+        .def(
+            "use_modes",
+            [](Run &run, nb::callable solve) {
+                run.modes = std::make_unique<Modes>(run.model, [solve](int first, int last) {
+                    nb::gil_scoped_acquire held;
+                    const auto [eigenvalue, vector] = nb::cast<std::pair<Numbers, Table>>(solve(first, last));
+                    return Modes::Matrix{copied(eigenvalue), {vector.data(), vector.data() + vector.size()}};
+                });
+            },
+            "solve"_a,
+            "Go from event to event in closed form; solve(first, last) gives eigenvalues and modes, one a row, of K "
+            "for these blocks.")
+        .def_rw("halting_block", &Run::halting_block)
+        .def_rw("end", &Run::end)
+        .def_ro("steps", &Run::steps)
+        .def_ro("local", &Run::local)
+        .def_prop_ro("clock", [](const Run &run) { return run.now.time; });
+
+    nb::class_<TimeStepping>(m, "TimeStepping", "One run by Runge-Kutta of fourth order with a fixed step.")
+        .def(
+            "__init__",
+            [](TimeStepping *at, const Model &model, EventLog &log, Observer &observer, double step) {
+                new (at) TimeStepping(model, log, observer, step);
+                at->check_signals = check_signals;
+            },
+            "model"_a, "log"_a, "observer"_a, "step"_a, nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(),
+            nb::keep_alive<1, 4>())
+        .def(
+            "begin",
+            [](TimeStepping &run, Numbers position, Numbers velocity, Array1<bool> stuck, double time) {
+                run.begin(position.data(), velocity.data(), stuck.data(), time);
+            },
+            "position"_a, "velocity"_a, "stuck"_a, "time"_a = 0.0)
+        .def("mark",
+             [](const TimeStepping &run) {
+                 std::vector<double> x(run.slip.size()), u(x.size()), slip(x.size());
+                 run.values(x.data(), u.data(), slip.data());
+                 return numbers(slip);
+             })
+        .def(
+            "resume", [](TimeStepping &run, Numbers mark, double) { run.resume(mark.data()); }, "mark"_a, "time"_a)
+        .def("run", &TimeStepping::run, nb::call_guard<nb::gil_scoped_release>())
+        .def("values", [](TimeStepping &run) { return values(run, int(run.slip.size())); })
+        .def_ro("steps", &TimeStepping::steps)
+        .def_ro("clock", &TimeStepping::clock);
+
+    nb::class_<Clouds>(m, "Clouds",
+                       "Several clouds of points, each with a radius in the largest difference of a coordinate.")
+        .def(
+            "__init__",
+            [](Clouds *at, std::vector<Table> clouds, int width, std::vector<double> radius) {
+                new (at) Clouds(width);
+                for (size_t k = 0; k < clouds.size(); k++)
+                    at->add(clouds[k].data(), int(clouds[k].shape(0)), radius[k]);
+            },
+            "clouds"_a, "width"_a, "radius"_a)
+        .def_prop_ro("count", &Clouds::count)
+        .def(
+            "is_near",
+            [](const Clouds &clouds, int cloud, Numbers state) { return clouds.is_near(cloud, state.data()); },
+            "cloud"_a, "state"_a, "Whether a state, shape (width,), is within the radius of a point of a cloud.");
+
+    nb::class_<Ensemble>(m, "Ensemble", "Many trajectories of one model at once, a lane of a vector each.")
+        .def(
+            "__init__",
+            [](Ensemble *at, const Model &model, long long rate_limit) {
+                new (at) Ensemble(model, rate_limit);
+                at->check_signals = check_signals;
+            },
+            "model"_a, "rate_limit"_a, nb::keep_alive<1, 2>())
+        .def_ro("rounds", &Ensemble::rounds)
+        .def_prop_ro("searches", &Ensemble::searches)
+        .def(
+            "run",
+            [](Ensemble &ensemble, Table position, Table velocity, Array2<bool> stuck, std::vector<double> times,
+               int events) {
+                check_shape(ensemble, position, velocity, stuck);
+                Outcome out(int(position.shape(0)), ensemble.model.springs.blocks, int(times.size()), events);
+                {
+                    nb::gil_scoped_release free;
+                    ensemble.run(position.data(), velocity.data(), stuck.data(), times, out, nullptr, {}, {});
+                }
+                return outcome(out);
+            },
+            "position"_a, "velocity"_a, "stuck"_a, "times"_a, "events"_a = 0,
+            "The states of all trajectories at some times, and their first events.")
+        .def(
+            "label",
+            [](Ensemble &ensemble, Table position, Table velocity, Array2<bool> stuck, const Clouds &clouds,
+               std::vector<int> returns, std::vector<int> section, double end) {
+                check_shape(ensemble, position, velocity, stuck);
+                const size_t n = position.shape(0), blocks = ensemble.model.springs.blocks;
+                Outcome out(int(n), int(blocks), 1, 0);
+                {
+                    nb::gil_scoped_release free;
+                    ensemble.run(position.data(), velocity.data(), stuck.data(), {end}, out, &clouds, returns, section);
+                }
+                std::vector<double> last(n * 2 * blocks);
+                for (size_t k = 0; k < n; k++) {
+                    std::copy_n(&out.position[k * blocks], blocks, &last[k * 2 * blocks]);
+                    std::copy_n(&out.velocity[k * blocks], blocks, &last[k * 2 * blocks + blocks]);
+                }
+                return nb::make_tuple(array<int32_t>(out.label, {n}), numbers(out.end, {n}),
+                                      numbers(last, {n, 2 * blocks}));
+            },
+            "position"_a, "velocity"_a, "stuck"_a, "clouds"_a, "returns"_a, "section"_a, "end"_a,
+            "Which cloud each state comes close to, when that was certain, and where the others are at the end.");
 }

@@ -31,7 +31,7 @@ def rotation_number(model: Model, start: ChainState, duration: float) -> tuple[f
     together. The error is the difference between both halves of the time, each of which is less exact than the whole.
     """
     count = 2 * math.ceil(0.5 * duration / longest_spacing(model.chain))
-    state = (start.position[None], start.velocity[None], start.stuck[None].astype(np.intc))
+    state = (start.position[None], start.velocity[None], start.stuck[None].astype(bool))
     motion = new_ensemble(model).run(*state, np.linspace(0.0, duration, count + 1).tolist())
     states = motion["position"][0] + 1j * (motion["velocity"][0] - model.v)
     middle = states[:, [(model.blocks - 1) // 2, model.blocks // 2]].sum(axis=1)

@@ -13,18 +13,6 @@ NANOBIND_FLAGS = ("-std=c++20", "-Os", "-g0", "-fno-strict-aliasing", "-fvisibil
 #: {doubles in a vector: oldest x86-64 processors that have it}. The numbers are the same with each.
 LEVELS = {"2": "-march=x86-64-v2", "4": "-march=x86-64-v3", "8": "-march=x86-64-v4"}
 
-#: Directives for Cython.
-DIRECTIVES = {
-    "language_level": 3,
-    "boundscheck": False,
-    "wraparound": False,
-    "cdivision": True,
-    "initializedcheck": False,
-    "embedsignature": False,
-    # No object of the kernel is pickled, and the code for pickling takes a tenth of the compile time.
-    "auto_pickle": False,
-}
-
 
 def vector_flags() -> dict[str, tuple[str, ...]]:
     """Return {folder in the kernel: flags that choose the vectors} of every module to compile, the narrowest first.

@@ -28,15 +28,13 @@ ASSETS = (".css", ".jinja", ".js")
 # Comments and strings. Python's own tokenizer and parser would take ten times as long, in every job.
 _TEXT = r'"{3}(?:[^"\\]|\\.|"(?!""))*"{3}'
 _WORD = re.compile(rf"""#[^\n]*|{_TEXT}|"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'""", re.DOTALL)
-# A string at the top of a file or after a colon; after `cdef extern from *:` it is C code, which counts.
-_DOCSTRING = re.compile(rf"(\A(?:#[^\n]*\n)*|(?<!\*):[ \t]*\n)\s*{_TEXT}[ \t]*$", re.DOTALL | re.MULTILINE)
-#: Comments that Cython obeys.
-_DIRECTIVE = re.compile(r"#\s*(cython|distutils)\s*:")
+# A string at the top of a file or after a colon.
+_DOCSTRING = re.compile(rf"(\A(?:#[^\n]*\n)*|:[ \t]*\n)\s*{_TEXT}[ \t]*$", re.DOTALL | re.MULTILINE)
 # Words of C++ that are, or may hold, what looks like a comment; the group is a comment.
 _CPP = re.compile(
     r"""R"(\w*)\((?s:.*?)\)\1"|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'|\b\d[\w'.]*|(?P<comment>//.*|/\*(?s:.*?)\*/)"""
 )
-_IMPORT = re.compile(r"^[ \t]*(?:from\s+(\S+)\s+)?c?import\s+(\([^)]*\)|.+)", re.MULTILINE)
+_IMPORT = re.compile(r"^[ \t]*(?:from\s+(\S+)\s+)?import\s+(\([^)]*\)|.+)", re.MULTILINE)
 
 
 def provenance(module: str) -> dict[str, str]:
@@ -78,7 +76,7 @@ def _name(path: Path) -> str:
 
 @cache
 def files_of(module: str) -> list[Path]:
-    """Return the files of a module: its Python file, Cython declarations, and files that it reads; empty for others.
+    """Return the files of a module: its Python file and files that it reads; empty for others.
 
     Those of the compiled module are all of its sources.
     """
@@ -87,12 +85,9 @@ def files_of(module: str) -> list[Path]:
         return [COMPILATION, *sorted(source for source in path.parent.iterdir() if source.suffix in (".cpp", ".h"))]
     if path.is_dir():
         return [path / "__init__.py"]
-    files = [path.with_suffix(suffix) for suffix in (".py", ".pxd") if path.with_suffix(suffix).is_file()]
-    if files and path.parent == PACKAGE / "kernel":
-        files.append(COMPILATION)
-    elif files and path.parent != PACKAGE:
-        files += _assets(path.parent)
-    return files
+    if not path.with_suffix(".py").is_file():
+        return []
+    return [path.with_suffix(".py"), *(_assets(path.parent) if path.parent != PACKAGE else ())]
 
 
 @cache
@@ -112,8 +107,8 @@ def _code(path: Path) -> str:
 
 
 def code_of(text: str) -> str:
-    """Return Python or Cython code without comments, docstrings, empty lines and trailing blanks."""
-    text = _WORD.sub(lambda word: "" if word[0][0] == "#" and not _DIRECTIVE.match(word[0]) else word[0], text)
+    """Return Python code without comments, docstrings, empty lines and trailing blanks."""
+    text = _WORD.sub(lambda word: "" if word[0][0] == "#" else word[0], text)
     return _without_blanks(_DOCSTRING.sub(r"\1", text))
 
 
@@ -127,15 +122,14 @@ def _without_blanks(text: str) -> str:
 
 
 #: {ending of a file: function that returns its code without comments}.
-CODE = {".py": code_of, ".pxd": code_of, ".cpp": code_of_cpp, ".h": code_of_cpp}
+CODE = {".py": code_of, ".cpp": code_of_cpp, ".h": code_of_cpp}
 
 
 @cache
 def _needs(path: Path) -> list[Path]:
     """Return the files of the package's modules that a file imports, without plumbing."""
     modules = set()
-    for start, names in _IMPORT.findall(_code(path) if path.suffix in (".py", ".pxd") else ""):
-        start = start.removeprefix("cython.cimports.")
+    for start, names in _IMPORT.findall(_code(path) if path.suffix == ".py" else ""):
         for name in re.findall(r"([\w.]+)(?:\s+as\s+\w+)?", names):
             modules.update({start, f"{start}.{name}"} if start else {name})
     files = [file for name in modules if name.startswith(f"{PACKAGE.name}.") for file in files_of(name)]

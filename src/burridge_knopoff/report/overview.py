@@ -21,7 +21,7 @@ from burridge_knopoff.study.study import Study, all_points
 
 #: Distributions whose versions are reported.
 LIBRARIES = (
-    *("numpy", "scipy", "netCDF4", "xarray", "matplotlib", "Cython", "snakemake"),
+    *("numpy", "scipy", "netCDF4", "xarray", "matplotlib", "nanobind", "snakemake"),
     *("pyyaml", "jinja2", "plotly", "pillow"),
 )
 

@@ -2,27 +2,12 @@
 
 from __future__ import annotations
 
-from burridge_knopoff.kernel.ensemble import Ensemble
+from burridge_knopoff.kernel._core import Ensemble
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.runner import EVENTS_PER_BLOCK_AND_UNIT, check_kernel
+from burridge_knopoff.running.kernel_model import kernel_model
+from burridge_knopoff.running.runner import EVENTS_PER_BLOCK_AND_UNIT
 
 
 def new_ensemble(model: Model) -> Ensemble:
     """Return an ensemble that moves many trajectories of a model at once; one thread at a time may use it."""
-    chain, law = model.chain, model.law
-    check_kernel(chain)
-    codes, constants = law.tape.table
-    used = slice(law.tape.value)
-    return Ensemble(
-        diagonal=chain.diagonal,
-        left=chain.before,
-        right=chain.after,
-        threshold=chain.thresholds,
-        sliding_force=chain.thresholds * float(law(model.v)),
-        v=model.v,
-        symmetric=model.contact == "symmetric",
-        **dict(zip(("code", "first", "second"), codes[used].T, strict=True)),
-        **dict(zip(("alpha", "beta", "gamma"), constants[used].T, strict=True)),
-        value=law.tape.value,
-        rate_limit=EVENTS_PER_BLOCK_AND_UNIT * model.blocks,
-    )
+    return Ensemble(kernel_model(model), EVENTS_PER_BLOCK_AND_UNIT * model.blocks)

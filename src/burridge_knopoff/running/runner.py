@@ -3,28 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
-from burridge_knopoff.kernel.event_driven import EventDriven
-from burridge_knopoff.kernel.events import EventLog
-from burridge_knopoff.kernel.exponents import Exponents
-from burridge_knopoff.kernel.friction import Friction
-from burridge_knopoff.kernel.observe import Observer
-from burridge_knopoff.kernel.series import SERIES_ORDER
-from burridge_knopoff.kernel.springs import Springs
-from burridge_knopoff.kernel.state import State
-from burridge_knopoff.kernel.time_stepping import TimeStepping
-from burridge_knopoff.kernel.vector import WIDTH
-from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.kernel._core import EventLog, Exponents, Observer, Run, TimeStepping
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.running.kernel_model import kernel_model
+from burridge_knopoff.running.normal_modes import normal_modes
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal, shown
+from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
 
 NEVER = 1e300
-
-RK4_ORDER = 3
 
 # Real motion stays far below: a slip of a block takes about one time unit or longer.
 EVENTS_PER_BLOCK_AND_UNIT = 1000
@@ -42,6 +33,7 @@ class Runner:
     observer : measures the run; without it nothing is measured
     exponents : perturbations from which Lyapunov exponents are computed
     perturbations : tangent vectors to carry along unchanged by the solver, columns of shape (2 blocks, vectors)
+    groups : whether blocks that slip together move in groups of their own; None for whatever is faster
 
     Raises ValueError if the solver needs a closed form and the model has none.
     """
@@ -58,32 +50,35 @@ class Runner:
         observer: Observer | None = None,
         exponents: Exponents | None = None,
         perturbations: np.ndarray | None = None,
+        groups: bool | None = None,
     ) -> None:
         instance_of(model, Model, "model")
         if solver == "map" and not model.has_closed_form:
             raise ValueError(
                 "solver: got 'map', expected series | rk4: map needs a closed form, that is a linear friction law, not "
-                "too steep, in a uniform chain of masses 1 with open ends"
+                "too steep, in a uniform chain with open ends"
             )
         self.model = model
         # These decide the steps: a continued run repeats the steps of the whole run only if they are equal.
         self.solver = model, solver, step if solver == "rk4" else None
         blocks = model.blocks
-        order = RK4_ORDER if solver == "rk4" else SERIES_ORDER
-        self.log = EventLog(blocks, events_from, keep_events, EVENTS_PER_BLOCK_AND_UNIT * blocks, stops_only)
-        self.observer = observer if observer is not None else new_observer(model, [NEVER, NEVER], order=order)
+        rate_limit = EVENTS_PER_BLOCK_AND_UNIT * blocks
+        self.log = EventLog(blocks, events_from, keep_events, rate_limit, stops_only, MOST_NUMBERS)
+        self.observer = observer if observer is not None else new_observer(model, [NEVER, NEVER])
         if exponents is None:
             count = 0 if perturbations is None else perturbations.shape[1]
-            exponents = Exponents(blocks, count, NEVER, [NEVER, NEVER])
+            exponents = Exponents(blocks, count, NEVER, np.array([NEVER, NEVER]))
         self.exponents = exponents
-        self.kernel: EventDriven | TimeStepping
+        self.kernel: Run | TimeStepping
         if solver == "rk4":
-            self.kernel = TimeStepping(_state(model, order), self.log, self.observer, step)
+            self.kernel = TimeStepping(kernel_model(model), self.log, self.observer, step)
         else:
-            self.kernel = EventDriven(
-                _state(model, order), self.log, self.observer, exponents, solver == "map", STEP_LIMIT
+            choice = 0 if solver == "map" else -1 if groups is None else int(groups)
+            self.kernel = Run(
+                kernel_model(model), self.log, self.observer, exponents, observer is not None, choice, STEP_LIMIT
             )
-            self.kernel.observing = observer is not None
+            if solver == "map":
+                self.kernel.use_modes(partial(normal_modes, model.chain))
         if perturbations is not None:
             self.carry(perturbations)
 
@@ -92,7 +87,8 @@ class Runner:
         blocks = self.model.blocks
         if not isinstance(at, ChainState) or {np.shape(x) for x in (at.position, at.velocity, at.stuck)} != {(blocks,)}:
             raise refusal("state", at, f"a ChainState of {blocks} blocks")
-        self.kernel.begin(at.position, at.velocity, at.stuck, at.time)
+        position, velocity = (np.asarray(x, dtype=float) for x in (at.position, at.velocity))
+        self.kernel.begin(position, velocity, np.asarray(at.stuck, dtype=bool), at.time)
         if at.last_step is not None and at.last_step[0] == self.solver:
             self.kernel.resume(at.last_step[1], at.time)
 
@@ -104,7 +100,7 @@ class Runner:
 
     def carry(self, perturbations: np.ndarray) -> None:
         """Carry the columns of a matrix (2 blocks, vectors) along from now on, without orthonormalising them."""
-        self.exponents.carry(perturbations)
+        self.exponents.carry(np.ascontiguousarray(perturbations, dtype=float))
 
     def run(self, until: float | None = None, halting_block: int = -1) -> Status:
         """Integrate to a time, or to the end of the observer's window, and return the status.
@@ -114,7 +110,7 @@ class Runner:
         Raises ValueError if `rk4` is given either argument, since it only integrates the observer's window, and if the
         run would keep more than MOST_NUMBERS numbers.
         """
-        if isinstance(self.kernel, EventDriven):
+        if isinstance(self.kernel, Run):
             self.kernel.halting_block = halting_block
             self.kernel.end = self.observer.end if until is None else until
         elif until is not None or halting_block >= 0:
@@ -137,7 +133,7 @@ class Runner:
 
     def state(self) -> ChainState:
         """Return the present state."""
-        position, velocity, slip = self.kernel.state.values()
+        position, velocity, slip = self.kernel.values()
         return ChainState(position, velocity, slip == 0)
 
     @property
@@ -148,7 +144,7 @@ class Runner:
     @property
     def perturbations(self) -> np.ndarray:
         """The perturbations carried along, columns of shape (2 blocks, vectors)."""
-        return self.exponents.tangent.matrix()
+        return self.exponents.matrix()
 
     def events(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return time, block (0 …) and kind (0 stop, 1 start) of the events kept."""
@@ -161,35 +157,10 @@ def new_observer(
     edge: np.ndarray | list[float],
     distance_time: np.ndarray | list[float] = (),  # type: ignore[assignment]
     trajectory_time: np.ndarray | list[float] = (),  # type: ignore[assignment]
-    order: int = SERIES_ORDER,
     section_only: bool = False,
     section: Section = SUM,
 ) -> Observer:
     """Return the observer of a run: J averaged over batches, J and states at given times; see `Observer`."""
     apart = float(model.sliding_offset[-1] - model.sliding_offset[0])
-    return Observer(model.blocks, order, apart, edge, distance_time, trajectory_time, section_only, section.block)
-
-
-def new_friction(model: Model, order: int) -> Friction:
-    """Return the friction on the blocks of a model, for Taylor series of a given order."""
-    law, thresholds = model.law, model.chain.thresholds
-    slopes = -float(law.slope(0.0)), float(thresholds.max()) * law.steepest
-    columns = -(-model.blocks // WIDTH)
-    return Friction(*law.tape.table, law.tape.value, law.tape.slope, law.is_linear, *slopes, columns, order)
-
-
-def check_kernel(chain: Chain) -> None:
-    """Raise ValueError, one line, for a chain that the kernel cannot move: a network, or masses other than 1."""
-    if chain.is_network:
-        raise ValueError("chain: got a network of springs, expected a row or a ring, which the solvers can move")
-    if (chain.masses != 1.0).any():
-        raise ValueError(f"chain.mass: got {shown(chain.mass)}, expected 1.0, which the solvers can move")
-
-
-def _state(model: Model, order: int) -> State:
-    chain = model.chain
-    check_kernel(chain)
-    springs = Springs(
-        chain.diagonal, chain.before, chain.after, chain.thresholds, chain.thresholds * float(model.law(model.v))
-    )
-    return State(springs, new_friction(model, order), model.v, model.contact == "symmetric")
+    times = [np.asarray(values, dtype=float) for values in (edge, distance_time, trajectory_time)]
+    return Observer(model.blocks, apart, times[0], times[1], times[2], section_only, section.block, MOST_NUMBERS)

@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
-from burridge_knopoff.kernel.exponents import Exponents
+from burridge_knopoff.kernel._core import Exponents
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.running.runner import RK4_ORDER, SERIES_ORDER, Runner, new_observer
+from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.trajectory import Trajectory, collect
 
@@ -53,7 +53,6 @@ def _prepare(model: Model, settings: Settings, time: float, section_only: bool, 
     trajectory = min(settings.trajectory, duration)
     count = math.floor(trajectory / settings.trajectory_sampling + 1e-9)
     trajectory_time = end - settings.trajectory_sampling * np.arange(count, -1, -1)
-    order = RK4_ORDER if settings.solver == "rk4" else SERIES_ORDER
     aligned = time + max(0.0, settings.transient - settings.lyapunov_alignment)
     exponents = Exponents(model.blocks, settings.exponents_of(model.chain), aligned, edge)
     return Runner(
@@ -64,7 +63,7 @@ def _prepare(model: Model, settings: Settings, time: float, section_only: bool, 
         keep_events=settings.events != "none",
         stops_only=stops_only,
         observer=new_observer(
-            model, edge, np.minimum(distance_time, end), trajectory_time, order, section_only, settings.section
+            model, edge, np.minimum(distance_time, end), trajectory_time, section_only, settings.section
         ),
         exponents=exponents,
     )

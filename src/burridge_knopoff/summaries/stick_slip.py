@@ -118,7 +118,7 @@ def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float)
     first, duration = stops[0], float(time[-1] - time[stops[0]])
     position, velocity = run["event_position"][first] - model.sliding_offset, run["event_velocity"][first]
     instants = np.linspace(0.0, duration, math.ceil(duration / longest_spacing(model.chain)) + 1)
-    states = (position[None], velocity[None], (velocity[None] == 0.0).astype(np.intc))
+    states = (position[None], velocity[None], velocity[None] == 0.0)
     return new_ensemble(model).run(*states, instants.tolist())["velocity"][0], duration
 
 

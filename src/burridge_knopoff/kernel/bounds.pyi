@@ -1,3 +1,0 @@
-# Made by `python -m tests.kernel.stubs`.
-class Bounds:
-    def __init__(self, columns: int) -> None: ...

@@ -1,3 +1,0 @@
-# Made by `python -m tests.kernel.stubs`.
-class Distance:
-    def __init__(self, order: int, apart: float) -> None: ...

@@ -1,0 +1,201 @@
+// Many trajectories of one chain at once: a lane holds a trajectory with its own clock and step.
+//
+// A lane whose trajectory has ended takes the next one from the list. No number of a trajectory depends on what goes on
+// in other lanes, nor on where it ends: the end only cuts off.
+#pragma once
+
+#include <functional>
+
+#include "clouds.h"
+#include "group.h"
+
+namespace bk {
+
+// What is known of n trajectories at their ends, and on the way.
+struct Outcome {
+    int count, blocks, times, kept;
+    std::vector<int> status, label;
+    std::vector<double> end, position, velocity, event_time;
+    std::vector<signed char> slip;
+    std::vector<long long> event_count;
+    std::vector<int> event_block, event_kind;
+
+    // kept : how many events of each are kept
+    Outcome(int count, int blocks, int times, int kept)
+        : count(count), blocks(blocks), times(times), kept(kept), status(count), label(count, -1), end(count),
+          position(size_t(count) * times * blocks, NAN), velocity(size_t(count) * times * blocks, NAN),
+          event_time(size_t(count) * kept, NAN), slip(size_t(count) * times * blocks), event_count(count),
+          event_block(size_t(count) * kept), event_kind(size_t(count) * kept) {}
+};
+
+class Ensemble {
+  public:
+    const Model &model;
+    std::function<void()> check_signals = [] {};
+    long long rounds = 0;
+
+    Ensemble(const Model &model, long long rate_limit)
+        : model(model), blocks(model.springs.blocks), rate_limit(double(rate_limit)), layout(model.springs),
+          state(model, layout), series(model, layout), search(polynomial), relative(blocks), slipped(blocks) {}
+
+    long long searches() const { return search.searches; }
+
+    // Move trajectories from positions x_i, velocities U_i' and stuck blocks, shape (count, blocks), to the last of
+    // some ascending times, and keep their states at all of them: a state is that before the events of the same
+    // instant.
+    //
+    // clouds : states (x_i, U_i') at stops; a trajectory ends with the label of a cloud when `returns` successive stops
+    // of the cloud's block, `section`, have been near it
+    void run(const double *position, const double *velocity, const bool *stuck, const std::vector<double> &times,
+             Outcome &out, const Clouds *clouds, const std::vector<int> &returns, const std::vector<int> &section);
+
+  private:
+    const int blocks;
+    const double rate_limit;
+    Trajectories layout;
+    State<Trajectories> state;
+    Series<Trajectories> series;
+    Polynomial polynomial;
+    EventSearch<Trajectories> search;
+    Vectors relative, slipped;
+    vec clock{}, clock_rest{}, target{}, count{}, unit_start{}, unit_count{};
+    mask active{}, accumulating{};
+    int member[LANES] = {}, next_time[LANES] = {};
+    std::vector<int> streak;
+    Outcome *out = nullptr;
+    const std::vector<double> *times = nullptr;
+    const Clouds *clouds = nullptr;
+
+    // Let the k-th time be the next at which the state of a lane is kept.
+    void aim(int lane, int k) {
+        next_time[lane] = k;
+        target[lane] = k < int(times->size()) ? (*times)[k] : LONG;
+    }
+
+    // Move every lane to its next event, or as far as its series goes, and look at the returns among the events.
+    void move(const std::vector<int> &returns, const std::vector<int> &section) {
+        vec fastest{};
+        for (int i = 0; i < blocks; i++) {
+            fastest = largest(fastest, magnitude(state.velocity[i]));
+            slipped[i] = state.slip[i];
+        }
+        const vec reach = series.expand(state, 0);
+        // Towards a pole of the law pieces shrink until the clock stands still.
+        finish(active & ~((clock < clock + reach) & (fastest < ABSURD_SPEED)), DIVERGED);
+        search.find(series, state, reach, active);
+        const vec length = search.time;
+        sample(length);
+        const vec left = (times->back() - clock) - clock_rest;
+        const mask ended = active & (left <= length);
+        if (any(ended)) {
+            clock = select(ended, splat(times->back()), clock);
+            finish(ended, COMPLETED);
+        }
+        series.move(state, length, active);
+        const vec total = clock + (clock_rest + length);
+        clock_rest = (clock - total) + (clock_rest + length);
+        clock = total;
+        const mask event = active & search.found;
+        if (!any(event)) return;
+        search.aim(series);
+        for (int i = 0; i < blocks; i++) {
+            const mask due = event & search.due(series, i);
+            if (any(due)) change(i, due);
+        }
+        settle(event);
+        for (size_t k = 0; k < section.size(); k++) {
+            const int i = section[k];
+            visit(int(k), returns[k], int(section.size()),
+                  event & active & (slipped[i] != 0.0) & (state.slip[i] == 0.0));
+        }
+    }
+
+    // Keep the states at the times that lie within the coming pieces.
+    void sample(vec length) {
+        for (;;) {
+            const vec ahead = (target - clock) - clock_rest;
+            const int due = bits(active & (ahead <= length));
+            if (!due) return;
+            for (int i = 0; i < blocks; i++) {
+                const vec x = series.value(series.position, i, ahead), u = series.value(series.velocity, i, ahead);
+                for (int lane = 0; lane < LANES; lane++) {
+                    if (!(due >> lane & 1)) continue;
+                    const size_t at = (size_t(member[lane]) * out->times + next_time[lane]) * blocks + i;
+                    out->position[at] = x[lane];
+                    out->velocity[at] = u[lane];
+                    out->slip[at] = (signed char)state.slip[i][lane];
+                }
+            }
+            for (int lane = 0; lane < LANES; lane++)
+                if (due >> lane & 1) aim(lane, next_time[lane] + 1);
+        }
+    }
+
+    // Let block i stop or start now, and count the event.
+    void change(int i, mask where) {
+        const mask fresh = where & (unit_start + 1.0 <= clock);
+        state.transition(i, where);
+        for (int lane = 0; out->kept && lane < LANES; lane++) {
+            if (!where[lane] || count[lane] >= out->kept) continue;
+            const size_t at = size_t(member[lane]) * out->kept + size_t(count[lane]);
+            out->event_time[at] = clock[lane];
+            out->event_block[at] = i + 1;
+            out->event_kind[at] = state.slip[i][lane] != 0.0;
+        }
+        count = select(where, count + 1.0, count);
+        unit_start = select(fresh, clock, unit_start);
+        unit_count = select(fresh, vec{}, unit_count);
+        unit_count = select(where, unit_count + 1.0, unit_count);
+        accumulating |= where & (unit_count > rate_limit);
+    }
+
+    // Carry out every change that is due at this instant, to the last one, before time moves on.
+    void settle(mask where) {
+        std::vector<int> due(blocks);
+        for (where &= ~accumulating; any(where); where &= ~accumulating) {
+            mask changing{};
+            for (int i = 0; i < blocks; i++) relative[i] = state.velocity[i] - model.v;
+            // Who changes is decided before anyone does: then no order of the blocks is preferred.
+            for (int i = 0; i < blocks; i++) {
+                const mask own = where & state.pending(relative.at(), i);
+                due[i] = bits(own);
+                changing |= own;
+            }
+            for (int i = 0; i < blocks; i++)
+                if (due[i]) change(i, from_bits(due[i]));
+            where = changing;
+        }
+    }
+
+    // Look at the returns of some lanes to a cloud; a lane is done when enough of them have been near it.
+    void visit(int cloud, int returns, int clouds_in_all, mask where) {
+        std::vector<double> point(2 * blocks);
+        for (int lane = 0; lane < LANES; lane++) {
+            if (!where[lane]) continue;
+            for (int i = 0; i < blocks; i++) {
+                point[i] = state.position[i][lane];
+                point[blocks + i] = state.velocity[i][lane];
+            }
+            int &near = streak[size_t(lane) * clouds_in_all + cloud];
+            near = clouds->is_near(cloud, point.data()) ? near + 1 : 0;
+            if (near < returns) continue;
+            out->label[member[lane]] = cloud;
+            mask own{};
+            own[lane] = -1;
+            finish(own, COMPLETED);
+        }
+    }
+
+    // End the trajectories of some lanes.
+    void finish(mask where, int status) {
+        for (int lane = 0; lane < LANES && any(where); lane++) {
+            if (!where[lane]) continue;
+            out->end[member[lane]] = clock[lane];
+            out->status[member[lane]] = status;
+            out->event_count[member[lane]] = (long long)count[lane];
+        }
+        active &= ~where;
+    }
+};
+
+}  // namespace bk

@@ -1,0 +1,397 @@
+// The first event in a piece of a series, looked for in all blocks at once and proved to be the first.
+//
+// What decides about an event is a polynomial g for each block, positive until the event: its speed while it slips, or
+// how far its spring force is from its threshold while it sticks. A root t* is guessed and refined by Halley's method,
+// and then it is proved that no g has one before: over [0, t*] each g, or the quotient q in g(t) = g(t*) + (1 − t/t*)
+// q(t), is bounded from below. The bounds are the Bernstein coefficients of the first terms, with all others taken off
+// the last one: they add at most Σ|c_k| t*^k u^LOW at u = t/t*, which has no other coefficient. Where the proof fails
+// the exhaustive search of a Polynomial decides. So an event is found late only by as much as rounding hides.
+//
+// Where W, which makes the section, changes its sign is found on the way, in a lane behind those of the blocks: it
+// moves no event, and costs next to nothing.
+#pragma once
+
+#include "polynomial.h"
+#include "series.h"
+
+namespace bk {
+
+constexpr double UNKNOWN = 1e300;
+// Degree of the first, cheap bounds.
+constexpr int LOW = 8;
+// W at the end of one piece and at the start of the next differ by rounding, less than this.
+constexpr double SEAM = 1e-14;
+
+// Bounds of polynomials over [0, 1] from their scaled terms.
+struct Bounds {
+    vec low, high, corner[LOW + 1];
+
+    template <int ORDER>
+    BK_INLINE void take(const vec *term) {
+        static constexpr double inverse[LOW + 1] = {1.0,        1.0 / 8.0,  1.0 / 28.0, 1.0 / 56.0, 1.0 / 70.0,
+                                                    1.0 / 56.0, 1.0 / 28.0, 1.0 / 8.0,  1.0};
+        vec rest{}, other{}, b[LOW + 1];
+        for (int k = 0; k <= LOW; k++) b[k] = term[k] * inverse[k];
+        for (int k = LOW + 1; k < ORDER; k += 2) {
+            rest += magnitude(term[k]);
+            other += magnitude(term[k + 1]);
+        }
+        for (int j = 1; j <= LOW; j++)
+            for (int k = LOW; k >= j; k--) b[k] += b[k - 1];
+        rest += other;
+        low = b[LOW] - rest;
+        high = b[LOW] + rest;
+        for (int k = 0; k < LOW; k++) {
+            low = least(low, b[k]);
+            high = largest(high, b[k]);
+        }
+        for (int k = 0; k <= LOW; k++) corner[k] = b[k];
+    }
+
+    // Where the control polygon first falls through 0, as a share of the interval; UNKNOWN where it does not.
+    BK_INLINE vec fall() const {
+        vec share = splat(UNKNOWN);
+        for (int k = LOW - 1; k >= 0; k--) {
+            const mask falls = (corner[k] > 0.0) & (corner[k + 1] <= 0.0);
+            share = select(falls, (1.0 / LOW) * (double(k) + corner[k] / (corner[k] - corner[k + 1])), share);
+        }
+        return share;
+    }
+};
+
+template <class L>
+class EventSearch {
+  public:
+    static constexpr int ORDER = L::ORDER;
+    // How often a trajectory had to be searched block by block.
+    long long searches = 0;
+    vec time;    // of the event, or the reach where there is none
+    mask found;  // whether there is one
+
+    explicit EventSearch(Polynomial &polynomial) : polynomial(polynomial) {}
+
+    // Find the first events within the reach. section : the lane of W in g, −1 if it is not looked for
+    void find(Series<L> &series, const State<L> &state, vec reach, mask where, int section = -1) {
+        columns = series.columns;
+        width = series.width;
+        for (Vectors *row : {&root_at, &lowest, &highest, &zeros}) row->reserve(width);
+        deflate(series, state);
+        time = reach_of_bounds = reach;
+        found = mask{};
+        crossing = UNCERTAIN;
+        mask wanted = bound(series, reach, where, section), doubtful{};
+        const mask backward = state.model.symmetric ? turns_back(state, where) : mask{};
+        if (section >= 0 && lowest.lane(section) > SEAM) crossing = NONE;
+        if (L::ONE_CLOCK && (any(wanted) || (section >= 0 && root_at.lane(section) < UNKNOWN)))
+            refine_columns(series, reach, where);
+        if (any(wanted)) {
+            if (!L::ONE_CLOCK) refine_candidate(series, reach, where);
+            doubtful = wanted & where & ~backward & ~proved(series, where & ~backward, section);
+            // Another block than the one that was guessed may be the first.
+            if (!L::ONE_CLOCK && any(doubtful)) {
+                const vec before_time = time;
+                const mask before_found = found;
+                refine_columns(series, reach, doubtful);
+                time = select(doubtful, time, before_time);
+                found = (doubtful & found) | (~doubtful & before_found);
+                doubtful &= ~proved(series, doubtful);
+            }
+        }
+        doubtful |= backward;
+        if (any(doubtful)) search(series, state, reach, doubtful);
+    }
+
+    // Take g of the block that was found in each clock, for `due`.
+    void aim(const Series<L> &series) {
+        int first[LANES];
+        for (int lane = 0; lane < LANES; lane++) first[lane] = block[lane] < 0 ? 0 : block[lane];
+        for (int k = 0; k <= ORDER; k++) {
+            const size_t row = size_t(k) * width * LANES;
+            for (int lane = 0; lane < LANES; lane++)
+                candidate[k][lane] =
+                    series.gap.lane(L::ONE_CLOCK ? row + first[0] : row + size_t(first[lane]) * LANES + lane);
+        }
+    }
+
+    // Where blocks have the event that was found: what decides about them is the same, to the bit, as of mirror images.
+    // Then their events are one, whatever rounding leaves of them at its time.
+    mask due(const Series<L> &series, int c) const {
+        mask same = found & series.layout.present[c];
+        for (int k = 0; k <= ORDER && any(same); k++) same &= series.gap[size_t(k) * width + c] == candidate[k];
+        return same;
+    }
+
+    // When W changes its sign in the first `length` of the reach: NONE if it does not, UNCERTAIN if it has to be looked
+    // for.
+    static constexpr double NONE = -1.0, UNCERTAIN = -2.0;
+    double crossing_within(const Series<L> &series, double length, int section) const {
+        if (crossing == NONE) return NONE;
+        const double at = root_at.lane(section);
+        if (series.gap.lane(section) > 0.0 && at < UNKNOWN && fall * std::fabs(length - at) > SEAM)
+            return at < length ? at : NONE;
+        return UNCERTAIN;
+    }
+
+    // Bounds on g in the piece, for the blocks of a column.
+    vec bound_in_piece(int c) const {
+        vec bound = largest(highest[c], vec{});
+        for (int lane = 0; lane < LANES; lane++)
+            for (int times = int(zeros[c][lane]); times > 0; times--) bound[lane] *= reach_of_bounds[lane];
+        return bound;
+    }
+
+  private:
+    // Halley steps with the first terms, and with all before a root is left to the exhaustive search.
+    static constexpr int GUESSES = 1, ITERATIONS = 6;
+    // A root has converged when the next step would be smaller than this share of the piece.
+    static constexpr double CONVERGED = 1e-17;
+    // Values down to minus this share of the highest one count as 0 at the event: no less is left of them by rounding.
+    static constexpr double COMMON = 1e-14;
+    // Value at the event of another block below which the quotient serves better.
+    static constexpr double NEAR = 1e-3;
+
+    int columns, width;
+    Vectors root_at, lowest, highest, zeros;
+    vec power[ORDER + 1], scaled[ORDER + 1], quotient[ORDER + 1], candidate[ORDER + 1];
+    int block[LANES];
+    double crossing, fall;
+    vec reach_of_bounds;
+    Polynomial &polynomial;
+
+    // Divide the known zeros at the start out of g: a block that has just started has U' = 0.
+    void deflate(Series<L> &series, const State<L> &state) {
+        const vec zero{};
+        for (int c = 0; c < columns; c++) {
+            vec *g = series.gap.at(c);
+            // At its threshold by construction: what rounding leaves there must not start the block a second time.
+            const mask at = (state.touching[c] > zero) & (state.slip[c] == zero) &
+                            (magnitude(g[0]) < 0.5 * series.layout.threshold[c]);
+            if (any(at)) g[0] = select(at, zero, g[0]);
+            zeros[c] = zero;
+            for (int times = 0; times < ORDER; times++) {
+                const mask where = (g[0] == zero) & series.layout.present[c];
+                if (!any(where)) break;
+                for (int k = 0; k < ORDER; k++)
+                    g[size_t(k) * width] = select(where, g[size_t(k + 1) * width], g[size_t(k) * width]);
+                g[size_t(ORDER) * width] = select(where, zero, g[size_t(ORDER) * width]);
+                zeros[c] += select(where, splat(1.0), zero);
+            }
+        }
+    }
+
+    // Four chains of products, as each waits for the last.
+    BK_INLINE void raise(vec t) {
+        const vec square = t * t, fourth = square * square;
+        vec now[4] = {splat(1.0), t, square, square * t};
+        for (int k = 0; k <= ORDER; k += 4)
+            for (int j = 0; j < 4 && k + j <= ORDER; j++) {
+                power[k + j] = now[j];
+                now[j] = now[j] * fourth;
+            }
+    }
+
+    // Bound g over the reach; return where there may be an event, with guesses in `root_at`.
+    mask bound(Series<L> &series, vec reach, mask where, int section) {
+        mask wanted{};
+        raise(reach);
+        for (int c = 0; c < width; c++) {
+            const vec *g = series.gap.at(c);
+            for (int k = 0; k <= ORDER; k++) scaled[k] = g[size_t(k) * width] * power[k];
+            Bounds bounds;
+            bounds.take<ORDER>(scaled);
+            lowest[c] = bounds.low;
+            highest[c] = bounds.high;
+            const mask own = where & (bounds.low <= 0.0);
+            root_at[c] = splat(UNKNOWN);
+            if (any(own)) {
+                const vec share = bounds.fall();
+                root_at[c] = select(own & (share < UNKNOWN), share * reach, root_at[c]);
+                if (section >= 0 && c == section / LANES) steepness(bounds, reach, section % LANES);
+            }
+            // Lanes without a block have g = 0 or W.
+            if (c < columns) wanted |= own & series.layout.present[c];
+        }
+        return L::any_of_clock(wanted);
+    }
+
+    // Set `fall`: how fast W falls everywhere in the reach, at least, if that is positive.
+    void steepness(const Bounds &bounds, vec reach, int lane) {
+        double steepest = bounds.corner[1][lane] - bounds.corner[0][lane], rest = 0.0;
+        for (int k = 1; k < LOW; k++)
+            steepest = std::max(steepest, bounds.corner[k + 1][lane] - bounds.corner[k][lane]);
+        for (int k = LOW + 1; k <= ORDER; k++) rest += k * std::fabs(scaled[k][lane]);
+        fall = -(LOW * steepest + rest) / reach[lane];
+    }
+
+    // Where a stuck block may start backward, which g does not tell.
+    mask turns_back(const State<L> &state, mask where) {
+        mask doubtful{};
+        for (int c = 0; c < columns; c++)
+            doubtful |= (state.slip[c] == vec{}) & state.layout.present[c] &
+                        ((zeros[c] > 0.0) | (highest[c] >= 2.0 * state.layout.threshold[c]));
+        return L::any_of_clock(doubtful) & where;
+    }
+
+    // Refine the guesses of all columns, and take the earliest.
+    void refine_columns(Series<L> &series, vec reach, mask where) {
+        vec first = splat(UNKNOWN);
+        if (!L::ONE_CLOCK) bound(series, reach, where, -1);
+        for (int c = 0; c < width; c++) {
+            const mask wanted = where & (root_at[c] < UNKNOWN);
+            if (any(wanted)) root_at[c] = refine(series.gap.at(c), width, root_at[c], reach, wanted);
+            if (c < columns) first = least(first, select(series.layout.present[c], root_at[c], splat(UNKNOWN)));
+        }
+        first = L::least_of_clock(first);
+        found = (first <= reach) & where;
+        time = select(found, first, reach);
+        for (int lane = 0; lane < LANES; lane++)
+            if (where[lane]) block[lane] = -1;
+        for (int c = columns - 1; c >= 0; c--) {
+            const mask own = found & (root_at[c] == time) & series.layout.present[c];
+            const int which = bits(own);
+            for (int lane = LANES - 1; lane >= 0 && which; lane--)
+                if (which >> lane & 1) block[L::ONE_CLOCK ? 0 : lane] = L::ONE_CLOCK ? c * LANES + lane : c;
+        }
+    }
+
+    // Refine the earliest guess of each lane.
+    void refine_candidate(Series<L> &series, vec reach, mask where) {
+        vec first = splat(UNKNOWN), number = splat(-1.0);
+        for (int c = 0; c < columns; c++) {
+            const mask earlier = root_at[c] < first;
+            first = select(earlier, root_at[c], first);
+            number = select(earlier, splat(double(c)), number);
+        }
+        for (int lane = 0; lane < LANES; lane++) block[lane] = int(number[lane]);
+        aim(series);
+        const mask wanted = where & (first < UNKNOWN);
+        first = refine(candidate, 1, first, reach, wanted);
+        found = wanted & (first <= reach);
+        time = select(found, first, reach);
+        for (int lane = 0; lane < LANES; lane++)
+            if (!found[lane]) block[lane] = -1;
+    }
+
+    // The roots near guesses, by Halley's method; UNKNOWN where it does not converge within the reach.
+    static vec refine(const vec *g, int stride, vec t, vec end, mask wanted) {
+        const vec zero{};
+        mask open = wanted & (t <= end), done{};
+        for (int i = 0; i < GUESSES + ITERATIONS && any(open); i++) {
+            // Even and odd powers apart, in z = t², since each sum waits for the last: g = e + t o. The first terms
+            // show the way at a third of the cost.
+            const vec z = t * t;
+            const int top = i < GUESSES ? LOW : ORDER;
+            vec even = g[size_t(top) * stride], odd = g[size_t(top - 1) * stride];
+            vec even_slope{}, odd_slope{}, even_curvature{}, odd_curvature{};
+            for (int k = top - 2; k > 0; k -= 2) {
+                even_curvature = even_curvature * z + even_slope;
+                even_slope = even_slope * z + even;
+                even = even * z + g[size_t(k) * stride];
+                odd_curvature = odd_curvature * z + odd_slope;
+                odd_slope = odd_slope * z + odd;
+                odd = odd * z + g[size_t(k - 1) * stride];
+            }
+            even_curvature = even_curvature * z + even_slope;
+            even_slope = even_slope * z + even;
+            even = even * z + g[0];
+            const vec value = even + t * odd;
+            const vec slope = odd + 2.0 * (t * even_slope + z * odd_slope);
+            const vec curvature =
+                (even_slope + 3.0 * (t * odd_slope)) + 4.0 * (z * (even_curvature + t * odd_curvature));
+            // Twice the product, since curvature is half the second derivative.
+            const vec step = -(value * slope) / (slope * slope - value * curvature), size = magnitude(step);
+            mask good = open & (slope < zero);
+            t = select(good, t + step, t);
+            good &= (t >= zero) & (t <= end);
+            const vec bend = curvature * step;
+            const mask now = good & (size < (top == ORDER ? 1e-5 : 0.0) * end) &
+                             (size * (bend * bend) <= (CONVERGED * end) * (slope * slope));
+            done |= now;
+            open = good & ~now;
+        }
+        return select(done, t, splat(UNKNOWN));
+    }
+
+    // Where no block has an event before `time`, by bounds over [0, time].
+    // section : the lane of W, −1 if it is not looked for
+    mask proved(Series<L> &series, mask where, int section = -1) {
+        const vec zero{};
+        mask failed = where & ~found;
+        raise(time);
+        for (int c = 0; c < columns; c++) {
+            const mask own = where & series.layout.present[c];
+            const vec *g = series.gap.at(c);
+            // Coefficients of q: minus the sums of the higher terms of g.
+            vec total{};
+            for (int k = ORDER; k >= 0; k--) {
+                const vec term = g[size_t(k) * width] * power[k];
+                scaled[k] = term;
+                quotient[k] = -total;
+                total += term;
+            }
+            // A block that has come near to its own event is proved by q, the others as they are.
+            const mask near = (total <= NEAR) & (total < scaled[0]);
+            failed |= own & near & (total < -COMMON * highest[c]);
+            if (any(near & own))
+                for (int k = 0; k <= ORDER; k++) scaled[k] = select(near, quotient[k], scaled[k]);
+            Bounds bounds;
+            bounds.take<ORDER>(scaled);
+            failed |= own & ~(bounds.low > zero);
+            if (section >= 0 && c == section / LANES && !near[section % LANES] && bounds.low[section % LANES] > SEAM)
+                crossing = NONE;
+            highest[c] = select(near | ~own, highest[c], least(highest[c], bounds.high));
+        }
+        return ~L::any_of_clock(failed);
+    }
+
+    // Search all blocks of some clocks, by halving.
+    void search(Series<L> &series, const State<L> &state, vec reach, mask where) {
+        const int which = bits(where), clocks = L::ONE_CLOCK ? 1 : LANES;
+        for (int lane = 0; lane < clocks; lane++) {
+            if (!(which >> lane & 1)) continue;
+            searches++;
+            double first = reach[lane];
+            int own = -1;
+            const int blocks = L::ONE_CLOCK ? columns * LANES : columns;
+            for (int i = 0; i < blocks; i++) {
+                const size_t place = L::ONE_CLOCK ? i : size_t(i) * LANES + lane;
+                if (L::ONE_CLOCK && !series.layout.present[i / LANES][i % LANES]) break;
+                const bool slips = state.slip.lane(place) != 0.0;
+                for (int side = 1; side >= (state.model.symmetric && !slips ? -1 : 1); side -= 2) {
+                    load(series, state, place, side);
+                    // In the whole reach: what one block does must not move the event of another by a bit.
+                    const double t = polynomial.first_root(reach[lane]);
+                    if (t >= 0.0 && (t < first || own < 0)) {
+                        first = t;
+                        own = i;
+                    }
+                }
+            }
+            block[lane] = own;
+            if (L::ONE_CLOCK) {
+                time = splat(first);
+                found = all_lanes(own >= 0);
+            } else {
+                time[lane] = first;
+                found[lane] = -int64_t(own >= 0);
+            }
+        }
+    }
+
+    // Load the g of one block, for a stuck one to the threshold ahead (side 1) or behind (−1).
+    void load(const Series<L> &series, const State<L> &state, size_t place, int side) {
+        polynomial.load(&series.gap.at()[0][0] + place, width * LANES, ORDER, 1.0);
+        if (side > 0) return;
+        // What was divided out of the gap ahead has to be put back first.
+        const int times = int(zeros.lane(place));
+        for (int k = ORDER; k >= 0; k--)
+            polynomial.coefficient[k] = k >= times ? -polynomial.coefficient[k - times] : 0.0;
+        const double threshold = state.layout.threshold.lane(place);
+        polynomial.coefficient[0] += 2.0 * threshold;
+        if (state.touching.lane(place) != 0.0 && std::fabs(polynomial.coefficient[0]) < 0.5 * threshold)
+            polynomial.coefficient[0] = 0.0;
+        polynomial.deflate();
+    }
+};
+
+}  // namespace bk

@@ -1,0 +1,173 @@
+// Lyapunov exponents from perturbations that are orthonormalised again and again.
+//
+// While m blocks are stuck at once, their m velocity perturbations are 0, so that at least as many exponents are −∞ as
+// blocks are ever stuck at the same time. There are more where a stuck block divides the chain into parts that lose
+// perturbations one after the other. Vectors that are lost are dropped, and the growth of the others is collected batch
+// by batch; a batch begins and ends with the first orthonormalisation after its edge.
+//
+// Reference: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30.
+#pragma once
+
+#include "tangent.h"
+
+namespace bk {
+
+constexpr double NEVER = 1e300;
+
+// Growth of the perturbations of a run.
+//
+// start_time : the perturbations start with the piece of the motion in which this time lies; until the first edge they
+//     only turn into the growing directions
+// edge : boundaries of the batches
+class Exponents {
+  public:
+    Tangent tangent;
+    bool running = false;
+    int alive = 0, most_stuck = 0;
+    std::vector<double> growth, duration;
+
+    Exponents(int blocks, int vectors, double start_time, std::vector<double> edges)
+        : tangent(blocks, vectors), growth((edges.size() - 1) * vectors), duration(edges.size() - 1),
+          start_time(vectors > 0 ? start_time : NEVER), edge(std::move(edges)), batches(int(edge.size()) - 1),
+          whole(vectors), product(vectors, 1.0) {}
+
+    // Carry perturbations from now on as they are, never orthonormalised.
+    void carry() {
+        tangent.forget_stops();
+        running = true;
+        due = NEVER;
+        most_stuck = tangent.blocks;
+    }
+
+    // Start the perturbations now if their time comes within a piece of this length.
+    void begin_within(const State<Blocks> &state, double clock, double length) {
+        if (running || clock + length <= start_time) return;
+        running = true;
+        seed(state, 0);
+        due = clock + INTERVAL;
+        if (clock >= edge[0]) {
+            batch = 0;
+            batch_start = clock;
+        }
+    }
+
+    // Orthonormalise the perturbations if it is time to, after all changes of this instant.
+    void follow(const State<Blocks> &state, double clock, bool completed) {
+        const int now = stuck(state);
+        if (now > most_stuck) {
+            most_stuck = now;
+            if (alive > 2 * tangent.blocks - now) {
+                alive = 2 * tangent.blocks - now;
+                orthonormalise(true);
+            }
+        }
+        if (clock >= due || (completed && alive > 0)) renew(state, clock, completed);
+    }
+
+    int stuck(const State<Blocks> &state) const {
+        int count = 0;
+        for (int i = 0; i < tangent.blocks; i++) count += state.slip.lane(i) == 0.0;
+        return count;
+    }
+
+    // How many of the 2 blocks exponents are −∞, at least; exact if as many vectors were asked for.
+    int lost() const { return std::max(most_stuck, alive < tangent.vectors ? 2 * tangent.blocks - alive : 0); }
+
+  private:
+    // Least time between two orthonormalisations, about that between two events: in a chain of three blocks a stop
+    // shortens a vector to 1e-4 of what the others leave of it at worst, in long chains to 1e-11.
+    static constexpr double INTERVAL = 1.0;
+    // A vector that has been shortened to less than this is one that stops have taken away: the rest is rounding.
+    static constexpr double LOST = 1e-13;
+
+    const double start_time;
+    const std::vector<double> edge;
+    const int batches;
+    int batch = -1;
+    double due = 0.0, batch_start = 0.0;
+    // Lengths multiplied up, whose logarithm is taken at the end of a batch, or before it could overflow.
+    std::vector<double> whole, product;
+
+    bool counted() const { return batch >= 0 && batch < batches; }
+
+    // Give the vectors from `first` on directions of no special symmetry, as many as the stuck blocks allow.
+    void seed(const State<Blocks> &state, int first) {
+        most_stuck = stuck(state);
+        alive = std::min(tangent.vectors, 2 * tangent.blocks - most_stuck);
+        for (int i = 0; i < tangent.blocks; i++)
+            for (int c = first; c < tangent.vectors; c++) {
+                tangent.x(c)[i] = std::cos(1.0 + 2.3 * i + 3.7 * c + 1.9 * i * c);
+                tangent.u(c)[i] = std::cos(2.0 + 1.7 * i + 2.9 * c + 2.3 * i * c) * (state.slip.lane(i) != 0.0);
+            }
+        orthonormalise(false);
+    }
+
+    double dot(int c, int d) {
+        const double *x = tangent.x(c), *u = tangent.u(c), *y = tangent.x(d), *w = tangent.u(d);
+        double moved = 0.0, sped = 0.0;
+        for (int i = 0; i < tangent.blocks; i++) {
+            moved += x[i] * y[i];
+            sped += u[i] * w[i];
+        }
+        return moved + sped;
+    }
+
+    // Make the vectors orthonormal (modified Gram-Schmidt). kept : vectors that were orthonormal before are dropped
+    // from the first one on that is lost, and their lengths are collected in a batch; else they are seeds
+    void orthonormalise(bool kept) {
+        const int n = tangent.blocks;
+        for (int c = 0; c < alive; c++) whole[c] = dot(c, c);
+        for (int c = 0; c < tangent.vectors; c++) {
+            double factor = 0.0;
+            if (c < alive) {
+                const double square = c == 0 ? whole[0] : dot(c, c);
+                if (kept && square <= LOST * LOST * whole[c]) {
+                    alive = c;
+                } else {
+                    const double length = std::sqrt(square);
+                    factor = 1.0 / length;
+                    if (kept && counted()) {
+                        product[c] *= length;
+                        if (!(1e-100 < product[c] && product[c] < 1e100)) collect(c);
+                    }
+                }
+            }
+            for (int i = 0; i < n; i++) {
+                tangent.x(c)[i] *= factor;
+                tangent.u(c)[i] *= factor;
+            }
+            for (int d = c + 1; d < alive; d++) {
+                const double along = dot(c, d);
+                for (int i = 0; i < n; i++) {
+                    tangent.x(d)[i] -= along * tangent.x(c)[i];
+                    tangent.u(d)[i] -= along * tangent.u(c)[i];
+                }
+            }
+        }
+    }
+
+    // Add the growth of vector c since the last call to its batch.
+    void collect(int c) {
+        growth[size_t(batch) * tangent.vectors + c] += std::log(product[c]);
+        product[c] = 1.0;
+    }
+
+    // Orthonormalise, and go on to the batch in which the time now lies.
+    void renew(const State<Blocks> &state, double clock, bool completed) {
+        orthonormalise(true);
+        due = clock + INTERVAL;
+        while (batch < batches && (clock >= edge[batch + 1] || (completed && batch == batches - 1))) {
+            if (batch >= 0) {
+                duration[batch] = clock - batch_start;
+                for (int c = 0; c < alive; c++) collect(c);
+            } else {
+                // Blocks that were stuck only in the transient cost no exponent of the window.
+                seed(state, alive);
+            }
+            batch++;
+            batch_start = clock;
+        }
+    }
+};
+
+}  // namespace bk

@@ -1,0 +1,153 @@
+// A group of blocks that share a clock: all blocks of a chain, or some that slip together with their stuck neighbours.
+#pragma once
+
+#include "observe.h"
+
+namespace bk {
+
+// The same as `running.status`.
+enum Status { HALTED = -2, FULL = -1, COMPLETED = 0, STEP_LIMIT = 1, ACCUMULATING_EVENTS = 2, DIVERGED = 3 };
+
+// A speed that no real motion reaches. The linearized law drives blocks that may slip backward without bound.
+constexpr double ABSURD_SPEED = 1e9;
+
+// Work between two looks at signals such as Ctrl-C, in blocks that a step moves, or perturbations of them: about 0.05
+// s.
+constexpr long long WORK_UNTIL_CHECK = 200000;
+
+struct Group {
+    Blocks layout;
+    State<Blocks> state;
+    Series<Blocks> series;
+    EventSearch<Blocks> search;
+    Clock start;            // of the present piece
+    double length = 0.0;    // of the piece: until the next event, or as far as the series goes
+    double observed = 0.0;  // up to when the piece has been observed
+    bool planned = false, event = false;
+    int section = -1;  // lane of W in g
+    int side = 0;      // the observer's side at the start of the piece
+    uint64_t version = 0;
+    int number = 0;
+    bool alive = false;  // whether it has blocks
+
+    explicit Group(const Model &model, Polynomial &polynomial)
+        : state(model, layout), series(model, layout), search(polynomial) {}
+
+    int size() const { return int(layout.member.size()); }
+    // For how many blocks there is memory.
+    size_t capacity() const { return layout.diagonal.size() * LANES; }
+
+    // Make room for the members of the layout.
+    void widen() {
+        state.widen();
+        relative.reserve(layout.columns);
+    }
+
+    // Expand the motion from the state and find the next event; false where there is no motion. side : that of W, if
+    // its crossings are looked for as well, else 0; begin, end : the blocks whose sum is W
+    bool plan(int wanted_side, int begin, int end) {
+        const int n = size(), extra = wanted_side && n % LANES == 0;
+        side = wanted_side;
+        const vec reach = series.expand(state, extra);
+        vec fastest{};
+        for (int c = 0; c < layout.columns; c++) fastest = largest(fastest, magnitude(state.velocity[c]));
+        // Towards a pole of the law pieces shrink until the clock stands still.
+        if (!(start.time + reach[0] > start.time) || !(largest_lane(fastest) < ABSURD_SPEED)) return false;
+        section = wanted_side ? n : -1;
+        if (wanted_side) load_section(begin, end, extra);
+        search.find(series, state, reach, all_lanes(true), section);
+        length = search.time[0];
+        event = search.found[0];
+        if (event) search.aim(series);
+        observed = 0.0;
+        planned = true;
+        return true;
+    }
+
+    // Move the state on by t along the piece.
+    void advance(double t) {
+        series.move(state, splat(t), all_lanes(true));
+        for (int c = 0; c < layout.columns; c++) layout.sliding_force[c] += layout.drift[c] * t;
+        start = start.after(t);
+        planned = false;
+    }
+
+    // Where blocks of a column change at this instant, once `measure` has been called.
+    mask pending(int c) const { return state.pending(relative.at(), c); }
+    void measure() {
+        for (int c = 0; c < layout.columns; c++) relative[c] = state.velocity[c] - state.model.v;
+    }
+
+    // The coefficients of W = Σ x_i over some lanes.
+    void load_sum(Polynomial &w, int begin, int end) const {
+        w.degree = Blocks::ORDER;
+        for (int k = 0; k <= Blocks::ORDER; k++) {
+            const double *x = &series.position.at(size_t(k) * series.columns)[0][0];
+            double total = 0.0;
+            for (int i = begin; i < end; i++) total += x[i];
+            w.coefficient[k] = total;
+        }
+    }
+    // W' = Σ (U_i' − v) at time t.
+    double sum_rate(int begin, int end, double t) const {
+        double total = 0.0;
+        for (int c = begin / LANES; c * LANES < end; c++) {
+            const vec speed = series.value(series.velocity, c, splat(t));
+            for (int i = std::max(begin, c * LANES); i < std::min(end, (c + 1) * LANES); i++)
+                total += speed[i % LANES] - state.model.v;
+        }
+        return total;
+    }
+
+    // Load |U_i'| of the block in a lane, or θ_i − s_i if it sticks.
+    Polynomial &load(Polynomial &polynomial, int lane) {
+        const int c = lane / LANES, width = series.columns * LANES;
+        if (state.slip.lane(lane) != 0.0) {
+            polynomial.load(&series.velocity.at()[0][0] + lane, width, Blocks::ORDER, state.slip.lane(lane));
+            return polynomial;
+        }
+        polynomial.degree = Blocks::ORDER;
+        for (int k = 0; k <= Blocks::ORDER; k++) {
+            const vec *x = series.x(k);
+            polynomial.coefficient[k] =
+                -(layout.pull(x, c)[lane % LANES] - layout.diagonal[c][lane % LANES] * x[c][lane % LANES]);
+        }
+        polynomial.coefficient[0] += layout.threshold.lane(lane) - layout.sliding_force.lane(lane);
+        polynomial.coefficient[1] -= layout.drift.lane(lane);
+        return polynomial;
+    }
+
+    // Follow extremes of all blocks between two times of the piece.
+    void extremes(Observer &observer, Polynomial &polynomial, double from, double to) {
+        for (int c = 0; c < layout.columns; c++) {
+            const mask slips = state.slip[c] != vec{};
+            const vec bound = search.bound_in_piece(c);
+            const vec speed = splat(std::min(observer.highest_speed[0], observer.highest_speed[1]));
+            const vec gap = layout.threshold[c] - std::max(observer.lowest_force[0], observer.lowest_force[1]);
+            const int which = bits(layout.present[c] & (bound > select(slips, speed, gap)));
+            for (int lane = 0; which >> lane; lane++) {
+                if (!(which >> lane & 1)) continue;
+                const int place = c * LANES + lane;
+                observer.extreme(state.slip.lane(place) != 0.0, layout.threshold.lane(place), bound[lane], start, from,
+                                 to, [&]() -> Polynomial & { return load(polynomial, place); });
+            }
+        }
+    }
+
+  private:
+    Vectors relative;
+
+    void load_section(int begin, int end, int extra) {
+        const int n = size();
+        for (int k = 0; k <= Blocks::ORDER; k++) {
+            const double *x = &series.x(k)[0][0];
+            double total = 0.0;
+            for (int i = begin; i < end; i++) total += x[i];
+            vec *g = series.g(k);
+            if (extra) g[series.columns] = splat(k == 0 ? 1.0 : 0.0);
+            g[n / LANES][n % LANES] = side * total;
+        }
+    }
+};
+
+}  // namespace bk

@@ -1,0 +1,337 @@
+// A run in groups: what slips together, with its stuck neighbours, has its own piece of the motion; see run.h.
+#include "run.h"
+
+namespace bk {
+
+// Let a stuck block with stuck neighbours wait for its start, whose time is known: the spring force grows at a constant
+// rate.
+void Run::wait(int i) {
+    const Springs &springs = model.springs;
+    const double rate = model.v * springs.driving[i];
+    double pull = 0.0;
+    for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
+        pull += springs.strength[p] * stuck_position(springs.neighbour[p], since[i]);
+    const double force = springs.sliding_force[i] + (pull - springs.diagonal[i] * x[i]);
+    const double left = (springs.threshold[i] - force) / rate;
+    begins[i] = rate > 0.0 ? since[i].after(left > 0.0 ? left : 0.0) : Clock{NEVER, 0.0};
+    version[i]++;
+    if (rate > 0.0) queue.push({begins[i].time, i, false, version[i]});
+}
+
+// Plan a group's next piece and put its end into the queue; false where there is no motion.
+bool Run::schedule(Group &group) {
+    if (!plan(group)) return false;
+    group.version++;
+    queue.push({group.start.after(group.length).time, group.number, true, group.version});
+    if (observing) section_change += section_range(group);
+    return true;
+}
+
+int Run::run_groups() {
+    if (blind) {
+        // The first pieces have no motion.
+        now = observed;
+        return DIVERGED;
+    }
+    for (;;) {
+        while (!queue.empty()) {
+            const Next &next = queue.top();
+            const uint64_t valid = next.is_group ? groups[next.number]->version : version[next.number];
+            if (next.version == valid && (next.is_group || group_of[next.number] < 0)) break;
+            queue.pop();
+        }
+        if (const int reason = blocked(0)) return reason;
+        const Next next = queue.empty() ? Next{NEVER, 0, false, 0} : queue.top();
+        const Clock at = next.time == NEVER ? Clock{NEVER, 0.0}
+                         : next.is_group    ? groups[next.number]->start.after(groups[next.number]->length)
+                                            : begins[next.number];
+        if (at.until(end) < 0.0) {
+            remember();
+            observe_all({end, 0.0});
+            marked.side = observer.side;
+            return COMPLETED;
+        }
+        queue.pop();
+        const bool halting = halting_block >= 0 && group_of[halting_block] >= 0 &&
+                             groups[group_of[halting_block]]->state.slip.lane(lane_of[halting_block]) != 0.0;
+        observe_all(at);
+        if (!process(next)) return DIVERGED;
+        if (halting && direction_of(halting_block) == 0.0) return HALTED;
+    }
+}
+
+// Carry out what comes next, now.
+bool Run::process(const Next &next) {
+    Group *group;
+    if (next.is_group) {
+        group = groups[next.number].get();
+        end_piece(*group, group->length);
+        if (!group->event) return schedule(*group);
+        carry_out(*group, now);
+    } else {
+        const int i = next.number;
+        std::vector<int> members;
+        const Springs &springs = model.springs;
+        gather(i, members);
+        for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) gather(springs.neighbour[p], members);
+        group = &collect(members);
+        change(*group, lane_of[i], now);
+    }
+    for (group = complete(group); !log.accumulating && settle(*group, now);) group = complete(group);
+    return part(*group);
+}
+
+// Add a block to the members of a group to be, with all of the group that it is in now.
+void Run::gather(int i, std::vector<int> &members) {
+    const int number = group_of[i];
+    if (number < 0) {
+        if (observing && (i == 0 || i == blocks - 1)) observe_distance(now);
+        members.push_back(i);
+        return;
+    }
+    Group &group = *groups[number];
+    end_piece(group, group.start.until(now));
+    members.insert(members.end(), group.layout.member.begin(), group.layout.member.end());
+    retire(group);
+}
+
+// Make a group of these blocks, which have none.
+Group &Run::collect(std::vector<int> &members) {
+    std::sort(members.begin(), members.end());
+    members.erase(std::unique(members.begin(), members.end()), members.end());
+    for (int i : members) {
+        if (slip[i] == 0.0) x[i] = stuck_position(i, now);
+        since[i] = now;
+        version[i]++;
+    }
+    return build(members, now);
+}
+
+// Take all neighbours of slipping blocks into a group.
+Group *Run::complete(Group *group) {
+    const Springs &springs = model.springs;
+    const int number = group->number;
+    std::vector<int> missing;
+    for (int k = 0; k < group->size(); k++) {
+        if (group->state.slip.lane(k) == 0.0) continue;
+        const int i = group->layout.member[k];
+        for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
+            if (group_of[springs.neighbour[p]] != number) missing.push_back(springs.neighbour[p]);
+    }
+    if (missing.empty()) return group;
+    std::vector<int> members = group->layout.member;
+    retire(*group);
+    for (int i : missing)
+        if (std::find(members.begin(), members.end(), i) == members.end()) gather(i, members);
+    return &collect(members);
+}
+
+// Divide a group into connected sets of slipping blocks with their stuck neighbours, and plan their pieces.
+bool Run::part(Group &group) {
+    const Springs &springs = model.springs;
+    const int number = group.number, n = group.size();
+    std::vector<int> set(n, -1), reached;
+    int sets = 0, placed = 0;
+    for (int k = 0; k < n; k++) {
+        if (set[k] >= 0 || group.state.slip.lane(k) == 0.0) continue;
+        // All that is connected by springs of slipping blocks.
+        reached.assign(1, k);
+        set[k] = sets;
+        placed++;
+        while (!reached.empty()) {
+            const int own = reached.back(), i = group.layout.member[own];
+            reached.pop_back();
+            const bool slips = group.state.slip.lane(own) != 0.0;
+            for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) {
+                const int j = springs.neighbour[p];
+                if (group_of[j] != number) continue;
+                const int other = lane_of[j];
+                if (set[other] >= 0 || !(slips || group.state.slip.lane(other) != 0.0)) continue;
+                set[other] = sets;
+                placed++;
+                reached.push_back(other);
+            }
+        }
+        sets++;
+    }
+    if (sets == 1 && placed == n) return schedule(group);
+    const std::vector<int> member = group.layout.member;
+    retire(group);
+    std::vector<std::vector<int>> members(sets);
+    for (int k = 0; k < n; k++)
+        if (set[k] >= 0) members[set[k]].push_back(member[k]);
+    for (int k = 0; k < n; k++)
+        if (set[k] < 0) wait(member[k]);
+    bool moves = true;
+    for (auto &own : members) {
+        std::sort(own.begin(), own.end());
+        moves &= schedule(build(own, now));
+    }
+    return moves;
+}
+
+// Observe a group's piece up to a time of it, and move its state there.
+void Run::end_piece(Group &group, double to) {
+    if (!group.planned) return;
+    if (observing && !observer.section_only) group.extremes(observer, polynomial, group.observed, to);
+    if (observing && holds_end(group)) observe_distance(group.start.after(to));
+    group.observed = to;
+    group.advance(to);
+}
+
+bool Run::holds_end(const Group &group) const {
+    const int number = group.number;
+    return group_of[0] == number || group_of[blocks - 1] == number;
+}
+
+// A block's position, or its velocity, as a polynomial of the time since `at`.
+Polynomial Run::motion_of(int i, bool speed, const Clock &at) {
+    Polynomial made;
+    if (group_of[i] < 0) {
+        made.degree = 1;
+        made.coefficient[0] = speed ? 0.0 : stuck_position(i, at);
+        made.coefficient[1] = speed ? 0.0 : -model.v;
+        return made;
+    }
+    Group &group = *groups[group_of[i]];
+    const Vectors &rows = speed ? group.series.velocity : group.series.position;
+    made.load(&rows.at()[0][0] + lane_of[i], group.series.columns * LANES, Blocks::ORDER);
+    made.shift(group.start.until(at));
+    return made;
+}
+
+// Observe J up to a time at which the motion of an end block may change.
+void Run::observe_distance(const Clock &at) {
+    const double length = distance_from.until(at);
+    if (length > 0.0 && observer.wants_distance(distance_from, length)) {
+        Distance &d = observer.distance;
+        for (bool speed : {false, true}) {
+            const Polynomial last = motion_of(blocks - 1, speed, distance_from),
+                             first = motion_of(0, speed, distance_from);
+            double *terms = speed ? d.velocity : d.position;
+            for (int k = 0; k <= Blocks::ORDER; k++)
+                terms[k] =
+                    (k <= last.degree ? last.coefficient[k] : 0.0) - (k <= first.degree ? first.coefficient[k] : 0.0);
+        }
+        d.position[0] += observer.apart;
+        d.begin(Blocks::ORDER);
+        observer.average(distance_from, 0.0, length);
+    }
+    distance_from = at;
+}
+
+// Observe everything that is not of one group up to a time before which nothing changes.
+void Run::observe_all(Clock at) {
+    if (!observing) {
+        now = observed = at;
+        return;
+    }
+    while (observer.next_trajectory < observer.trajectory_time.size() &&
+           observer.trajectory_time[observer.next_trajectory] <= at.time) {
+        now = {observer.trajectory_time[observer.next_trajectory], 0.0};
+        observer.sample([&](int i, double &position, double &speed) {
+            double direction;
+            state_of(i, position, speed, direction);
+        });
+    }
+    now = at;
+    const double window = observer.transient();
+    if (!observer.section_only) {
+        // The spring force on a block that waits grows: it is least at the start and where the window begins.
+        for (const Stage stage : {TRANSIENT, WINDOW}) {
+            const double from = std::max(observer.begin, stage == WINDOW ? window : observer.begin);
+            if (waiting_seen[stage] || at.time < from || (stage == TRANSIENT && observer.begin >= window)) continue;
+            waiting_seen[stage] = true;
+            for (int i = 0; i < blocks; i++)
+                if (group_of[i] < 0 && slip[i] == 0.0) see_waiting(i, stage, {from, 0.0});
+        }
+    }
+    if (at.time == end || at.until(end) <= 0.0) {
+        for (auto &group : groups)
+            if (group->alive && group->planned && !observer.section_only) {
+                const double to = group->start.until(at);
+                group->extremes(observer, polynomial, group->observed, to);
+                group->observed = to;
+            }
+        observe_distance(at);
+    }
+    if (at.until(window) < 0.0) observe_section(at);
+    observed = at;
+}
+
+// Note the spring force on a block that waits, at a time.
+void Run::see_waiting(int i, Stage stage, const Clock &at) {
+    const Springs &springs = model.springs;
+    double pull = 0.0;
+    for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
+        pull += springs.strength[p] * stuck_position(springs.neighbour[p], at);
+    const double force = springs.sliding_force[i] + (pull - springs.diagonal[i] * stuck_position(i, at));
+    observer.lowest_force[stage] = std::min(observer.lowest_force[stage], force);
+}
+
+// W at a time at which nothing has changed since the last one.
+double Run::section_value(const Clock &at) {
+    double total = 0.0, position, speed, direction;
+    const Clock before = now;
+    now = at;
+    for (int i = first; i < last; i++) {
+        state_of(i, position, speed, direction);
+        total += position;
+    }
+    now = before;
+    return total;
+}
+
+// The lanes of a group that W sums over; false if there are none.
+bool Run::section_lanes(const Group &group, int &begin, int &stop) const {
+    begin = observer.section ? lane_of[first] : 0;
+    stop = observer.section ? begin + 1 : group.size();
+    return !observer.section || group_of[first] == group.number;
+}
+
+// How far a group's part of W can go within its piece.
+double Run::section_range(const Group &group) {
+    int begin, stop;
+    if (!section_lanes(group, begin, stop)) return 0.0;
+    double most = 0.0, power = group.length;
+    group.load_sum(polynomial, begin, stop);
+    for (int k = 1; k <= Blocks::ORDER; k++, power *= group.length)
+        most += std::fabs(polynomial.coefficient[k]) * power;
+    return 2.0 * most;
+}
+
+// Record crossings of W up to a time before which nothing changes. While W is farther from 0 than it can have gone
+// since it was known, there is none.
+void Run::observe_section(const Clock &at) {
+    const Clock from = observed.until(observer.transient()) > 0.0 ? Clock{observer.transient(), 0.0} : observed;
+    const double length = from.until(at), drift = (last - first) * model.v;
+    if (observer.side != 0 && std::fabs(section_at) > section_change + drift * section_from.until(at)) return;
+    section_at = section_value(from);
+    work += blocks;
+    section_from = from;
+    section_change = 0.0;
+    // From now on pieces count that end later, also those that have begun.
+    for (auto &group : groups) {
+        if (!group->alive || !group->planned) continue;
+        section_change += section_range(*group);
+    }
+    if (observer.side != 0 && std::fabs(section_at) > section_change + drift * length) return;
+    double terms[Blocks::ORDER + 1] = {section_at};
+    for (int i = first; i < last; i++)
+        if (group_of[i] < 0) terms[1] -= model.v;
+    for (auto &group : groups) {
+        int begin, stop;
+        if (!group->alive || !group->planned || !section_lanes(*group, begin, stop)) continue;
+        group->load_sum(polynomial, begin, stop);
+        polynomial.shift(group->start.until(from));
+        for (int k = 1; k <= Blocks::ORDER; k++) terms[k] += polynomial.coefficient[k];
+    }
+    polynomial.load(terms, 1, Blocks::ORDER);
+    observer.cross(polynomial, EventSearch<Blocks>::UNCERTAIN, from, 0.0, length, [&](double t) {
+        double rate = 0.0;
+        for (int k = Blocks::ORDER; k > 0; k--) rate = rate * t + k * terms[k];
+        return rate;
+    });
+}
+
+}  // namespace bk

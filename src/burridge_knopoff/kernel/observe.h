@@ -1,0 +1,211 @@
+// Observables taken from the motion while it passes, piece by piece, without storing it.
+#pragma once
+
+#include "distance.h"
+#include "events.h"
+#include "record.h"
+
+namespace bk {
+
+constexpr double NOTHING = -1e300;
+enum Stage { TRANSIENT, WINDOW };
+
+// What one run measures.
+//
+// edge : batch boundaries; the first is the end of the transient, the last the end of the run
+// distance_time : times at which J is sampled; trajectory_time : times at which positions and velocities are sampled
+// section_only : whether J is not averaged, nor extremes followed
+// section : block whose x_i is W, from 1 on; 0 if W is the sum of all x_i
+struct Observer {
+    const int blocks;
+    const double apart;  // U_N − U_1 in uniform sliding
+    const std::vector<double> edge, distance_time, trajectory_time;
+    const bool section_only;
+    const int section;
+    double begin = 0.0;
+    std::vector<double> batch_integral, batch_rest, distance_sample, trajectory_position, trajectory_velocity;
+    size_t batch = 0, next_distance = 0, next_trajectory = 0;
+    Record crossings;
+    int side = 0;
+    double highest_speed[2] = {NOTHING, NOTHING}, lowest_force[2] = {-NOTHING, -NOTHING};
+    Distance distance;
+
+    Observer(int blocks, double apart, std::vector<double> edges, std::vector<double> distance_times,
+             std::vector<double> trajectory_times, bool section_only, int section, double most_numbers)
+        : blocks(blocks), apart(apart), edge(std::move(edges)), distance_time(std::move(distance_times)),
+          trajectory_time(std::move(trajectory_times)), section_only(section_only), section(section),
+          batch_integral(edge.size() - 1), batch_rest(edge.size() - 1), distance_sample(distance_time.size(), NAN),
+          trajectory_position(trajectory_time.size() * blocks, NAN),
+          trajectory_velocity(trajectory_time.size() * blocks, NAN), crossings(2, most_numbers) {}
+
+    double transient() const { return edge.front(); }
+    double end() const { return edge.back(); }
+    bool in_section(int block) const { return section == 0 || block == section - 1; }
+
+    // Whether J is wanted in a piece, up to a time of it.
+    bool wants_distance(const Clock &start, double to) const {
+        return (!section_only && to > start.until(transient())) ||
+               (next_distance < distance_time.size() && start.until(distance_time[next_distance]) <= to);
+    }
+
+    // Add the integral of J between two times of a piece, whose distance is loaded, and take its samples.
+    void average(const Clock &start, double from, double to) {
+        if (!section_only && to > start.until(transient())) {
+            double begins = std::max(from, start.until(edge[batch]));
+            while (batch < batch_integral.size()) {
+                const double ends = start.until(edge[batch + 1]), stop = std::min(ends, to);
+                if (stop > begins) {
+                    // Compensated sums.
+                    const double term = distance.integral(begins, stop), total = batch_integral[batch] + term;
+                    batch_rest[batch] += (batch_integral[batch] - total) + term;
+                    batch_integral[batch] = total;
+                }
+                if (ends > to || batch == batch_integral.size() - 1) break;
+                batch++;
+                begins = std::max(from, ends);
+            }
+        }
+        for (; next_distance < distance_time.size(); next_distance++) {
+            const double t = start.until(distance_time[next_distance]);
+            if (t > to) break;
+            distance_sample[next_distance] = distance.value(t);
+        }
+    }
+
+    // Keep a state at the next time of the trajectory. value(i, t, x, u) sets those of block i
+    template <class Value>
+    void sample(Value &&value) {
+        for (int i = 0; i < blocks; i++)
+            value(i, trajectory_position[next_trajectory * blocks + i],
+                  trajectory_velocity[next_trajectory * blocks + i]);
+        next_trajectory++;
+    }
+
+    // Record where W changes its sign between two times of a piece, with W' and the direction.
+    //
+    // The side on which W lies is remembered from piece to piece, so that rounding at a seam can neither hide a
+    // crossing nor make one. w : W as a polynomial; crossing : when it changes its sign by `to`, if EventSearch has
+    // told rate(t) : W' = Σ (U_i' − v)
+    template <class Rate>
+    void cross(Polynomial &w, double crossing, const Clock &start, double from, double to, Rate &&rate) {
+        const double until_window = start.until(transient());
+        if (side != 0 && crossing != EventSearch<Blocks>::UNCERTAIN) {
+            if (crossing >= from && crossing >= 0.0) turn(crossing, start, rate);
+            return;
+        }
+        double begins = from;
+        if (from > 0.0) w.shift(from);
+        if (side == 0) {
+            const double ahead = std::max(0.0, until_window - from);
+            side = w.value(ahead) < 0.0 ? -1 : 1;
+            w.shift(ahead);
+            begins += ahead;
+        }
+        const double value = side * w.coefficient[0];
+        if (-SEAM < value && value < 0.0 && side * w.coefficient[1] > 0.0) {
+            w.coefficient[0] = 0.0;
+            w.deflate();
+        }
+        while (begins < to) {
+            if (side < 0) w.negate();
+            const double t = w.first_root(to - begins);
+            if (side < 0) w.negate();
+            if (t < 0.0) return;
+            begins += t;
+            // The root is divided out, and with it what rounding leaves of W there. If the sign after it is the one
+            // before it, W has touched 0 within rounding and not crossed.
+            w.shift(t);
+            w.coefficient[0] = 0.0;
+            w.deflate();
+            if (side * w.coefficient[0] >= 0.0) continue;
+            turn(begins, start, rate);
+        }
+    }
+
+    // Follow the highest slip speed and the lowest spring force on a stuck block, in transient and window: a piece from
+    // one time to another in which |U_i'| or θ_i − s_i, a polynomial that `load` gives, is at most `bound`.
+    template <class Load>
+    void extreme(bool slips, double threshold, double bound, const Clock &start, double from, double to, Load &&load) {
+        const double until_window = start.until(transient()), until_begin = start.until(begin);
+        if (to > until_window) extreme_in(WINDOW, slips, threshold, bound, std::max(from, until_window), to, load);
+        if (from < until_window)
+            extreme_in(TRANSIENT, slips, threshold, bound, std::max(from, until_begin), std::min(to, until_window),
+                       load);
+    }
+
+    bool is_new(Stage stage, bool slips, double threshold, double bound) const {
+        return slips ? bound > highest_speed[stage] : bound > threshold - lowest_force[stage];
+    }
+
+  private:
+    template <class Rate>
+    void turn(double t, const Clock &start, Rate &&rate) {
+        side = -side;
+        // A run that goes on repeats a piece of the one before, and has kept what it crossed there.
+        if (t <= start.until(begin)) return;
+        if (double *row = crossings.append(start.time + (start.rest + t))) {
+            row[0] = rate(t);
+            row[1] = side;
+        }
+    }
+
+    template <class Load>
+    void extreme_in(Stage stage, bool slips, double threshold, double bound, double from, double to, Load &&load) {
+        if (!is_new(stage, slips, threshold, bound)) return;
+        Polynomial &polynomial = load();
+        from = std::max(from, 0.0);
+        if (from > 0.0) polynomial.shift(from);
+        if (slips)
+            highest_speed[stage] = polynomial.maximum(to - from, highest_speed[stage]);
+        else
+            lowest_force[stage] = threshold - polynomial.maximum(to - from, threshold - lowest_force[stage]);
+    }
+};
+
+// The event sequence of a run.
+//
+// `earlier` has rows (time | block, kind) for events before `states_from`; `events` has rows (time | block, kind, x_1 …
+// x_N, U_1' … U_N') for those from `states_from` on. `stops_only` keeps of all these only the stops from `states_from`
+// on. More than `rate_limit` events in one time unit count as an accumulation.
+struct EventLog {
+    const double states_from;
+    const bool keep, stops_only;
+    const long long rate_limit;
+    Record earlier, events;
+    long long count = 0, unit_count = 0;
+    double unit_start = 0.0;
+    bool accumulating = false;
+
+    EventLog(int blocks, double states_from, bool keep, long long rate_limit, bool stops_only, double most_numbers)
+        : states_from(states_from), keep(keep), stops_only(stops_only), rate_limit(rate_limit),
+          earlier(2, most_numbers), events(2 + 2 * blocks, most_numbers) {}
+
+    void restart() {
+        earlier.clear();
+        events.clear();
+        count = unit_count = 0;
+        unit_start = 0.0;
+        accumulating = false;
+    }
+    bool full() const { return earlier.full || events.full; }
+
+    // Keep an event: block (from 0), kind 0 stop | 1 start. state(row) writes x and U'
+    template <class States>
+    void add(int block, int kind, double clock, States &&states) {
+        count++;
+        if (clock >= unit_start + 1.0) {
+            unit_start = clock;
+            unit_count = 0;
+        }
+        accumulating |= ++unit_count > rate_limit;
+        if (!keep || (stops_only && (kind != 0 || clock < states_from))) return;
+        const bool early = clock < states_from;
+        if (double *row = (early ? earlier : events).append(clock)) {
+            row[0] = block + 1;
+            row[1] = kind;
+            if (!early) states(row + 2);
+        }
+    }
+};
+
+}  // namespace bk

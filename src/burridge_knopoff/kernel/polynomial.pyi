@@ -1,6 +1,0 @@
-# Made by `python -m tests.kernel.stubs`.
-class Polynomial:
-    @property
-    def capacity(self) -> int: ...
-    degree: int
-    def __init__(self, capacity: int) -> None: ...

@@ -1,0 +1,327 @@
+#include "run.h"
+
+namespace bk {
+
+void Run::restart(double time) {
+    now = {time, 0.0};
+    observer.begin = time;
+    steps = 0;
+    since_event = 0.0;
+    log.restart();
+    queue = {};
+    spare.clear();
+    for (int k = 0; k < int(groups.size()); k++) {
+        groups[k]->version++;
+        groups[k]->alive = false;
+        spare.push_back(k);
+    }
+    std::fill(group_of.begin(), group_of.end(), -1);
+    observed = distance_from = section_from = now;
+    section_at = section_change = 0.0;
+    waiting_seen[TRANSIENT] = waiting_seen[WINDOW] = blind = false;
+}
+
+// Carry out what is due when a run begins.
+void Run::settle_first() {
+    settled = true;
+    std::vector<int> all(blocks);
+    for (int i = 0; i < blocks; i++) all[i] = i;
+    Group &group = build(all, now);
+    while (!log.accumulating && settle(group, now)) {}
+    if (local) blind = !part(group);
+    if (modes) modes->start(group.state);
+}
+
+void Run::state_of(int i, double &position, double &speed, double &direction) {
+    if (group_of[i] < 0) {
+        position = stuck_position(i, now);
+        speed = u[i];
+        direction = slip[i];
+        return;
+    }
+    Group &group = *groups[group_of[i]];
+    const int lane = lane_of[i];
+    position = group.state.position.lane(lane);
+    speed = group.state.velocity.lane(lane);
+    direction = group.state.slip.lane(lane);
+    const double t = group.start.until(now);
+    if (group.planned && t > 0.0) {
+        const int c = lane / LANES;
+        position = group.series.value(group.series.position, c, splat(t))[lane % LANES];
+        if (direction != 0.0) speed = group.series.value(group.series.velocity, c, splat(t))[lane % LANES];
+    }
+}
+
+// Where a block is at a time, if it sticks.
+double Run::stuck_position(int i, const Clock &at) const {
+    if (group_of[i] < 0) return x[i] - model.v * since[i].until(at);
+    const Group &group = *groups[group_of[i]];
+    return group.state.position.lane(lane_of[i]) - model.v * group.start.until(at);
+}
+
+// Make a group of connected blocks that have none, in ascending order, of the states that are kept for them.
+Group &Run::build(std::vector<int> members, const Clock &at) {
+    if (spare.empty()) {
+        spare.push_back(int(groups.size()));
+        groups.push_back(std::make_unique<Group>(model, polynomial));
+    }
+    const int number = spare.back(), n = int(members.size());
+    spare.pop_back();
+    // Memory that a group of many blocks has left behind is given back.
+    if (groups[number]->capacity() > 16 * size_t(n) + 1024) {
+        const uint64_t version = groups[number]->version;
+        groups[number] = std::make_unique<Group>(model, polynomial);
+        groups[number]->version = version;
+    }
+    Group &group = *groups[number];
+    // Along a ring, past its last block.
+    if (model.springs.ring && n < blocks && members[0] == 0 && members[n - 1] == blocks - 1) {
+        int gap = 0;
+        while (members[gap + 1] == members[gap] + 1) gap++;
+        std::rotate(members.begin(), members.begin() + gap + 1, members.end());
+    }
+    group.number = number;
+    group.alive = true;
+    group.layout.member = members;
+    group.start = at;
+    group.planned = group.event = false;
+    for (int k = 0; k < n; k++) {
+        group_of[members[k]] = number;
+        lane_of[members[k]] = k;
+    }
+    auto place = [&](int i) { return group_of[i] == number ? lane_of[i] : -1; };
+    group.layout.lay(model.springs, place);
+    if (n < blocks) group.layout.outside(model.springs, place, model.v, [&](int i) { return stuck_position(i, at); });
+    group.widen();
+    for (size_t k = n; k < size_t(group.layout.columns) * LANES; k++) group.state.place(k, 0.0, 0.0, true);
+    for (int k = 0; k < n; k++) {
+        const int i = members[k];
+        group.state.position.lane(k) = x[i];
+        group.state.velocity.lane(k) = u[i];
+        group.state.acceleration.lane(k) = acceleration[i];
+        group.state.age.lane(k) = age[i];
+        group.state.slip.lane(k) = slip[i];
+        group.state.touching.lane(k) = touching[i];
+    }
+    return group;
+}
+
+// Keep the states of a group's blocks for themselves, and dissolve it.
+void Run::retire(Group &group) {
+    for (int k = 0; k < group.size(); k++) {
+        const int i = group.layout.member[k];
+        x[i] = group.state.position.lane(k);
+        u[i] = group.state.velocity.lane(k);
+        acceleration[i] = group.state.acceleration.lane(k);
+        age[i] = group.state.age.lane(k);
+        slip[i] = group.state.slip.lane(k);
+        touching[i] = group.state.touching.lane(k);
+        since[i] = group.start;
+        group_of[i] = -1;
+    }
+    group.version++;
+    group.alive = group.planned = false;
+    spare.push_back(group.number);
+}
+
+bool Run::plan(Group &group) {
+    steps++;
+    work += group.size();
+    const bool seen = observing && !local;
+    return group.plan(seen ? observer.side : 0, first, last);
+}
+
+// Let the block in a lane stop or start now, and keep the event.
+void Run::change(Group &group, int lane, const Clock &at) {
+    const int i = group.layout.member[lane];
+    if (exponents.tangent.vectors > 0) exponents.tangent.change(group.state, i);
+    const int kind = group.state.slip.lane(lane) == 0.0;
+    group.state.transition(lane / LANES, from_bits(1 << lane % LANES));
+    log.add(i, kind, at.time, [&](double *row) {
+        double direction;
+        const Clock before = now;
+        now = at;
+        for (int j = 0; j < blocks; j++) state_of(j, row[j], row[blocks + j], direction);
+        now = before;
+    });
+}
+
+// Carry out every change that is due at this instant; tell whether there was one.
+bool Run::settle(Group &group, const Clock &at) {
+    due.assign(group.layout.columns, 0);
+    bool changing = false;
+    group.measure();
+    // Who changes is decided before anyone does: then no order of the blocks is preferred.
+    for (int c = 0; c < group.layout.columns; c++) changing |= (due[c] = bits(group.pending(c))) != 0;
+    for (int c = 0; changing && c < group.layout.columns; c++)
+        for (int lane = 0; due[c] >> lane; lane++)
+            if (due[c] >> lane & 1) change(group, c * LANES + lane, at);
+    return changing;
+}
+
+// Carry out the event that ends a group's piece.
+void Run::carry_out(Group &group, const Clock &at) {
+    due.assign(group.layout.columns, 0);
+    for (int c = 0; c < group.layout.columns; c++) due[c] = bits(group.search.due(group.series, c));
+    for (int c = 0; c < group.layout.columns; c++)
+        for (int lane = 0; due[c] >> lane; lane++)
+            if (due[c] >> lane & 1) change(group, c * LANES + lane, at);
+}
+
+// Keep the pieces that the end of a run cuts off.
+void Run::remember() {
+    marked.table.resize(size_t(blocks) * COLUMNS);
+    marked.group = group_of;
+    marked.since_event = since_event;
+    marked.side = observer.side;
+    if (modes) {
+        marked.origin = modes->origin;
+        marked.origin_velocity = modes->origin_velocity;
+    }
+    for (int i = 0; i < blocks; i++) {
+        double *row = &marked.table[size_t(i) * COLUMNS];
+        Clock at = since[i];
+        row[8] = begins[i].time, row[9] = begins[i].rest;
+        row[0] = x[i], row[1] = u[i], row[2] = acceleration[i], row[3] = age[i], row[4] = slip[i], row[5] = touching[i];
+        if (group_of[i] >= 0) {
+            Group &group = *groups[group_of[i]];
+            const int lane = lane_of[i];
+            const Vectors *rows[] = {&group.state.position, &group.state.velocity, &group.state.acceleration,
+                                     &group.state.age,      &group.state.slip,     &group.state.touching};
+            for (int k = 0; k < 6; k++) row[k] = rows[k]->lane(lane);
+            at = group.start;
+            row[8] = group.layout.sliding_force.lane(lane), row[9] = group.layout.drift.lane(lane);
+            if (!local) marked.side = group.side;
+        }
+        row[6] = at.time, row[7] = at.rest;
+    }
+}
+
+// Begin the closed form where the run that goes on had its last event.
+void Run::start_modes(Group &group, const Mark &mark) {
+    const Vectors position = group.state.position, velocity = group.state.velocity;
+    for (int i = 0; i < blocks; i++) {
+        group.state.position.lane(i) = mark.origin[i];
+        group.state.velocity.lane(i) = mark.origin_velocity[i];
+    }
+    modes->start(group.state);
+    group.state.position = position;
+    group.state.velocity = velocity;
+}
+
+// Why the run has to end here, COMPLETED if it has not.
+int Run::blocked(int done) {
+    work += done;
+    if (work >= WORK_UNTIL_CHECK) {
+        check_signals();
+        work = 0;
+    }
+    if (log.accumulating) return ACCUMULATING_EVENTS;
+    if (log.full() || observer.crossings.full) return FULL;
+    return steps >= step_limit ? STEP_LIMIT : COMPLETED;
+}
+
+int Run::run_whole() {
+    Group &group = *groups[group_of[0]];
+    for (;;) {
+        if (const int reason = blocked(blocks * exponents.tangent.vectors)) return reason;
+        if (!group.planned && !plan(group)) {
+            now = group.start;
+            return DIVERGED;
+        }
+        const double remaining = group.start.until(end), length = std::min(group.length, remaining);
+        const bool completed = group.length >= remaining, event = group.event && group.length <= remaining;
+        const bool due = event || completed;
+        // The end of the run has no part in the search: it must not move an event by a bit.
+        if (completed) remember();
+        if (observing) observe(group, length);
+        if (exponents.tangent.vectors > 0) {
+            exponents.begin_within(group.state, group.start.time, length);
+            if (exponents.running) follow(group, length);
+        }
+        now = group.start.after(length);
+        group.observed = length;
+        since_event += length;
+        if (group.length > remaining && !exponents.running) {
+            since_event -= length;
+            return COMPLETED;
+        }
+        bool halting = false;
+        if (event) {
+            halting = halting_block >= 0 && group.state.slip.lane(halting_block) != 0.0;
+            advance(group, length);
+            carry_out(group, now);
+            while (!log.accumulating && settle(group, now)) {}
+            since_event = 0.0;
+            if (modes) modes->start(group.state);
+            if (completed) remember();
+        } else {
+            advance(group, length);
+        }
+        // At events, so that all solvers look after them at the same times.
+        if (exponents.running && (due || since_event >= LONGEST_FOLLOW))
+            exponents.follow(group.state, now.time, completed);
+        if (completed) return COMPLETED;
+        if (halting && group.state.slip.lane(halting_block) == 0.0) return HALTED;
+    }
+}
+
+// Move the state on along the piece; in closed form, from the last event.
+void Run::advance(Group &group, double length) {
+    group.advance(length);
+    if (modes) modes->advance(group.state, since_event);
+}
+
+// Take everything from a piece, up to a time of it.
+void Run::observe(Group &group, double to) {
+    const double from = group.observed;
+    const Clock &start = group.start;
+    const bool in_window = to > start.until(observer.transient());
+    if (observer.wants_distance(start, to)) {
+        Distance &d = observer.distance;
+        const double *position = &group.series.x(0)[0][0], *speed = &group.series.u(0)[0][0];
+        const size_t stride = size_t(group.series.columns) * LANES;
+        for (int k = 0; k <= Blocks::ORDER; k++) {
+            d.position[k] = position[k * stride + blocks - 1] - position[k * stride];
+            d.velocity[k] = speed[k * stride + blocks - 1] - speed[k * stride];
+        }
+        d.position[0] += observer.apart;
+        d.begin(Blocks::ORDER);
+        observer.average(start, from, to);
+    }
+    if (in_window) {
+        const double crossing = group.section < 0 ? EventSearch<Blocks>::UNCERTAIN
+                                                  : group.search.crossing_within(group.series, to, group.section);
+        if (observer.side == 0 || crossing != EventSearch<Blocks>::NONE) {
+            if (observer.side == 0 || crossing == EventSearch<Blocks>::UNCERTAIN)
+                group.load_sum(polynomial, first, last);
+            observer.cross(polynomial, crossing, start, from, to,
+                           [&](double t) { return group.sum_rate(first, last, t); });
+        }
+    }
+    if (!observer.section_only) group.extremes(observer, polynomial, from, to);
+    while (observer.next_trajectory < observer.trajectory_time.size()) {
+        const double t = start.until(observer.trajectory_time[observer.next_trajectory]);
+        if (t > to) break;
+        observer.sample([&](int i, double &position, double &speed) {
+            position = group.series.value(group.series.position, i / LANES, splat(t))[i % LANES];
+            speed = group.series.value(group.series.velocity, i / LANES, splat(t))[i % LANES];
+        });
+    }
+}
+
+// Carry the perturbations along a piece, in strides after which they can be kept apart.
+void Run::follow(Group &group, double length) {
+    exponents.tangent.forget_stops();
+    // However long a slow driver takes, nothing changes while all blocks stick.
+    if (exponents.stuck(group.state) == blocks) return;
+    const int parts = exponents.tangent.load(group.state, group.series, length);
+    for (int k = 1; k <= parts; k++) {
+        exponents.tangent.follow(group.layout);
+        if (k == parts) break;
+        exponents.tangent.move_on();
+        exponents.follow(group.state, group.start.time + k * (length / parts), false);
+    }
+}
+
+}  // namespace bk

@@ -1,0 +1,215 @@
+// One run from event to event: smooth motion as Taylor series, each event where it truly lies.
+//
+// A chain of few blocks is one group with one clock. In a long chain, where few blocks slip at a time, each connected
+// set of slipping blocks and their stuck neighbours is a group with its own series, clock and next event; a stuck block
+// whose neighbours are stuck starts at a time known in closed form. Groups merge at a start beside them and split at a
+// stop. The events are the same either way.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <queue>
+
+#include "exponents.h"
+#include "group.h"
+#include "modes.h"
+
+namespace bk {
+
+// What repeats the last pieces of a run that ended, so that one that goes on has the same pieces as if it had not.
+struct Mark {
+    // For each block x, U', U'', age, slip, touching, a clock, that of its group, and what pulls on it from outside the
+    // group; without a group when it starts. The group, −1 for none.
+    std::vector<double> table;
+    std::vector<int> group;
+    // Positions and velocities at the last event, for the closed form.
+    std::vector<double> origin, origin_velocity;
+    double since_event = 0.0;
+    int side = 0;
+};
+
+class Run {
+  public:
+    static constexpr int COLUMNS = 10;  // of the table of a mark
+
+    // Number of blocks from which on groups are faster than one.
+    static constexpr int MANY = 24;
+    // Longest time over which perturbations are followed at once: without events, too, they have to be kept apart.
+    static constexpr double LONGEST_FOLLOW = 4.0;
+
+    const Model &model;
+    EventLog &log;
+    Observer &observer;
+    Exponents &exponents;
+    const bool observing, local;
+    const long long step_limit;
+    int halting_block = -1;
+    double end;
+    Clock now;
+    long long steps = 0;
+    std::function<void()> check_signals = [] {};
+    // The closed form between events, if that is wanted.
+    std::unique_ptr<Modes> modes;
+
+    // local : 1 in groups, 0 as one, −1 whatever is faster
+    Run(const Model &model, EventLog &log, Observer &observer, Exponents &exponents, bool observing, int local,
+        long long step_limit)
+        : model(model), log(log), observer(observer), exponents(exponents), observing(observing),
+          local(exponents.tangent.vectors == 0 && (local < 0 ? model.springs.blocks >= MANY : local > 0)),
+          step_limit(step_limit), end(observer.end()), blocks(model.springs.blocks),
+          first(observer.section ? observer.section - 1 : 0),
+          last(observer.section ? observer.section : model.springs.blocks), x(blocks), u(blocks), acceleration(blocks),
+          age(blocks), slip(blocks), touching(blocks), since(blocks), group_of(blocks, -1), lane_of(blocks, -1),
+          version(blocks), begins(blocks) {}
+
+    Run(const Run &) = delete;
+
+    // Begin at a time from positions x_i, velocities U_i' and which blocks are stuck.
+    void begin(const double *position, const double *speed, const bool *stuck, double time) {
+        for (int i = 0; i < blocks; i++) {
+            x[i] = position[i];
+            u[i] = stuck[i] ? 0.0 : speed[i];
+            slip[i] = stuck[i] ? 0.0 : speed[i] < 0.0 ? -1.0 : 1.0;
+            acceleration[i] = touching[i] = 0.0;
+            age[i] = LONG;
+            since[i] = {time, 0.0};
+        }
+        restart(time);
+        settled = false;
+    }
+
+    // Go on at a time from the mark of a run that ended then.
+    void resume(const Mark &mark, double time) {
+        blind = false;
+        for (int i = 0; i < blocks; i++) {
+            const double *row = row_of(mark, i);
+            x[i] = row[0];
+            u[i] = row[1];
+            acceleration[i] = row[2];
+            age[i] = row[3];
+            slip[i] = row[4];
+            touching[i] = row[5];
+            since[i] = {row[6], row[7]};
+        }
+        restart(time);
+        since_event = mark.since_event;
+        // A section that is observed from now on is crossed from the side that the run was on.
+        if (observer.transient() <= time) observer.side = mark.side;
+        settled = true;
+        std::vector<std::vector<int>> members;
+        for (int i = 0; i < blocks; i++) {
+            if (mark.group[i] < 0) {
+                begins[i] = {row_of(mark, i)[8], row_of(mark, i)[9]};
+                if (begins[i].time < NEVER) queue.push({begins[i].time, i, false, version[i]});
+                continue;
+            }
+            if (mark.group[i] >= int(members.size())) members.resize(mark.group[i] + 1);
+            members[mark.group[i]].push_back(i);
+        }
+        for (auto &own : members) {
+            if (own.empty()) continue;
+            Group &group = build(own, since[own[0]]);
+            // To the bit, whatever has become of the blocks around it since.
+            for (int k = 0; k < group.size(); k++) {
+                const double *row = row_of(mark, group.layout.member[k]);
+                group.layout.sliding_force.lane(k) = row[8];
+                group.layout.drift.lane(k) = row[9];
+            }
+            if (local) blind |= !schedule(group);
+            if (modes) start_modes(group, mark);
+        }
+        marked = mark;
+    }
+
+    const Mark &mark() const { return marked; }
+
+    int run() {
+        if (!settled) settle_first();
+        return local ? run_groups() : run_whole();
+    }
+
+    // Positions, velocities and slip directions now, or at the end of a run that has completed.
+    void state(double *position, double *speed, double *direction) {
+        for (int i = 0; i < blocks; i++) state_of(i, position[i], speed[i], direction[i]);
+    }
+
+  private:
+    const int blocks, first, last;  // W is the sum over the blocks first … last − 1
+    bool settled = false;
+    long long work = 0;  // since the last look at signals
+    double since_event = 0.0;
+    Mark marked;
+    Polynomial polynomial;
+    // Of blocks without a group, at the time `since`; of others when their group began.
+    std::vector<double> x, u, acceleration, age, slip, touching;
+    std::vector<Clock> since;
+    std::vector<int> group_of, lane_of;
+    std::vector<uint64_t> version;
+    std::vector<std::unique_ptr<Group>> groups;
+    std::vector<int> spare, due;
+
+    // What comes next: the start of a block without a group, or the end of a group's piece.
+    struct Next {
+        double time;
+        int number;
+        bool is_group;
+        uint64_t version;
+        bool operator>(const Next &other) const {
+            return time > other.time || (time == other.time && number > other.number);
+        }
+    };
+    std::priority_queue<Next, std::vector<Next>, std::greater<Next>> queue;
+
+    static const double *row_of(const Mark &mark, int i) { return &mark.table[size_t(i) * COLUMNS]; }
+
+    // Both ways, in run.cpp.
+    void restart(double time);
+    void settle_first();
+    void state_of(int i, double &position, double &speed, double &direction);
+    double stuck_position(int i, const Clock &at) const;
+    Group &build(std::vector<int> members, const Clock &at);
+    void retire(Group &group);
+    bool plan(Group &group);
+    void change(Group &group, int lane, const Clock &at);
+    bool settle(Group &group, const Clock &at);
+    void carry_out(Group &group, const Clock &at);
+    void remember();
+    void start_modes(Group &group, const Mark &mark);
+    int blocked(int done);
+
+    // One group.
+    int run_whole();
+    void advance(Group &group, double length);
+    void observe(Group &group, double to);
+    void follow(Group &group, double length);
+
+    // Many groups, in groups.cpp.
+    int run_groups();
+    void wait(int i);
+    bool schedule(Group &group);
+    bool process(const Next &next);
+    void gather(int i, std::vector<int> &members);
+    Group &collect(std::vector<int> &members);
+    Group *complete(Group *group);
+    bool part(Group &group);
+    void end_piece(Group &group, double to);
+    void observe_all(Clock at);
+    void observe_distance(const Clock &at);
+    void observe_section(const Clock &at);
+    void see_waiting(int i, Stage stage, const Clock &at);
+    double section_value(const Clock &at);
+    Polynomial motion_of(int i, bool speed, const Clock &at);
+    bool section_lanes(const Group &group, int &begin, int &stop) const;
+    double section_range(const Group &group);
+    bool holds_end(const Group &group) const;
+    double direction_of(int i) const {
+        return group_of[i] < 0 ? slip[i] : groups[group_of[i]]->state.slip.lane(lane_of[i]);
+    }
+
+    std::vector<Clock> begins;  // when blocks that wait start
+    Clock observed, distance_from, section_from;
+    double section_at = 0.0, section_change = 0.0;
+    bool waiting_seen[2] = {false, false}, blind = false;
+};
+
+}  // namespace bk

@@ -1,0 +1,270 @@
+// Taylor series of the motion between two events, with a step that leaves no remainder.
+//
+// Coefficients follow from x' = U' − v and m U'' = s − θ Φ by recursion, those of Φ from the operations of the law. The
+// step comes from the last two coefficients (Jorba and Zou): the last terms that are kept stay below TRUNCATION, and
+// those that are left out are smaller still. For the linearized law that is safe by a bound: all derivatives of the
+// motion obey the same linear equation, whose energy, with pairs of successive derivatives of all blocks in it, grows
+// at most like exp(2aτ) within a step.
+//
+// Reference: A. Jorba and M. Zou, "A software package for the numerical integration of ODEs by means of high-order
+// Taylor methods", Exp. Math. 14 (2005) 99-117.
+#pragma once
+
+#include <utility>
+
+#include "polynomial.h"
+#include "state.h"
+
+namespace bk {
+
+// Binary digits below 1 at which terms are left out.
+constexpr int TRUNCATION = 53;
+
+// Longest piece, while nothing slips: high powers of it are still numbers.
+constexpr double LONGEST = 1e9;
+
+// Roots of 2, cut to 30 bits: C libraries differ in the last one.
+struct RootsOfTwo {
+    double root[MOST_TERMS + 1][MOST_TERMS + 1] = {};
+    RootsOfTwo() {
+        for (int n = 1; n <= MOST_TERMS; n++)
+            for (int k = 0; k < n; k++) root[n][k] = std::floor(std::exp2(30.0 + double(k) / n)) / 1073741824.0;
+    }
+};
+inline const RootsOfTwo ROOTS_OF_TWO;
+
+inline constexpr auto INVERSE = [] {
+    struct {
+        double at[MOST_TERMS + 2];
+        constexpr double operator[](int n) const { return at[n]; }
+    } table{};
+    for (int n = 1; n < MOST_TERMS + 2; n++) table.at[n] = 1.0 / n;
+    return table;
+}();
+
+// About the time at which this power of it, with its coefficient, is as small as TRUNCATION says.
+inline double step_length(double coefficient, int power) {
+    if (coefficient < 1e-300) return LONGEST;
+    const int digits = -TRUNCATION - (exponent(coefficient) - 1022);
+    const int whole = digits >= 0 ? digits / power : -((power - 1 - digits) / power);
+    return scaled_by_two(ROOTS_OF_TWO.root[power][digits - whole * power], whole);
+}
+
+// One piece of the motion: positions x_i, velocities U_i' and what decides about events, g_i, as polynomials of the
+// time since its start.
+//
+// Coefficient k of column c is in row k · width + c. g_i is the speed |U_i'| of a slipping block and θ_i − s_i of a
+// stuck one: where it falls below 0 the block changes. Rows of g may have a column more than the others, for the
+// section.
+template <class L>
+struct Series {
+    static constexpr int ORDER = L::ORDER;
+    L &layout;
+    int columns = 0, width = 0;
+    Vectors position, velocity, gap;
+    Vectors slipping, stuck;  // 1 where a block slips, or sticks
+    FrictionSeries law;
+
+    Series(const Model &model, L &layout) : layout(layout), law(model.law, layout.columns, ORDER), model(model) {}
+
+    // Fill the series with the motion that starts from the state; return the time for which it is valid: 0 where a
+    // state has no motion. extra : columns of g beyond those of the blocks
+    vec expand(const State<L> &state, int extra) {
+        begin(state, extra);
+        if (model.law.linear)
+            rows<LINEAR_LAW>(state);
+        else if (model.law.hyperbolic)
+            rows<HYPERBOLIC_LAW>(state);
+        else
+            rows<ANY_LAW>(state);
+        vec reach = step();
+        if (model.law.exponential) {
+            reach = law.shorten(reach, columns);
+            if (L::ONE_CLOCK) reach = L::least_of_clock(reach);
+        }
+        return reach;
+    }
+
+    BK_INLINE vec *x(int n) { return position.at(size_t(n) * columns); }
+    BK_INLINE vec *u(int n) { return velocity.at(size_t(n) * columns); }
+    BK_INLINE vec *g(int n) { return gap.at(size_t(n) * width); }
+
+    // Positions or velocities of a column at t: even and odd powers apart, as each sum waits for the last.
+    BK_INLINE vec value(const Vectors &series, int c, vec t) const {
+        const vec *term = series.at(c), square = t * t;
+        vec even = term[size_t(ORDER) * columns], odd = term[size_t(ORDER - 1) * columns];
+        for (int k = ORDER - 2; k > 0; k -= 2) {
+            even = even * square + term[size_t(k) * columns];
+            odd = odd * square + term[size_t(k - 1) * columns];
+        }
+        return (even * square + t * odd) + term[0];
+    }
+
+    // Move the state on by t where `moved` says so.
+    void move(State<L> &state, vec t, mask moved) {
+        const vec zero{};
+        for (int c = 0; c < columns; c++) {
+            state.position[c] = select(moved, value(position, c, t), state.position[c]);
+            state.velocity[c] = select(moved, value(velocity, c, t), state.velocity[c]);
+            state.touching[c] = select(moved & (t > zero), zero, state.touching[c]);
+            state.age[c] = select(moved & (slipping[c] > zero), state.age[c] + t, state.age[c]);
+            const mask young = moved & (state.age[c] < YOUNG);
+            if (!any(young)) continue;
+            vec slope{};
+            for (int k = ORDER; k > 0; k--) slope = slope * t + double(k) * u(k)[c];
+            state.acceleration[c] = select(young, slope, state.acceleration[c]);
+        }
+    }
+
+  private:
+    enum Kind { LINEAR_LAW, HYPERBOLIC_LAW, ANY_LAW };
+    const Model &model;
+    Vectors signed_threshold, damping, pressed, force;
+    // What the rows of a column need, and the last of them.
+    struct Column {
+        vec slip, stuck, moving, damping, pressed, diagonal, line_slope, inverse_slope, start, force, speed;
+        vec *line, *inverse;
+    };
+    std::vector<Column> column;
+
+    // Fill the rows 0 and 1 that follow from the state.
+    void begin(const State<L> &state, int extra) {
+        columns = layout.columns;
+        width = columns + extra;
+        const size_t rows = ORDER + 1;
+        position.reserve(rows * columns);
+        velocity.reserve(rows * columns);
+        gap.reserve(rows * width);
+        for (Vectors *row : {&slipping, &stuck, &signed_threshold, &damping, &pressed, &force}) row->reserve(columns);
+        law.widen(columns);
+        for (int c = 0; c < columns; c++) {
+            x(0)[c] = state.position[c];
+            u(0)[c] = state.velocity[c];
+            x(1)[c] = state.velocity[c] - model.v;
+        }
+        for (int c = 0; c < columns; c++) {
+            const vec slip = state.slip[c], own = slip * u(0)[c], s = state.force(c);
+            slipping[c] = slip * slip;
+            stuck[c] = 1.0 - slipping[c];
+            // Signed by the direction of slip, as friction is; per mass, as all that accelerates.
+            signed_threshold[c] = (slip * layout.threshold[c]) * layout.inverse_mass[c];
+            vec friction, slope;
+            if (model.law.linear) {
+                friction = model.law.at_rest - model.law.rate * own;
+                slope = splat(-model.law.rate);
+            } else {
+                law.start(c, own);
+                friction = law.friction(c, 0);
+                slope = law.slopes(c)[model.law.value];
+            }
+            damping[c] = signed_threshold[c] * (slope * slip);
+            if (model.law.hyperbolic) {
+                const double scale = model.law.value == 3 ? model.law.tape[2].alpha : 1.0;
+                pressed[c] = -(signed_threshold[c] * (scale * law.row(2, c)[0]));
+            }
+            vec acceleration = slipping[c] * (s * layout.inverse_mass[c]) - signed_threshold[c] * friction;
+            const mask young = (slip != vec{}) & ((state.touching[c] > 0.0) | (state.age[c] < YOUNG));
+            if (any(young)) acceleration = select(young, state.slip_acceleration(c, s), acceleration);
+            u(1)[c] = acceleration;
+            g(0)[c] = slip * u(0)[c] + stuck[c] * (layout.threshold[c] - s);
+            force[c] = state.force_rate(x(1), c);
+        }
+    }
+
+    // Fill row n of g, and row n + 1 of positions and velocities, from the rows before: n = 1 … ORDER − 1. Friction in
+    // row n is its slope at the start times U'_n, plus what follows from the rows before: that is ready before U'_n is.
+    template <Kind KIND>
+    void rows(const State<L> &state) {
+        constexpr int FEW = L::ONE_CLOCK ? 1 : 3;
+        columns == FEW ? fill<KIND, FEW>(state) : fill<KIND, 0>(state);
+    }
+
+    // COLUMNS : their number, 0 for any; one that is known lets the compiler keep all that a row needs in registers.
+    template <Kind KIND, int COLUMNS>
+    void fill(const State<L> &state) {
+        const int count = COLUMNS ? COLUMNS : columns;
+        Column known[COLUMNS ? COLUMNS : 1];
+        if (!COLUMNS && int(column.size()) < count) column.resize(count);
+        Column *own = COLUMNS ? known : column.data();
+        for (int c = 0; c < count; c++) {
+            Column &at = own[c];
+            at.slip = state.slip[c];
+            at.stuck = stuck[c];
+            at.moving = slipping[c] * layout.inverse_mass[c];
+            at.damping = damping[c];
+            at.diagonal = layout.diagonal[c];
+            at.force = force[c];
+            at.speed = u(1)[c];
+            if constexpr (KIND == HYPERBOLIC_LAW) {
+                at.line = law.row(1, c);
+                at.inverse = law.row(2, c);
+                at.line_slope = law.slopes(c)[1] * at.slip;
+                at.inverse_slope = law.slopes(c)[2] * at.slip;
+                at.start = at.inverse[0];
+            }
+            at.pressed = KIND == HYPERBOLIC_LAW ? pressed[c] : signed_threshold[c];
+        }
+        vec *position = x(2), *velocity = u(2), *g = this->g(1);
+        const size_t step = COLUMNS ? COLUMNS : columns, gap_step = width;
+        auto row = [&](auto n) __attribute__((always_inline)) {
+            const double factor = INVERSE[n + 1];
+            for (int c = 0; c < count; c++) {
+                Column &at = own[c];
+                const vec speed = at.speed;
+                g[c] = at.slip * speed - at.stuck * at.force;
+                vec next = (at.moving * factor) * at.force;
+                if constexpr (KIND == HYPERBOLIC_LAW) {
+                    const vec total = inner(at.line, at.inverse, n);
+                    next -= (at.pressed * factor) * total;
+                    at.line[n] = at.line_slope * speed;
+                    at.inverse[n] = at.inverse_slope * speed - at.start * total;
+                } else if constexpr (KIND == ANY_LAW) {
+                    next -= (at.pressed * factor) * law.prepare(c, n);
+                    law.settle(c, n, at.slip * speed);
+                }
+                at.speed = velocity[c] = next - (at.damping * factor) * speed;
+                position[c] = speed * factor;
+            }
+            for (int c = 0; c < count; c++) own[c].force = layout.pull(position, c) - own[c].diagonal * position[c];
+            position += step;
+            velocity += step;
+            g += gap_step;
+        };
+        if constexpr (COLUMNS == 1 && KIND != ANY_LAW) {
+            // Every row for itself: a processor need not guess where its sums end.
+            [&]<int... K>(std::integer_sequence<int, K...>) {
+                (row(std::integral_constant<int, K + 1>{}), ...);
+            }(std::make_integer_sequence<int, ORDER - 1>{});
+        } else {
+            for (int n = 1; n < ORDER; n++) row(n);
+        }
+        for (int c = 0; c < count; c++) g[c] = own[c].slip * own[c].speed - own[c].stuck * own[c].force;
+    }
+
+    // The time over which the last terms that are kept stay below TRUNCATION; LONGEST if nothing slips. 0 where a term
+    // is no number: the larger of that and a number may be the number, but no sum is one.
+    vec step() {
+        vec last{}, previous{}, total{};
+        for (int c = 0; c < columns; c++) {
+            const vec one = magnitude(u(ORDER)[c]), other = magnitude(u(ORDER - 1)[c]);
+            last = largest(last, one);
+            previous = largest(previous, other);
+            total += one + other;
+        }
+        if (L::ONE_CLOCK) {
+            for (int lane = 0; lane < LANES; lane++)
+                if (!(total[lane] < 1e300)) return vec{};
+            return splat(length(largest_lane(last), largest_lane(previous)));
+        }
+        vec reach;
+        for (int lane = 0; lane < LANES; lane++)
+            reach[lane] = total[lane] < 1e300 ? length(last[lane], previous[lane]) : 0.0;
+        return reach;
+    }
+
+    static double length(double last, double previous) {
+        return std::min({step_length(last, ORDER), step_length(previous, ORDER - 1), LONGEST});
+    }
+};
+
+}  // namespace bk

@@ -1,0 +1,234 @@
+// Tangent dynamics: how small perturbations δx_i, δU_i' of a run grow, through stops and starts.
+//
+// Between events a perturbation obeys the linearized equations of the slipping blocks,
+//
+//     δx' = δU',    m_i δU_i'' = −(K δx)_i − θ_i (dΦ/dU') δU_i',    stuck blocks: δU_i' = 0.
+//
+// At a stop of block i, whose acceleration is A before and 0 after it, the saltation matrix 1 + (f⁺ − f⁻)nᵀ/(nᵀf⁻) with
+// n along U_i' sets δU_i' to 0 and leaves all else. At a start n is along the spring force s_i and f⁺ − f⁻ is the
+// acceleration A⁺ of a block that starts: δU_i' becomes A⁺ δs_i/s_i'. Where friction does not drop at the start, A⁺ = 0
+// and the matrix is the identity. A block that turns round at once, beyond the threshold of a symmetric contact, has A⁺
+// after the stop and its perturbation is multiplied by A⁺/A.
+//
+// Reference: R. I. Leine and H. Nijmeijer, "Dynamics and Bifurcations of Non-Smooth Mechanical Systems" (Springer
+// 2004).
+#pragma once
+
+#include "series.h"
+
+namespace bk {
+
+class Tangent {
+  public:
+    const int blocks, vectors, columns;
+    // Vector v has the lanes of its blocks in columns v · columns …
+    Vectors position, velocity;
+
+    Tangent(int blocks, int vectors)
+        : blocks(blocks), vectors(vectors), columns((blocks + LANES - 1) / LANES),
+          position(size_t(vectors + 1) * columns), velocity(size_t(vectors + 1) * columns),
+          lost(size_t(vectors) * blocks), deceleration(blocks), moving(columns), pull_scale(columns),
+          rates(size_t(columns) * LENGTH), speeds(size_t(columns) * LENGTH * TOGETHER),
+          rows(size_t(columns) * TOGETHER) {}
+
+    double *x(int v) { return &position.lane(size_t(v) * columns * LANES); }
+    double *u(int v) { return &velocity.lane(size_t(v) * columns * LANES); }
+
+    // Forget what stops have taken away, as time moves on or begins again.
+    void forget_stops() { std::fill(deceleration.begin(), deceleration.end(), 0.0); }
+
+    // Carry the perturbations through a stop or start that this block is about to make.
+    void change(const State<Blocks> &state, int i) {
+        const int c = i / LANES, lane = i % LANES;
+        const double force = state.force(c)[lane];
+        if (state.slip.lane(i) != 0.0) {
+            deceleration[i] = state.slip_acceleration(c, state.force(c))[lane];
+            for (int v = 0; v < vectors; v++) {
+                lost[size_t(v) * blocks + i] = u(v)[i];
+                u(v)[i] = 0.0;
+            }
+            return;
+        }
+        const double sign = force > 0.0 ? 1.0 : -1.0, mass = state.model.springs.mass[i];
+        if (deceleration[i] != 0.0) {
+            const double factor =
+                (force - sign * (state.model.springs.threshold[i] * state.model.law.at_rest)) / mass / deceleration[i];
+            for (int v = 0; v < vectors; v++) u(v)[i] = factor * lost[size_t(v) * blocks + i];
+        } else if (state.model.drops() && state.at_threshold(c, state.force(c))[lane]) {
+            Vectors relative(columns);
+            for (int k = 0; k < columns; k++) relative[k] = state.velocity[k] - state.model.v;
+            const double factor = sign * state.start_acceleration(c)[lane] / state.force_rate(relative.at(), c)[lane];
+            for (int v = 0; v < vectors; v++) u(v)[i] = factor * state.model.springs.pull(x(v), i);
+        }
+    }
+
+    // Expand −θ dΦ/dU' / m along a piece of the motion; return into how many parts to divide its length. Coefficient k
+    // is multiplied by t^(k + 1), with t the length of a part, and is 0 where a block sticks.
+    int load(const State<Blocks> &state, Series<Blocks> &series, double length) {
+        const Model &model = state.model;
+        const Blocks &layout = state.layout;
+        const double pace = model.springs.fastest + steepest(model);
+        const int parts = 1 + int(pace * length / STRIDE);
+        part = parts > 1 ? length / parts : length;
+        const double x = model.law.linear ? pace * part : SLOWER * pace * part;
+        rate_terms = 1;
+        degree = LENGTH - 1;
+        while (degree > 3 && x <= enough(degree - 2)) degree -= 2;
+        for (int c = 0; c < columns; c++) {
+            moving[c] = series.slipping[c];
+            pull_scale[c] = part * (moving[c] * layout.inverse_mass[c]);
+            if (model.law.linear) rates[size_t(c) * LENGTH] = pull_scale[c] * (layout.threshold[c] * model.law.rate);
+        }
+        if (model.law.linear) return parts;
+        // Fewer rates than terms: one that is left out does harm by itself only, but in a term all rates add up.
+        rate_terms = degree - degree / 5;
+        if (parts > 1) {
+            degree = LENGTH - 1;
+            rate_terms = Blocks::ORDER;
+        }
+        for (int first = 0;;) {
+            for (int c = 0; c < columns; c++) expand_rates(state, series, c, first);
+            if (rate_terms == Blocks::ORDER || is_enough()) return parts;
+            first = rate_terms;
+            rate_terms = std::min(first + 2, int(Blocks::ORDER));
+            degree = std::min(degree + 2, LENGTH - 1);
+        }
+    }
+
+    // Take the rates as series about the end of a part (Horner's scheme, repeated).
+    void move_on() {
+        for (int c = 0; c < columns; c++) {
+            vec *rate = rates.at(size_t(c) * LENGTH);
+            for (int n = 0; n < rate_terms - 1; n++)
+                for (int j = rate_terms - 2; j >= n; j--) rate[j] += rate[j + 1];
+        }
+    }
+
+    // Propagate over one part of a piece with what `load` has made ready for it.
+    void follow(const Blocks &layout) {
+        int v = 0;
+        // Several side by side, as each waits for itself.
+        for (; v + 3 <= vectors; v += 3) columns == 1 ? propagate<3, 1>(layout, v) : propagate<3, 0>(layout, v);
+        if (v + 2 <= vectors) {
+            columns == 1 ? propagate<2, 1>(layout, v) : propagate<2, 0>(layout, v);
+            v += 2;
+        }
+        if (v < vectors) columns == 1 ? propagate<1, 1>(layout, v) : propagate<1, 0>(layout, v);
+    }
+
+  private:
+    static constexpr int LENGTH = Blocks::ORDER + 1, TOGETHER = 3;
+    // What may be left out of a perturbation over one piece of the motion, as a share of it. Rates and perturbations
+    // each leave out that much by the bounds below, about 1e-12 at worst together; as a rule it is less than 1e-13.
+    static constexpr double NEGLIGIBLE = 5e-13;
+    // Over x/(ω + a), ω² a bound on the eigenvalues of M⁻¹K, the terms of the series fall at least like x^n/n! if the
+    // rates are constant: with this x the first neglected one is rounding. The pieces of the motion may be longer: they
+    // are made for terms that are small beside 1, however small the motion itself is.
+    static constexpr double STRIDE = 2.4;
+    // Rates fall like the terms of the motion, which come down to 2^-53 in 22 steps at the end of a piece: each to this
+    // share of the one before, as a rule.
+    static constexpr double FALL = 0.19;
+    // Slower than x^n/n!, rates that vary make the terms of a perturbation fall like FALL^n in the end. For them x is
+    // taken larger by this factor.
+    static constexpr double SLOWER = 1.25;
+
+    std::vector<double> lost, deceleration;
+    Vectors moving, pull_scale, rates, speeds, rows;
+    double part = 0.0;
+    int rate_terms = 0, degree = 0;
+
+    // The x with x^(n+1)/(n+1)! = NEGLIGIBLE, rounded to fewer digits than C libraries agree on.
+    static double enough(int n) {
+        static const auto table = [] {
+            std::vector<double> made(LENGTH);
+            double factorial = 1.0;
+            for (int k = 0; k < LENGTH; k++) {
+                factorial *= k + 1;
+                made[k] = std::round(1e9 * std::pow(NEGLIGIBLE * factorial, 1.0 / (k + 1))) / 1e9;
+            }
+            return made;
+        }();
+        return table[n];
+    }
+
+    static double steepest(const Model &model) {
+        double most = 0.0;
+        for (int i = 0; i < model.springs.blocks; i++)
+            most = std::max(most, model.springs.threshold[i] / model.springs.mass[i]);
+        return most * model.law.steepest;
+    }
+
+    void expand_rates(const State<Blocks> &state, Series<Blocks> &series, int c, int first) {
+        const vec *slope = series.law.row(state.model.law.slope, c);
+        vec *rate = rates.at(size_t(c) * LENGTH), factor = -(state.layout.threshold[c] * pull_scale[c]);
+        series.law.complete_slope(c, first, rate_terms);
+        for (int n = 0; n < rate_terms; n++) {
+            rate[n] = factor * slope[n];
+            factor *= part;
+        }
+        for (int n = rate_terms; n < degree; n++) rate[n] = vec{};
+    }
+
+    // Whether the rates that are left out are negligible, by the last two that are there.
+    bool is_enough() const {
+        const double limit = NEGLIGIBLE * (rate_terms + 1);
+        for (int c = 0; c < columns; c++) {
+            const vec *last = rates.at(size_t(c) * LENGTH + rate_terms - 2);
+            if (any(limit < FALL * largest(magnitude(last[1]), FALL * magnitude(last[0])))) return false;
+        }
+        return true;
+    }
+
+    // With all coefficients multiplied by the power of t that they belong to,
+    //
+    //     u_(n+1) = (t (pulls of x_n)/m + sum of rate_k u_(n−k))/(n + 1),      x_(n+1) = t u_n/(n + 1).
+    template <int COUNT, int COLUMNS>
+    void propagate(const Blocks &layout, int v) {
+        const int count = COLUMNS ? COLUMNS : columns;
+        // x_n of vector i is row[i · count + c], u_n is speed[(n · count + c) · COUNT + i].
+        vec *row = rows.at(), *speed = speeds.at();
+        vec *position = this->position.at(size_t(v) * columns), *velocity = this->velocity.at(size_t(v) * columns);
+        for (int i = 0; i < COUNT; i++)
+            for (int c = 0; c < count; c++) {
+                speed[c * COUNT + i] = velocity[i * count + c] * moving[c];
+                row[i * count + c] = position[i * count + c];
+            }
+        const bool vary = rate_terms > 1;
+        auto extend = [&](auto n) __attribute__((always_inline)) {
+            if (n >= degree) return false;
+            const double factor = INVERSE[n + 1];
+            const vec *now = speed + size_t(n) * count * COUNT;
+            vec *next = speed + size_t(n + 1) * count * COUNT;
+            for (int c = 0; c < count; c++) {
+                const vec *rate = rates.at(size_t(c) * LENGTH);
+                vec change[COUNT]{};
+                if (vary)
+                    for (int j = 0; j < n; j++)
+                        for (int i = 0; i < COUNT; i++)
+                            change[i] += rate[n - j] * speed[(size_t(j) * count + c) * COUNT + i];
+                for (int i = 0; i < COUNT; i++) {
+                    const vec *own = row + i * count;
+                    change[i] += pull_scale[c] * (layout.pull(own, c) - layout.diagonal[c] * own[c]);
+                    next[c * COUNT + i] = (change[i] + rate[0] * now[c * COUNT + i]) * factor;
+                    velocity[i * count + c] += next[c * COUNT + i];
+                }
+            }
+            for (int c = 0; c < count; c++)
+                for (int i = 0; i < COUNT; i++) {
+                    row[i * count + c] = now[c * COUNT + i] * (part * factor);
+                    position[i * count + c] += row[i * count + c];
+                }
+            return true;
+        };
+        if constexpr (COLUMNS == 1 && COUNT > 1) {
+            // Every row for itself: a processor need not guess where its sums end.
+            [&]<int... N>(std::integer_sequence<int, N...>) {
+                (void)(extend(std::integral_constant<int, N>{}) && ...);
+            }(std::make_integer_sequence<int, LENGTH - 1>{});
+        } else {
+            for (int n = 0; extend(n); n++) {}
+        }
+    }
+};
+
+}  // namespace bk

@@ -1,0 +1,226 @@
+// The paper's own method, for comparison: Runge-Kutta of fourth order with a fixed step, events at step ends.
+#pragma once
+
+#include <functional>
+
+#include "group.h"
+
+namespace bk {
+
+// One run with step h; between step ends the motion is the cubic through both states and their slopes.
+class TimeStepping {
+  public:
+    const Model &model;
+    EventLog &log;
+    Observer &observer;
+    const double step;
+    double clock = 0.0;
+    long long steps = 0;
+    std::vector<double> slip;
+    std::function<void()> check_signals = [] {};
+
+    TimeStepping(const Model &model, EventLog &log, Observer &observer, double step)
+        : model(model), log(log), observer(observer), step(step), slip(model.springs.blocks), n(model.springs.blocks),
+          state(model, layout), old_x(n), old_u(n), force(n) {
+        for (auto *table : {&speed, &acceleration}) table->assign(4, std::vector<double>(n));
+        for (auto *table : {&x, &u}) table->assign(4, std::vector<double>(n));
+        for (int i = 0; i < n; i++) layout.member.push_back(i);
+        layout.lay(model.springs, [](int i) { return i; });
+        state.widen();
+        relative.reserve(layout.columns);
+        for (int k = n; k < layout.columns * LANES; k++) state.place(k, 0.0, 0.0, true);
+    }
+
+    // Begin at a time from x_i, U_i' and stuck blocks; steps end at multiples of h.
+    void begin(const double *position, const double *velocity, const bool *stuck, double time) {
+        for (int i = 0; i < n; i++) state.place(i, position[i], velocity[i], stuck[i]);
+        clock = time;
+        earlier_steps = (long long)(time / step);
+        while ((earlier_steps + 1) * step <= time) earlier_steps++;
+        steps = 0;
+        settled = false;
+        observer.begin = time;
+        log.restart();
+    }
+
+    // Go on as if the run that has come to this state had not ended.
+    void resume(const double *direction) {
+        for (int i = 0; i < n; i++) state.slip.lane(i) = direction[i];
+        settled = true;
+    }
+
+    void values(double *position, double *velocity, double *direction) const {
+        for (int i = 0; i < n; i++) {
+            position[i] = state.position.lane(i);
+            velocity[i] = state.velocity.lane(i);
+            direction[i] = state.slip.lane(i);
+        }
+    }
+
+    int run() {
+        long long work = 0;
+        if (!settled) {
+            settled = true;
+            settle();
+        }
+        double *position = &state.position.lane(0), *velocity = &state.velocity.lane(0);
+        while (clock < observer.end()) {
+            work += n;
+            if (work >= WORK_UNTIL_CHECK) {
+                check_signals();
+                work = 0;
+            }
+            const double after = std::min((earlier_steps + steps + 1) * step, observer.end()), h = after - clock;
+            std::copy(position, position + n, old_x.begin());
+            std::copy(velocity, velocity + n, old_u.begin());
+            slope(0);
+            stage(0, 0.5 * h);
+            slope(1);
+            stage(1, 0.5 * h);
+            slope(2);
+            stage(2, h);
+            slope(3);
+            for (int i = 0; i < n; i++) {
+                position[i] = old_x[i] + h * (speed[0][i] + 2.0 * speed[1][i] + 2.0 * speed[2][i] + speed[3][i]) / 6.0;
+                velocity[i] = old_u[i] + h *
+                                             (acceleration[0][i] + 2.0 * acceleration[1][i] + 2.0 * acceleration[2][i] +
+                                              acceleration[3][i]) /
+                                             6.0;
+                state.touching.lane(i) = 0.0;
+                if (!(std::fabs(velocity[i]) < ABSURD_SPEED)) return DIVERGED;
+            }
+            slope(3);
+            // A step so long that a block passes its stop meets friction where the law does not describe any.
+            for (int i = 0; i < n; i++)
+                if (!(std::fabs(acceleration[3][i]) * h < ABSURD_SPEED)) return DIVERGED;
+            interpolate(h);
+            observe(h);
+            clock = after;
+            steps++;
+            settle();
+            if (log.accumulating) return ACCUMULATING_EVENTS;
+            if (log.full() || observer.crossings.full) return FULL;
+        }
+        return COMPLETED;
+    }
+
+  private:
+    const int n;
+    Blocks layout;
+    State<Blocks> state;
+    Vectors relative;
+    Polynomial polynomial;
+    long long earlier_steps = 0;
+    bool settled = false;
+    std::vector<double> old_x, old_u, force;
+    // Slopes of the four stages, and the coefficients of the cubics, lowest power first.
+    std::vector<std::vector<double>> speed, acceleration, x, u;
+
+    // Write x' and U'' at the present state into row `stage`.
+    void slope(int stage) {
+        const double *position = &state.position.lane(0);
+        for (int i = 0; i < n; i++) {
+            const double direction = state.slip.lane(i), velocity = state.velocity.lane(i);
+            speed[stage][i] = velocity - model.v;
+            acceleration[stage][i] = 0.0;
+            if (direction == 0.0) continue;
+            const double s = model.springs.sliding_force[i] + model.springs.pull(position, i);
+            acceleration[stage][i] =
+                (s - direction * (model.springs.threshold[i] * model.law.at(direction * velocity))) /
+                model.springs.mass[i];
+        }
+    }
+
+    // Set the state to the one at the start of the step, moved on by h with the slope in row `stage`.
+    void stage(int row, double h) {
+        for (int i = 0; i < n; i++) {
+            state.position.lane(i) = old_x[i] + h * speed[row][i];
+            state.velocity.lane(i) = old_u[i] + h * acceleration[row][i];
+        }
+    }
+
+    // The cubics through both ends of the step; rows 0 and 3 hold the slopes there.
+    void interpolate(double h) {
+        auto cubic = [&](std::vector<std::vector<double>> &c, int i, double begins, double ends, double before,
+                         double after) {
+            const double change = (ends - begins) / h;
+            c[0][i] = begins;
+            c[1][i] = before;
+            c[2][i] = (3.0 * change - 2.0 * before - after) / h;
+            c[3][i] = (before + after - 2.0 * change) / (h * h);
+        };
+        for (int i = 0; i < n; i++) {
+            cubic(x, i, old_x[i], state.position.lane(i), speed[0][i], speed[3][i]);
+            cubic(u, i, old_u[i], state.velocity.lane(i), acceleration[0][i], acceleration[3][i]);
+        }
+    }
+
+    double at(const std::vector<std::vector<double>> &c, int i, double t) const {
+        return ((c[3][i] * t + c[2][i]) * t + c[1][i]) * t + c[0][i];
+    }
+
+    void observe(double h) {
+        const Clock start{clock, 0.0};
+        if (observer.wants_distance(start, h)) {
+            for (int k = 0; k < 4; k++) {
+                observer.distance.position[k] = x[k][n - 1] - x[k][0];
+                observer.distance.velocity[k] = u[k][n - 1] - u[k][0];
+            }
+            observer.distance.position[0] += observer.apart;
+            observer.distance.begin(3);
+            observer.average(start, 0.0, h);
+        }
+        if (h > start.until(observer.transient())) {
+            polynomial.degree = 3;
+            for (int k = 0; k < 4; k++) {
+                polynomial.coefficient[k] = 0.0;
+                for (int i = 0; i < n; i++) polynomial.coefficient[k] += observer.in_section(i) ? x[k][i] : 0.0;
+            }
+            observer.cross(polynomial, EventSearch<Blocks>::UNCERTAIN, start, 0.0, h, [&](double t) {
+                double total = 0.0;
+                for (int i = 0; i < n; i++) total += observer.in_section(i) ? at(u, i, t) - model.v : 0.0;
+                return total;
+            });
+        }
+        for (int i = 0; i < n && !observer.section_only; i++) {
+            const double direction = state.slip.lane(i), threshold = model.springs.threshold[i];
+            observer.extreme(direction != 0.0, threshold, UNKNOWN, start, 0.0, h, [&]() -> Polynomial & {
+                polynomial.degree = 3;
+                for (int k = 0; k < 4; k++)
+                    polynomial.coefficient[k] =
+                        direction != 0.0 ? direction * u[k][i] : -model.springs.pull(x[k].data(), i);
+                if (direction == 0.0) polynomial.coefficient[0] += threshold - model.springs.sliding_force[i];
+                return polynomial;
+            });
+        }
+        while (observer.next_trajectory < observer.trajectory_time.size()) {
+            const double t = start.until(observer.trajectory_time[observer.next_trajectory]);
+            if (t > h) break;
+            observer.sample([&](int i, double &position, double &velocity) {
+                position = at(x, i, t);
+                velocity = at(u, i, t);
+            });
+        }
+    }
+
+    void settle() {
+        for (bool changing = true; changing && !log.accumulating;) {
+            std::vector<int> due(layout.columns);
+            changing = false;
+            for (int c = 0; c < layout.columns; c++) relative[c] = state.velocity[c] - model.v;
+            for (int c = 0; c < layout.columns; c++) changing |= (due[c] = bits(state.pending(relative.at(), c))) != 0;
+            for (int c = 0; changing && c < layout.columns; c++)
+                for (int lane = 0; due[c] >> lane; lane++) {
+                    if (!(due[c] >> lane & 1)) continue;
+                    const int i = c * LANES + lane, kind = state.slip.lane(i) == 0.0;
+                    state.transition(c, from_bits(1 << lane));
+                    log.add(i, kind, clock, [&](double *row) {
+                        std::copy(&state.position.lane(0), &state.position.lane(0) + n, row);
+                        std::copy(&state.velocity.lane(0), &state.velocity.lane(0) + n, row + n);
+                    });
+                }
+        }
+    }
+};
+
+}  // namespace bk

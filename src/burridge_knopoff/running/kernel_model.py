@@ -1,0 +1,34 @@
+"""A model as the kernel reads it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from burridge_knopoff.kernel._core import KernelModel
+from burridge_knopoff.model.model import Model
+
+
+def kernel_model(model: Model) -> KernelModel:
+    """Return the chain, friction law and driver of a model for the kernel."""
+    chain, law = model.chain, model.law
+    operations, constants = law.tape.table
+    start, index, strength = chain.neighbours
+    return KernelModel(
+        diagonal=chain.diagonal,
+        driving=np.ascontiguousarray(chain.driving),
+        threshold=np.ascontiguousarray(chain.thresholds),
+        sliding_force=chain.thresholds * float(law(model.v)),
+        mass=np.ascontiguousarray(chain.masses),
+        start=start,
+        neighbour=index,
+        strength=strength,
+        operations=np.ascontiguousarray(operations, np.int64),
+        constants=np.ascontiguousarray(constants, float),
+        value=law.tape.value,
+        slope=law.tape.slope,
+        linear=law.is_linear,
+        rate=-float(law.slope(0.0)),
+        steepest=law.steepest,
+        v=model.v,
+        symmetric=model.contact == "symmetric",
+    )

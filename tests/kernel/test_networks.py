@@ -1,0 +1,57 @@
+"""Networks of springs and blocks of unequal mass: events against SciPy, in groups, in lanes, and perturbations."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff.model.model import CONTACTS
+from burridge_knopoff.running.ensemble import new_ensemble
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from tests.flows import carry, check_events, differences, directions
+from tests.scipy_flow import model_events
+
+CHAINS = [
+    Chain(grid=(3, 2), pulling=1.0),
+    Chain(grid=(2, 3), coupling=2.0, pulling=0.5, mass=[1.0, 2.0, 0.5, 1.0, 3.0, 1.5]),
+    Chain(5, mass=[1.0, 2.0, 0.5, 1.0, 3.0]),
+    Chain(4, ends="ring", mass=[0.5, 1.0, 2.0, 1.0]),
+    Chain(1, mass=2.0),
+]
+
+
+def rest(model, seed=2):
+    generator = np.random.default_rng(seed)
+    position = generator.uniform(-1.2, -0.9, model.blocks) - model.sliding_offset
+    return ChainState(position, np.zeros(model.blocks), np.ones(model.blocks, dtype=bool))
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+@pytest.mark.parametrize("chain", CHAINS)
+def test_events_against_scipy(law, chain, contact):
+    model = Model(chain, law_of(law, 0.3), contact=contact)
+    start = rest(model)
+    expected, _ = model_events(model, start, 14.0)
+    assert len(expected) > 2
+    for groups in (False, True):
+        runner = Runner(model, keep_events=True, groups=groups)
+        runner.begin(start)
+        assert runner.run(14.0) == Status.COMPLETED
+        time, block, kind = runner.events()
+        check_events(list(zip(time, block + 1, kind, strict=True)), expected, 1e-8)
+    found = new_ensemble(model).run(
+        start.position[None], start.velocity[None], start.stuck[None], [14.0], events=len(expected) + 1
+    )
+    columns = (found[f"event_{name}"][0, : found["event_count"][0]] for name in ("time", "block", "kind"))
+    check_events(list(zip(*columns, strict=True)), expected, 1e-8)
+
+
+@pytest.mark.parametrize("chain", CHAINS[:4])
+def test_perturbations_against_differences(law, chain):
+    model = Model(chain, law_of(law, 0.2))
+    start = rest(model, 3)
+    found = carry(model, start, 6.0, directions(start))[0].perturbations
+    expected = differences(model, start, 6.0, 1e-4)
+    assert expected is not None
+    free = directions(start).any(axis=0)
+    assert np.allclose(found[:, free], expected[0][:, free], rtol=0.0, atol=1e-6 * np.abs(found).max())
