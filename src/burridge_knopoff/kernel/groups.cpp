@@ -8,11 +8,7 @@ namespace bk {
 void Run::wait(int i) {
     const Springs &springs = model.springs;
     const double rate = model.v * springs.driving[i];
-    double pull = 0.0;
-    for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
-        pull += springs.strength[p] * stuck_position(springs.neighbour[p], since[i]);
-    const double force = springs.sliding_force[i] + (pull - springs.diagonal[i] * x[i]);
-    const double left = (springs.threshold[i] - force) / rate;
+    const double left = (springs.threshold[i] - waiting_force(i, since[i])) / rate;
     begins[i] = rate > 0.0 ? since[i].after(left > 0.0 ? left : 0.0) : Clock{NEVER, 0.0};
     version[i]++;
     if (rate > 0.0) queue.push({begins[i].time, i, false, version[i]});
@@ -239,14 +235,16 @@ void Run::observe_all(Clock at) {
     if (!observer.section_only) {
         // The spring force on a block that waits grows: it is least at the start and where the window begins.
         for (const Stage stage : {TRANSIENT, WINDOW}) {
-            const double from = std::max(observer.begin, stage == WINDOW ? window : observer.begin);
+            const double from = stage == WINDOW ? std::max(observer.begin, window) : observer.begin;
             if (waiting_seen[stage] || at.time < from || (stage == TRANSIENT && observer.begin >= window)) continue;
             waiting_seen[stage] = true;
             for (int i = 0; i < blocks; i++)
-                if (group_of[i] < 0 && slip[i] == 0.0) see_waiting(i, stage, {from, 0.0});
+                if (group_of[i] < 0)
+                    observer.lowest_force[stage] =
+                        std::min(observer.lowest_force[stage], waiting_force(i, {from, 0.0}));
         }
     }
-    if (at.time == end || at.until(end) <= 0.0) {
+    if (at.until(end) <= 0.0) {
         for (auto &group : groups)
             if (group->alive && group->planned && !observer.section_only) {
                 const double to = group->start.until(at);
@@ -259,14 +257,13 @@ void Run::observe_all(Clock at) {
     observed = at;
 }
 
-// Note the spring force on a block that waits, at a time.
-void Run::see_waiting(int i, Stage stage, const Clock &at) {
+// The spring force on a block that waits, at a time.
+double Run::waiting_force(int i, const Clock &at) const {
     const Springs &springs = model.springs;
     double pull = 0.0;
     for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
         pull += springs.strength[p] * stuck_position(springs.neighbour[p], at);
-    const double force = springs.sliding_force[i] + (pull - springs.diagonal[i] * stuck_position(i, at));
-    observer.lowest_force[stage] = std::min(observer.lowest_force[stage], force);
+    return springs.sliding_force[i] + (pull - springs.diagonal[i] * stuck_position(i, at));
 }
 
 // W at a time at which nothing has changed since the last one.

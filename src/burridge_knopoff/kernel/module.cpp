@@ -121,7 +121,6 @@ void check_shape(const Ensemble &ensemble, const Table &position, const Table &v
 
 NB_MODULE(_core, m) {
     m.attr("LANES") = LANES;
-    m.attr("SERIES_ORDER") = int(Blocks::ORDER);
     nb::dict status;
     for (auto [name, value] : {std::pair("HALTED", HALTED),
                                {"FULL", FULL},

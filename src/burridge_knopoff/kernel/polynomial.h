@@ -67,24 +67,15 @@ class Polynomial {
         right[0] = length;
         while (top >= 0) {
             const double *b = bernstein[top];
-            int changes = 0, sign = 0, first = 0;
-            for (int k = 0; k <= n; k++) {
-                if (b[k] > 0.0) {
-                    changes += sign < 0;
-                    sign = 1;
-                } else if (b[k] < 0.0) {
-                    changes += sign > 0;
-                    sign = -1;
-                }
-                if (first == 0) first = sign;
-            }
-            if (first < 0) return left[top];
-            if (changes == 0) {
+            Signs signs;
+            for (int k = 0; k <= n; k++) signs.add(b[k]);
+            if (signs.first < 0) return left[top];
+            if (signs.changes == 0) {
                 top--;
-            } else if (changes == 1 && b[0] > 0.0 && b[n] < 0.0) {
+            } else if (signs.changes == 1 && b[0] > 0.0 && b[n] < 0.0) {
                 return root_between(top, n);
             } else if (top >= DEPTH || right[top] - left[top] <= 4e-15 * right[top]) {
-                if (sign < 0) return right[top];
+                if (signs.last < 0) return right[top];
                 top--;
             } else {
                 split(top++, n);
@@ -106,25 +97,17 @@ class Polynomial {
             const double *b = bernstein[top];
             floor = std::max({floor, b[0], b[n]});
             double most = floor;
-            int changes = 0, sign = 0, first = 0;
+            Signs signs;
             for (int k = 0; k <= n; k++) {
                 most = std::max(most, b[k]);
-                const double step = k < n ? b[k + 1] - b[k] : 0.0;
-                if (step > 0.0) {
-                    changes += sign < 0;
-                    sign = 1;
-                } else if (step < 0.0) {
-                    changes += sign > 0;
-                    sign = -1;
-                }
-                if (first == 0) first = sign;
+                if (k < n) signs.add(b[k + 1] - b[k]);
             }
             if (most <= floor) {
                 top--;
-            } else if (changes == 1 && first > 0) {
+            } else if (signs.changes == 1 && signs.first > 0) {
                 floor = std::max(floor, peak_between(left[top], right[top]));
                 top--;
-            } else if (changes <= 1 || top >= DEPTH) {
+            } else if (signs.changes <= 1 || top >= DEPTH) {
                 top--;
             } else {
                 split(top++, n);
@@ -139,6 +122,19 @@ class Polynomial {
     static constexpr double NEGLIGIBLE = 1e-19;
     // A root is found when Newton's method moves it by no more than half an ulp.
     static constexpr double RESOLUTION = 1.2e-16;
+
+    // The signs of a sequence of numbers, zeros left out: the first, the last, and how often they change.
+    struct Signs {
+        int first = 0, last = 0, changes = 0;
+
+        void add(double number) {
+            const int sign = (number > 0.0) - (number < 0.0);
+            if (sign == 0) return;
+            if (first == 0) first = sign;
+            changes += last == -sign;
+            last = sign;
+        }
+    };
 
     double bernstein[DEPTH + 2][MOST_TERMS + 1], left[DEPTH + 2], right[DEPTH + 2];
     double lowest, highest;

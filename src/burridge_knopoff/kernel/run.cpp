@@ -146,6 +146,13 @@ void Run::change(Group &group, int lane, const Clock &at) {
     });
 }
 
+// Let the blocks that are due stop or start now, in their order.
+void Run::change_due(Group &group, const Clock &at) {
+    for (int c = 0; c < group.layout.columns; c++)
+        for (int lane = 0; due[c] >> lane; lane++)
+            if (due[c] >> lane & 1) change(group, c * LANES + lane, at);
+}
+
 // Carry out every change that is due at this instant; tell whether there was one.
 bool Run::settle(Group &group, const Clock &at) {
     due.assign(group.layout.columns, 0);
@@ -153,9 +160,7 @@ bool Run::settle(Group &group, const Clock &at) {
     group.measure();
     // Who changes is decided before anyone does: then no order of the blocks is preferred.
     for (int c = 0; c < group.layout.columns; c++) changing |= (due[c] = bits(group.pending(c))) != 0;
-    for (int c = 0; changing && c < group.layout.columns; c++)
-        for (int lane = 0; due[c] >> lane; lane++)
-            if (due[c] >> lane & 1) change(group, c * LANES + lane, at);
+    if (changing) change_due(group, at);
     return changing;
 }
 
@@ -163,9 +168,7 @@ bool Run::settle(Group &group, const Clock &at) {
 void Run::carry_out(Group &group, const Clock &at) {
     due.assign(group.layout.columns, 0);
     for (int c = 0; c < group.layout.columns; c++) due[c] = bits(group.search.due(group.series, c));
-    for (int c = 0; c < group.layout.columns; c++)
-        for (int lane = 0; due[c] >> lane; lane++)
-            if (due[c] >> lane & 1) change(group, c * LANES + lane, at);
+    change_due(group, at);
 }
 
 // Keep the pieces that the end of a run cuts off.

@@ -80,7 +80,6 @@ class Run {
 
     // Go on at a time from the mark of a run that ended then.
     void resume(const Mark &mark, double time) {
-        blind = false;
         for (int i = 0; i < blocks; i++) {
             const double *row = row_of(mark, i);
             x[i] = row[0];
@@ -173,6 +172,7 @@ class Run {
     void change(Group &group, int lane, const Clock &at);
     bool settle(Group &group, const Clock &at);
     void carry_out(Group &group, const Clock &at);
+    void change_due(Group &group, const Clock &at);
     void remember();
     void start_modes(Group &group, const Mark &mark);
     int blocked(int done);
@@ -196,7 +196,7 @@ class Run {
     void observe_all(Clock at);
     void observe_distance(const Clock &at);
     void observe_section(const Clock &at);
-    void see_waiting(int i, Stage stage, const Clock &at);
+    double waiting_force(int i, const Clock &at) const;
     double section_value(const Clock &at);
     Polynomial motion_of(int i, bool speed, const Clock &at);
     bool section_lanes(const Group &group, int &begin, int &stop) const;

@@ -27,6 +27,8 @@ struct Springs {
     // Bound on the angular frequencies of slipping blocks: the root of that of Collatz and Wielandt on the eigenvalues
     // of M⁻¹K. Any positive vector gives one, and a few steps of the power method tighten it.
     double fastest;
+    // Largest threshold per mass.
+    double firmest;
     // Largest number of neighbours.
     int degree;
 
@@ -62,6 +64,8 @@ struct Springs {
             for (int i = 0; i < blocks; i++) vector[i] = product[i] / largest;
         }
         fastest = std::sqrt(largest);
+        firmest = 0.0;
+        for (int i = 0; i < blocks; i++) firmest = std::max(firmest, threshold[i] / mass[i]);
     }
 
     // −(K x)_i for displacements x, or their rates. The neighbours are added first, as in Layout.

@@ -67,7 +67,7 @@ class Tangent {
     int load(const State<Blocks> &state, Series<Blocks> &series, double length) {
         const Model &model = state.model;
         const Blocks &layout = state.layout;
-        const double pace = model.springs.fastest + steepest(model);
+        const double pace = model.springs.fastest + model.springs.firmest * model.law.steepest;
         const int parts = 1 + int(pace * length / STRIDE);
         part = parts > 1 ? length / parts : length;
         const double x = model.law.linear ? pace * part : SLOWER * pace * part;
@@ -149,13 +149,6 @@ class Tangent {
             return made;
         }();
         return table[n];
-    }
-
-    static double steepest(const Model &model) {
-        double most = 0.0;
-        for (int i = 0; i < model.springs.blocks; i++)
-            most = std::max(most, model.springs.threshold[i] / model.springs.mass[i]);
-        return most * model.law.steepest;
     }
 
     void expand_rates(const State<Blocks> &state, Series<Blocks> &series, int c, int first) {

@@ -32,7 +32,7 @@ class Drawn(Range):
 
     def _fit(self, value: Any, key: str) -> str | None:
         if isinstance(value, str) and value.startswith("random="):
-            value = {name: _plain(text) for name, _, text in (part.partition("=") for part in value.split(","))}
+            value = _read(value)
         if not isinstance(value, Mapping):
             return None
         limit = Field(self.each, str(self.each))
@@ -44,6 +44,10 @@ class Drawn(Range):
 
     def __str__(self) -> str:
         return "{random: uniform, low, high, seed}"
+
+
+def _read(text: str) -> dict[str, Any]:
+    return {name: _plain(value) for name, _, value in (part.partition("=") for part in text.split(","))}
 
 
 def _plain(text: str) -> Any:
@@ -62,6 +66,6 @@ def numbers_of(given: Numbers, blocks: int, name: str) -> np.ndarray:
     """
     if not isinstance(given, str):
         return np.array(np.broadcast_to(given, blocks), dtype=float)  # type: ignore[arg-type]
-    drawn = {key: _plain(text) for key, _, text in (part.partition("=") for part in given.split(","))}
+    drawn = _read(given)
     unit = np.random.default_rng([drawn["seed"], *name.encode()]).random(blocks)
     return np.minimum(drawn["low"] + (drawn["high"] - drawn["low"]) * unit, drawn["high"])
