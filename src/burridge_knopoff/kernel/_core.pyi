@@ -152,6 +152,17 @@ class Exponents:
         growth (batches, vectors), -inf for dropped vectors, duration (batches,), and how many exponents are lost.
         """
 
+class Catalogue:
+    """Slip events of a run: slips that are connected in space and time."""
+
+    def __init__(self, blocks: int, begin: float, profiles: bool, most_numbers: float) -> None: ...
+    @property
+    def rows(self) -> Record: ...
+    def profile(self) -> tuple:
+        """
+        Ends of the events' slips, their blocks from 1 on, and how far each slipped.
+        """
+
 class Mark:
     """What repeats the last pieces of a run that ended."""
 
@@ -183,6 +194,9 @@ class Run:
         """
         Go from event to event in closed form; solve(first, last) gives eigenvalues and modes, one a row, of K for these blocks.
         """
+
+    def record(self, catalogue: Catalogue) -> None:
+        """Record slip events in a catalogue from the next beginning on."""
 
     @property
     def halting_block(self) -> int: ...

@@ -1,6 +1,7 @@
 // A group of blocks that share a clock: all blocks of a chain, or some that slip together with their stuck neighbours.
 #pragma once
 
+#include "catalogue.h"
 #include "observe.h"
 
 namespace bk {
@@ -134,7 +135,50 @@ struct Group {
         }
     }
 
+    // Add to the slip events what the blocks of a piece do between two times of it.
+    void record(Catalogue &catalogue, Polynomial &polynomial, double from, double to) {
+        const double t = to - from, v = state.model.v;
+        if (!(t > 0.0)) return;
+        begun.reserve(layout.columns);
+        ended.reserve(layout.columns);
+        for (int c = 0; c < layout.columns; c++) {
+            begun[c] = from > 0.0 ? series.value(series.position, c, splat(from)) : series.x(0)[c];
+            ended[c] = series.value(series.position, c, splat(to));
+        }
+        for (int c = 0; c < layout.columns; c++) {
+            const int slips = bits(layout.present[c] & (state.slip[c] != vec{}));
+            if (!slips) continue;
+            const vec far = (ended[c] - begun[c]) + v * t, load = layout.driving[c] * v;
+            const vec before = force(begun.at(), c, from), after = force(ended.at(), c, to);
+            const vec path =
+                (series.integral(c, splat(to)) - series.integral(c, splat(from))) - begun[c] * t + 0.5 * v * t * t;
+            const vec energy = 0.5 * (before + (after - load * t)) * far + load * (t * far - path);
+            const vec bound = search.bound_in_piece(c);
+            for (int lane = 0; slips >> lane; lane++) {
+                const int place = c * LANES + lane;
+                Catalogue::Event *event = slips >> lane & 1 ? catalogue.of(layout.member[place]) : nullptr;
+                if (!event) continue;
+                event->energy += energy[lane];
+                if (bound[lane] <= event->peak_velocity) continue;
+                load_speed(polynomial, place, from);
+                event->peak_velocity = polynomial.maximum(t, event->peak_velocity);
+            }
+        }
+    }
+
   private:
+    Vectors begun, ended;
+
+    // The spring forces on a column of blocks at positions x, at a time of the piece.
+    vec force(const vec *x, int c, double t) const {
+        return layout.sliding_force[c] + layout.drift[c] * t + (layout.pull(x, c) - layout.diagonal[c] * x[c]);
+    }
+
+    void load_speed(Polynomial &polynomial, int lane, double from) {
+        load(polynomial, lane);
+        if (from > 0.0) polynomial.shift(from);
+    }
+
     Vectors relative;
 
     void load_section(int begin, int end, int extra) {

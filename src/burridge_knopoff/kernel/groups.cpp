@@ -43,7 +43,12 @@ int Run::run_groups() {
                                             : begins[next.number];
         if (at.until(end) < 0.0) {
             remember();
+            for (auto &group : groups)
+                if (catalogue && group->alive && group->planned)
+                    group->record(*catalogue, polynomial, group->observed, group->start.until(end));
             observe_all({end, 0.0});
+            for (auto &group : groups)
+                if (group->alive && group->planned) group->observed = group->start.until(end);
             marked.side = observer.side;
             return COMPLETED;
         }
@@ -170,6 +175,7 @@ bool Run::part(Group &group) {
 void Run::end_piece(Group &group, double to) {
     if (!group.planned) return;
     if (observing && !observer.section_only) group.extremes(observer, polynomial, group.observed, to);
+    if (catalogue) group.record(*catalogue, polynomial, group.observed, to);
     if (observing && holds_end(group)) observe_distance(group.start.after(to));
     group.observed = to;
     group.advance(to);
@@ -249,7 +255,6 @@ void Run::observe_all(Clock at) {
             if (group->alive && group->planned && !observer.section_only) {
                 const double to = group->start.until(at);
                 group->extremes(observer, polynomial, group->observed, to);
-                group->observed = to;
             }
         observe_distance(at);
     }

@@ -293,6 +293,18 @@ NB_MODULE(_core, m) {
             "growth (batches, vectors), -inf for dropped vectors, duration (batches,), and how many exponents are "
             "lost.");
 
+    nb::class_<Catalogue>(m, "Catalogue", "Slip events of a run: slips that are connected in space and time.")
+        .def(nb::init<int, double, bool, double>(), "blocks"_a, "begin"_a, "profiles"_a, "most_numbers"_a)
+        .def_ro("rows", &Catalogue::rows)
+        .def(
+            "profile",
+            [](const Catalogue &catalogue) {
+                return nb::make_tuple(array<int64_t>(catalogue.profile_end, {catalogue.profile_end.size()}),
+                                      array<int32_t>(catalogue.profile_block, {catalogue.profile_block.size()}),
+                                      numbers(catalogue.profile_slip));
+            },
+            "Ends of the events' slips, their blocks from 1 on, and how far each slipped.");
+
     nb::class_<Mark>(m, "Mark", "What repeats the last pieces of a run that ended.");
 
     nb::class_<Run>(m, "Run", "One run from event to event.")
@@ -327,6 +339,9 @@ NB_MODULE(_core, m) {
             "solve"_a,
             "Go from event to event in closed form; solve(first, last) gives eigenvalues and modes, one a row, of K "
             "for these blocks.")
+        .def(
+            "record", [](Run &run, Catalogue &catalogue) { run.catalogue = &catalogue; }, "catalogue"_a,
+            nb::keep_alive<1, 2>(), "Record slip events in a catalogue from the next beginning on.")
         .def_rw("halting_block", &Run::halting_block)
         .def_rw("end", &Run::end)
         .def_ro("steps", &Run::steps)

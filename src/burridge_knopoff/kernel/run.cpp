@@ -8,6 +8,7 @@ void Run::restart(double time) {
     steps = 0;
     since_event = 0.0;
     log.restart();
+    if (catalogue) catalogue->restart();
     queue = {};
     spare.clear();
     for (int k = 0; k < int(groups.size()); k++) {
@@ -137,6 +138,8 @@ void Run::change(Group &group, int lane, const Clock &at) {
     if (exponents.tangent.vectors > 0) exponents.tangent.change(group.state, i);
     const int kind = group.state.slip.lane(lane) == 0.0;
     group.state.transition(lane / LANES, from_bits(1 << lane % LANES));
+    if (catalogue && kind) catalogue->start(model.springs, i, at, group.state.position.lane(lane));
+    if (catalogue && !kind) catalogue->stop(model.springs, model.v, i, at, group.state.position.lane(lane));
     log.add(i, kind, at.time, [&](double *row) {
         double direction;
         const Clock before = now;
@@ -176,6 +179,7 @@ void Run::remember() {
     marked.table.resize(size_t(blocks) * COLUMNS);
     marked.group = group_of;
     marked.since_event = since_event;
+    if (catalogue) marked.catalogue = catalogue->open();
     marked.side = observer.side;
     if (modes) {
         marked.origin = modes->origin;
@@ -238,6 +242,7 @@ int Run::run_whole() {
         // The end of the run has no part in the search: it must not move an event by a bit.
         if (completed) remember();
         if (observing) observe(group, length);
+        if (catalogue) group.record(*catalogue, polynomial, group.observed, length);
         if (exponents.tangent.vectors > 0) {
             exponents.begin_within(group.state, group.start.time, length);
             if (exponents.running) follow(group, length);

@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <queue>
 
 #include "exponents.h"
@@ -24,6 +25,8 @@ struct Mark {
     std::vector<int> group;
     // Positions and velocities at the last event, for the closed form.
     std::vector<double> origin, origin_velocity;
+    // Slip events that had not ended.
+    std::optional<Catalogue::Open> catalogue;
     double since_event = 0.0;
     int side = 0;
 };
@@ -50,6 +53,8 @@ class Run {
     std::function<void()> check_signals = [] {};
     // The closed form between events, if that is wanted.
     std::unique_ptr<Modes> modes;
+    // Slip events are recorded in it, if that is wanted.
+    Catalogue *catalogue = nullptr;
 
     // local : 1 in groups, 0 as one, −1 whatever is faster
     Run(const Model &model, EventLog &log, Observer &observer, Exponents &exponents, bool observing, int local,
@@ -92,6 +97,7 @@ class Run {
         }
         restart(time);
         since_event = mark.since_event;
+        if (catalogue && mark.catalogue) catalogue->resume(*mark.catalogue);
         // A section that is observed from now on is crossed from the side that the run was on.
         if (observer.transient() <= time) observer.side = mark.side;
         settled = true;

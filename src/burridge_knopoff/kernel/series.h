@@ -100,6 +100,13 @@ struct Series {
         return (even * square + t * odd) + term[0];
     }
 
+    // The integral of the positions of a column from 0 to t.
+    vec integral(int c, vec t) const {
+        vec total{};
+        for (int k = ORDER; k >= 0; k--) total = total * t + INVERSE[k + 1] * position[size_t(k) * columns + c];
+        return total * t;
+    }
+
     // Move the state on by t where `moved` says so.
     void move(State<L> &state, vec t, mask moved) {
         const vec zero{};

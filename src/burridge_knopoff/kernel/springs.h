@@ -79,14 +79,15 @@ struct Springs {
 // What the two ways to lay blocks into vectors have in common: constants of the blocks, one vector for each column.
 struct Layout {
     int columns = 0;
-    Vectors diagonal, threshold, sliding_force, inverse_mass;
+    Vectors diagonal, driving, threshold, sliding_force, inverse_mass;
     // What stuck neighbours that do not take part add to ds_i/dτ, see Blocks::outside.
     Vectors drift;
     std::vector<mask> present;
 
     void widen(int count) {
         columns = count;
-        for (Vectors *row : {&diagonal, &threshold, &sliding_force, &inverse_mass, &drift}) row->reserve(count);
+        for (Vectors *row : {&diagonal, &driving, &threshold, &sliding_force, &inverse_mass, &drift})
+            row->reserve(count);
         if (int(present.size()) < count) present.resize(count);
     }
 };
@@ -113,7 +114,7 @@ struct Blocks : Layout {
         row = springs.row;
         closed = springs.ring && n == springs.blocks;
         for (int c = 0; c < columns; c++) {
-            diagonal[c] = sliding_force[c] = drift[c] = vec{};
+            diagonal[c] = driving[c] = sliding_force[c] = drift[c] = vec{};
             threshold[c] = inverse_mass[c] = splat(1.0);
             present[c] = from_bits(n >= (c + 1) * LANES ? -1 : (1 << (n - c * LANES)) - 1);
         }
@@ -129,6 +130,7 @@ struct Blocks : Layout {
         for (int k = 0; k < n; k++) {
             const int i = member[k];
             diagonal.lane(k) = springs.diagonal[i];
+            driving.lane(k) = springs.driving[i];
             threshold.lane(k) = springs.threshold[i];
             sliding_force.lane(k) = springs.sliding_force[i];
             inverse_mass.lane(k) = 1.0 / springs.mass[i];

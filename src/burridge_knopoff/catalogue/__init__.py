@@ -1,0 +1,1 @@
+"""Catalogues of slip events and their statistics."""

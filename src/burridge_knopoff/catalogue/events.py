@@ -1,0 +1,104 @@
+"""The catalogue of slip events of a run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from burridge_knopoff.kernel._core import Catalogue
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.values import MOST_NUMBERS
+
+#: Columns of the kernel's table, in its order.
+COLUMNS = (
+    "duration",
+    "epicentre",
+    "first_block",
+    "last_block",
+    "blocks",
+    "moment",
+    "largest_slip",
+    "peak_velocity",
+    "stress_drop",
+    "energy_released",
+    "interval",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class SlipEvents:
+    """Slip events in the order of their beginnings; arrays of shape (events,).
+
+    A slip of a block lasts from its start to its stop. An event is a set of slips that are connected: of neighbours, at
+    the same time. Blocks count from 1; all quantities are in the units of `Model`.
+
+    time, duration : τ of the first start, and time from it to the last stop
+    epicentre : block that starts first; first_block, last_block : ends of the event along the chain
+    blocks : how many blocks slip; moment : sum of their slips; largest_slip : largest slip of a block
+    peak_velocity : highest slip speed of a block
+    stress_drop : by how much the slips lower the spring force, mean over the blocks
+    energy_released : work of the springs on the blocks, which friction dissipates
+    interval : time since the last event of which the epicentre was part began; NaN for the first
+    slip_block, slip : with profiles, the blocks of all events and how far each slipped; slip_end : where those of an
+        event end
+    status : how the run ended; final : its state, from which another run continues with the events that have not ended
+    """
+
+    time: np.ndarray = field(repr=False)
+    duration: np.ndarray = field(repr=False)
+    epicentre: np.ndarray = field(repr=False)
+    first_block: np.ndarray = field(repr=False)
+    last_block: np.ndarray = field(repr=False)
+    blocks: np.ndarray = field(repr=False)
+    moment: np.ndarray = field(repr=False)
+    largest_slip: np.ndarray = field(repr=False)
+    peak_velocity: np.ndarray = field(repr=False)
+    stress_drop: np.ndarray = field(repr=False)
+    energy_released: np.ndarray = field(repr=False)
+    interval: np.ndarray = field(repr=False)
+    slip_end: np.ndarray = field(repr=False)
+    slip_block: np.ndarray = field(repr=False)
+    slip: np.ndarray = field(repr=False)
+    status: Status
+    final: ChainState = field(repr=False)
+
+    @property
+    def magnitude(self) -> np.ndarray:
+        """ln moment."""
+        return np.log(self.moment)
+
+
+def record_events(
+    model: Model, start: ChainState, end: float, *, begin: float = 0.0, profiles: bool = False
+) -> SlipEvents:
+    """Return the slip events of a run that begin after a time and end before its end.
+
+    start, end : state at the start of the run, and τ of its end
+    begin : events that begin earlier are left out; the intervals know of them
+    profiles : whether the slip of every block is kept
+
+    Blocks that slip at the start of the run belong to no event until they have stopped.
+    """
+    runner = Runner(model)
+    catalogue = Catalogue(model.blocks, begin, profiles, MOST_NUMBERS)
+    runner.kernel.record(catalogue)  # type: ignore[union-attr]
+    runner.begin(start)
+    status = runner.run(end)
+    times, values = catalogue.rows.times(), catalogue.rows.values()
+    order = np.argsort(times, kind="stable")
+    table = dict(zip(COLUMNS, values[order].T, strict=True))
+    for name in ("epicentre", "first_block", "last_block", "blocks"):
+        table[name] = table[name].astype(np.int32)
+    ends, block, slip = catalogue.profile()
+    if profiles:
+        pieces = np.split(np.arange(len(block)), ends[:-1]) if len(ends) else []
+        index = np.concatenate([pieces[k] for k in order]) if pieces else np.zeros(0, dtype=int)
+        block, slip = block[index], slip[index]
+        ends = np.cumsum(np.diff(ends, prepend=0)[order])
+    final = runner.final() if status == Status.COMPLETED else runner.state()
+    return SlipEvents(
+        time=times[order], **table, slip_end=ends, slip_block=block, slip=slip, status=status, final=final
+    )

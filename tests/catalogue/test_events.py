@@ -1,0 +1,44 @@
+"""Catalogues as arrays: the profiles, and runs that continue one another."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.catalogue.events import COLUMNS, record_events
+from tests.kernel.test_catalogue import at_rest
+
+MODEL = Model(Chain(30, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
+
+
+def test_profiles_add_up_to_moments():
+    found = record_events(MODEL, at_rest(MODEL), 200.0, profiles=True)
+    assert len(found.time) > 50
+    assert (np.diff(found.time) >= 0.0).all()
+    parts = np.split(found.slip, found.slip_end[:-1])
+    assert np.allclose([part.sum() for part in parts], found.moment, rtol=1e-13)
+    assert [len(part) for part in parts] == found.blocks.tolist()
+    assert [part.max() for part in parts] == found.largest_slip.tolist()
+    assert len(record_events(MODEL, at_rest(MODEL), 200.0).slip) == 0
+
+
+def test_events_before_the_beginning_are_left_out():
+    whole, late = (record_events(MODEL, at_rest(MODEL), 200.0, begin=begin) for begin in (0.0, 100.0))
+    assert np.array_equal(late.time, whole.time[whole.time >= 100.0])
+    assert np.array_equal(late.interval, whole.interval[whole.time >= 100.0], equal_nan=True)
+
+
+@pytest.mark.parametrize("blocks", [5, 30])
+def test_runs_that_continue_one_another_have_the_catalogue_of_the_whole(blocks):
+    model = Model(Chain(blocks, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
+    whole = record_events(model, at_rest(model), 300.0)
+    parts, at = [], at_rest(model)
+    # The end of the first run is in the midst of an event.
+    for end in (float(whole.time[10] + 0.3 * whole.duration[10]), 177.7, 300.0):
+        parts.append(record_events(model, at, end))
+        at = parts[-1].final
+    time = np.concatenate([part.time for part in parts])
+    order = np.argsort(time, kind="stable")
+    assert np.array_equal(time[order], whole.time)
+    for name in COLUMNS:
+        found = np.concatenate([getattr(part, name) for part in parts])[order]
+        assert np.allclose(found, getattr(whole, name), rtol=1e-12, atol=1e-15, equal_nan=True), name

@@ -1,0 +1,162 @@
+"""Catalogues of slip events: one block in closed form, balances of slip and energy, connection in space and time."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from mpmath import mp
+
+from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff.kernel._core import Catalogue
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.values import MOST_NUMBERS
+
+COLUMNS = (
+    "duration",
+    "epicentre",
+    "first_block",
+    "last_block",
+    "blocks",
+    "moment",
+    "largest_slip",
+    "peak_velocity",
+    "stress_drop",
+    "energy_released",
+    "interval",
+)
+
+
+def recorded(model, start, end, groups=None, stops=()):
+    """Return the catalogue of a run, in the order of the events, and the solver at its end."""
+    runner = Runner(model, groups=groups, keep_events=True)
+    catalogue = Catalogue(model.blocks, 0.0, True, MOST_NUMBERS)
+    runner.kernel.record(catalogue)
+    runner.begin(start)
+    for time in (*stops, end):
+        assert runner.run(time) == Status.COMPLETED
+    order = np.argsort(catalogue.rows.times(), kind="stable")
+    values = catalogue.rows.values()[order]
+    table = dict(zip(COLUMNS, values.T, strict=True)) | {"time": catalogue.rows.times()[order]}
+    return table, runner, catalogue
+
+
+def at_rest(model, seed=1, spread=0.05):
+    generator = np.random.default_rng(seed)
+    position = generator.uniform(-0.95 - spread, -0.95, model.blocks) - model.sliding_offset
+    return ChainState(position, np.zeros(model.blocks), np.ones(model.blocks, dtype=bool))
+
+
+def last_rest(model, start, end):
+    """Return a time, before the end, at which no block slips."""
+    runner = Runner(model, keep_events=True)
+    runner.begin(start)
+    assert runner.run(end) == Status.COMPLETED
+    time, _, kind = runner.events()
+    return float(time[np.flatnonzero(np.cumsum(np.where(kind == 1, 1, -1)) == 0)[-1]]) + 1e-6
+
+
+@pytest.mark.parametrize("v", [1e-4, 1e-2, 0.1, 1.0])
+@pytest.mark.parametrize("a", [0.1, 1.5])
+def test_one_block_in_closed_form(v, a):
+    """From its threshold y'' = vt − y + ay' with y = y' = 0; it stops when y' is 0 again and starts after slip/v."""
+    with mp.workdps(30):
+        half, omega = mp.mpf(a) / 2, mp.sqrt(1 - mp.mpf(a) ** 2 / 4)
+
+        def y(t):
+            turning = mp.exp(half * t) * (a * mp.cos(omega * t) + (1 - half * a) / omega * mp.sin(omega * t))
+            return v * (t + a - turning)
+
+        def first(falling):
+            low = next(t for t in mp.linspace(0.1, 20, 400) if falling(t + mp.mpf("0.05")) < 0 < falling(t))
+            return mp.findroot(falling, (low, low + mp.mpf("0.05")), solver="anderson")
+
+        duration = first(lambda t: mp.diff(y, t))
+        slip = y(duration)
+        peak = mp.diff(y, first(lambda t: mp.diff(y, t, 2)))
+        slip, duration, peak = float(slip), float(duration), float(peak)
+    model = Model(Chain(1, pulling=1.0), law_of("linearized", a), v)
+    table, _, _ = recorded(model, at_rest(model, spread=0.0), 0.2 / v + 5.5 * max(slip / v, duration))
+    assert len(table["time"]) >= 5
+    assert np.allclose(table["moment"], slip, rtol=1e-12, atol=1e-15)
+    assert np.allclose(table["duration"], duration, rtol=1e-10)
+    assert np.allclose(table["peak_velocity"], peak, rtol=1e-12)
+    assert np.allclose(table["interval"][1:], slip / v, rtol=1e-11)
+    assert np.allclose(table["stress_drop"], slip, rtol=1e-12)
+    assert (table["blocks"] == 1).all()
+    # The work of friction: ∫ (1 − aU') U' dτ.
+    with mp.workdps(20):
+        lost = float(mp.quad(lambda t: (1 - a * mp.diff(y, t)) * mp.diff(y, t), [0, duration / 2, duration]))
+    assert np.allclose(table["energy_released"], lost, rtol=1e-9)
+
+
+@pytest.mark.parametrize("groups", [False, True])
+@pytest.mark.parametrize("law", ["nonlinear", "carlson_langer"])
+def test_balances(law, groups):
+    """The slips of each block add up to its displacement."""
+    model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of(law, 1.0), 0.02)
+    start = at_rest(model)
+    end = last_rest(model, start, 120.0)
+    table, runner, catalogue = recorded(model, start, end, groups)
+    ends, block, slip = catalogue.profile()
+    assert len(ends) == len(table["time"]) > 15
+    moved = runner.state().position - start.position + model.v * end
+    total = np.bincount(block - 1, slip, model.blocks)
+    assert np.allclose(total, moved, rtol=0.0, atol=1e-12)
+    assert np.sum(table["moment"]) == pytest.approx(total.sum(), rel=1e-13)
+    assert (table["first_block"] <= table["epicentre"]).all()
+    assert (table["epicentre"] <= table["last_block"]).all()
+
+
+def test_energy_is_the_work_of_friction():
+    """By quadrature of friction times speed along the whole motion, between two moments of rest."""
+    model = Model(Chain(6, coupling=2.0, pulling=1.0), law_of("nonlinear", 0.5), 0.01)
+    start = at_rest(model)
+    end = last_rest(model, start, 400.0)
+    runner = Runner(model, keep_events=True)
+    runner.begin(start)
+    assert runner.run(end) == Status.COMPLETED
+    time = runner.events()[0]
+    table, _, _ = recorded(model, start, end)
+    lost, edges = 0.0, np.unique(np.concatenate([[0.0], time, [end]]))
+    node, weight = np.polynomial.legendre.leggauss(24)
+    solver = Runner(model)
+    for low, high in pairwise(edges):
+        for x, w in zip(node, weight, strict=True):
+            solver.begin(start)
+            assert solver.run(low + 0.5 * (high - low) * (1.0 + x)) == Status.COMPLETED
+            speed = solver.state().velocity
+            lost += 0.5 * (high - low) * w * float(np.sum(speed * model.law(speed)))
+    assert table["energy_released"].sum() == pytest.approx(lost, rel=1e-9)
+
+
+def test_a_catalogue_does_not_depend_on_where_runs_are_divided():
+    model = Model(Chain(30, coupling=20.0, pulling=1.0), law_of("carlson_langer", 3.0), 0.01)
+    start = at_rest(model)
+    whole, _, _ = recorded(model, start, 150.0)
+    parts, _, _ = recorded(model, start, 150.0, stops=(10.0, 33.3, 90.1))
+    assert len(whole["time"]) > 50
+    for name, values in whole.items():
+        exact = name not in ("energy_released", "peak_velocity")
+        assert np.allclose(values, parts[name], rtol=0.0 if exact else 1e-12, atol=0.0, equal_nan=True), name
+
+
+def test_groups_and_the_chain_as_a_whole_have_the_same_events():
+    """Until chaos parts them."""
+    model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
+    one, other = (recorded(model, at_rest(model), 60.0, groups)[0] for groups in (True, False))
+    assert len(one["time"]) >= 8
+    for name, values in one.items():
+        assert np.allclose(values[:8], other[name][:8], rtol=1e-7, atol=1e-9, equal_nan=True), name
+
+
+def test_connection_decides():
+    """Two blocks far apart that slip at the same time are two events."""
+    model = Model(Chain(9, coupling=0.2, pulling=1.0), law_of("nonlinear", 0.3), 0.05)
+    position = np.full(9, -0.5)
+    position[[1, 7]] = -0.999
+    start = ChainState(position - model.sliding_offset, np.zeros(9), np.ones(9, dtype=bool))
+    table, _, _ = recorded(model, start, 8.0)
+    first = table["time"] < 3.0
+    assert set(table["epicentre"][first]) == {2, 8}
+    assert (table["blocks"][first] <= 3).all()
