@@ -12,33 +12,18 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS
 
-COLUMNS = (
-    "duration",
-    "epicentre",
-    "first_block",
-    "last_block",
-    "blocks",
-    "moment",
-    "largest_slip",
-    "peak_velocity",
-    "stress_drop",
-    "energy_released",
-    "interval",
-)
 
-
-def recorded(model, start, end, groups=None, stops=()):
-    """Return the catalogue of a run, in the order of the events, and the solver at its end."""
-    runner = Runner(model, groups=groups, keep_events=True)
+def recorded(model, start, end, groups=None, stops=(), loading="steady"):
+    """Return the catalogue of a run, in the order of the events, its profiles, and the solver at its end."""
     catalogue = Catalogue(model.blocks, 0.0, True, MOST_NUMBERS)
-    runner.kernel.record(catalogue)
+    runner = Runner(model, groups=groups, keep_events=True, catalogue=catalogue, loading=loading)
     runner.begin(start)
     for time in (*stops, end):
         assert runner.run(time) == Status.COMPLETED
-    order = np.argsort(catalogue.rows.times(), kind="stable")
-    values = catalogue.rows.values()[order]
-    table = dict(zip(COLUMNS, values.T, strict=True)) | {"time": catalogue.rows.times()[order]}
-    return table, runner, catalogue
+    table = catalogue.take()
+    order = np.argsort(table["time"], kind="stable")
+    profiles = [table.pop(name) for name in ("slip_end", "slip_block", "slip")]
+    return {name: column[order] for name, column in table.items()}, runner, profiles
 
 
 def at_rest(model, seed=1, spread=0.05):
@@ -97,8 +82,7 @@ def test_balances(law, groups):
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of(law, 1.0), 0.02)
     start = at_rest(model)
     end = last_rest(model, start, 120.0)
-    table, runner, catalogue = recorded(model, start, end, groups)
-    ends, block, slip = catalogue.profile()
+    table, runner, (ends, block, slip) = recorded(model, start, end, groups)
     assert len(ends) == len(table["time"]) > 15
     moved = runner.state().position - start.position + model.v * end
     total = np.bincount(block - 1, slip, model.blocks)

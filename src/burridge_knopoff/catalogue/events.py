@@ -12,20 +12,8 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS
 
-#: Columns of the kernel's table, in its order.
-COLUMNS = (
-    "duration",
-    "epicentre",
-    "first_block",
-    "last_block",
-    "blocks",
-    "moment",
-    "largest_slip",
-    "peak_velocity",
-    "stress_drop",
-    "energy_released",
-    "interval",
-)
+#: Most events, and most slips in profiles, that a run keeps.
+MOST_EVENTS = MOST_NUMBERS / 10
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,19 +23,21 @@ class SlipEvents:
     A slip of a block lasts from its start to its stop. An event is a set of slips that are connected: of neighbours, at
     the same time. Blocks count from 1; all quantities are in the units of `Model`.
 
-    time, duration : τ of the first start, and time from it to the last stop
+    time : τ of the first start; slip_time : the same on the slip clock, which is another one under quasi-static loading
+    duration : slip time from the first start to the last stop
     epicentre : block that starts first; first_block, last_block : ends of the event along the chain
     blocks : how many blocks slip; moment : sum of their slips; largest_slip : largest slip of a block
     peak_velocity : highest slip speed of a block
     stress_drop : by how much the slips lower the spring force, mean over the blocks
     energy_released : work of the springs on the blocks, which friction dissipates
-    interval : time since the last event of which the epicentre was part began; NaN for the first
+    interval : τ since the last event of which the epicentre was part began; NaN for the first
     slip_block, slip : with profiles, the blocks of all events and how far each slipped; slip_end : where those of an
         event end
     status : how the run ended; final : its state, from which another run continues with the events that have not ended
     """
 
     time: np.ndarray = field(repr=False)
+    slip_time: np.ndarray = field(repr=False)
     duration: np.ndarray = field(repr=False)
     epicentre: np.ndarray = field(repr=False)
     first_block: np.ndarray = field(repr=False)
@@ -72,33 +62,39 @@ class SlipEvents:
 
 
 def record_events(
-    model: Model, start: ChainState, end: float, *, begin: float = 0.0, profiles: bool = False
+    model: Model,
+    start: ChainState,
+    end: float,
+    *,
+    begin: float = 0.0,
+    profiles: bool = False,
+    loading: str = "steady",
 ) -> SlipEvents:
     """Return the slip events of a run that begin after a time and end before its end.
 
     start, end : state at the start of the run, and τ of its end
     begin : events that begin earlier are left out; the intervals know of them
     profiles : whether the slip of every block is kept
+    loading : steady: the driver moves at the velocity v | quasistatic: it stands while any block slips, and goes on to
+        the next threshold when all stick. Then τ is the displacement of the driver over v, and the slip clock runs
+        while blocks slip.
 
-    Blocks that slip at the start of the run belong to no event until they have stopped.
+    Blocks that slip at the start of the run belong to no event until they have stopped. Raises ValueError, one line,
+    for more than MOST_EVENTS events, and for quasi-static loading of a law whose friction does not drop as slip begins.
     """
-    runner = Runner(model)
-    catalogue = Catalogue(model.blocks, begin, profiles, MOST_NUMBERS)
-    runner.kernel.record(catalogue)  # type: ignore[union-attr]
+    catalogue = Catalogue(model.blocks, begin, profiles, MOST_EVENTS)
+    runner = Runner(model, catalogue=catalogue, loading=loading)
     runner.begin(start)
     status = runner.run(end)
-    times, values = catalogue.rows.times(), catalogue.rows.values()
-    order = np.argsort(times, kind="stable")
-    table = dict(zip(COLUMNS, values[order].T, strict=True))
-    for name in ("epicentre", "first_block", "last_block", "blocks"):
-        table[name] = table[name].astype(np.int32)
-    ends, block, slip = catalogue.profile()
+    table = catalogue.take()
+    order = np.argsort(table["time"], kind="stable")
+    ends, block, slip = (table.pop(name) for name in ("slip_end", "slip_block", "slip"))
+    for name in table:
+        table[name] = table[name][order]
     if profiles:
-        pieces = np.split(np.arange(len(block)), ends[:-1]) if len(ends) else []
-        index = np.concatenate([pieces[k] for k in order]) if pieces else np.zeros(0, dtype=int)
-        block, slip = block[index], slip[index]
-        ends = np.cumsum(np.diff(ends, prepend=0)[order])
+        counts = table["blocks"]
+        first = (ends - np.diff(ends, prepend=0))[order]
+        index = np.repeat(first - np.cumsum(counts) + counts, counts) + np.arange(len(slip))
+        ends, block, slip = np.cumsum(counts), block[index], slip[index]
     final = runner.final() if status == Status.COMPLETED else runner.state()
-    return SlipEvents(
-        time=times[order], **table, slip_end=ends, slip_block=block, slip=slip, status=status, final=final
-    )
+    return SlipEvents(**table, slip_end=ends, slip_block=block, slip=slip, status=status, final=final)

@@ -155,12 +155,12 @@ class Exponents:
 class Catalogue:
     """Slip events of a run: slips that are connected in space and time."""
 
-    def __init__(self, blocks: int, begin: float, profiles: bool, most_numbers: float) -> None: ...
+    def __init__(self, blocks: int, begin: float, profiles: bool, most: float) -> None: ...
     @property
-    def rows(self) -> Record: ...
-    def profile(self) -> tuple:
+    def full(self) -> bool: ...
+    def take(self) -> dict:
         """
-        Ends of the events' slips, their blocks from 1 on, and how far each slipped.
+        The columns, with an entry for each event in the order in which events end, and the profiles; the catalogue is empty afterwards.
         """
 
 class Mark:
@@ -178,6 +178,7 @@ class Run:
         observing: bool,
         local: int,
         step_limit: int,
+        loading: float,
     ) -> None: ...
     def begin(
         self,
@@ -212,6 +213,8 @@ class Run:
     def local(self) -> bool: ...
     @property
     def clock(self) -> float: ...
+    @property
+    def slip_clock(self) -> float: ...
 
 class TimeStepping:
     """One run by Runge-Kutta of fourth order with a fixed step."""

@@ -22,35 +22,40 @@ namespace bk {
 class Catalogue {
   public:
     struct Event {
-        Clock start;
+        Clock start, load;  // slip clock and loading clock of the first start: one clock under steady loading
         int epicentre = 0, slipping = 0;
         double peak_velocity = 0.0, energy = 0.0;
         std::vector<std::pair<int, double>> slips;  // block, and how far it slipped
         std::shared_ptr<Event> merged;              // the event that goes on with this one
     };
 
-    // Columns of a row.
-    enum { DURATION, EPICENTRE, FIRST, LAST, BLOCKS, MOMENT, LARGEST, PEAK, DROP, ENERGY, INTERVAL, COLUMNS };
+    // Columns, with an entry for each event, in the order in which events end. Blocks count from 1.
+    struct Table {
+        std::vector<double> time, slip_time, duration, moment, largest_slip, peak_velocity, stress_drop,
+            energy_released, interval;
+        std::vector<int> epicentre, first_block, last_block, blocks;
+        // With profiles, blocks and slips of the events one after the other: event k has those before slip_end[k].
+        std::vector<int64_t> slip_end;
+        std::vector<int> slip_block;
+        std::vector<double> slip;
+    };
 
     const double from;
     const bool profiles;
-    Record rows;
-    // The slips of the events in the order of the rows: block and slip, up to profile_end[row].
-    std::vector<int> profile_block;
-    std::vector<double> profile_slip;
-    std::vector<int64_t> profile_end;
+    const size_t most;
+    Table table;
+    bool full = false;
 
-    // from : events that begin earlier are left out; profiles : whether the slip of every block is kept
-    Catalogue(int blocks, double from, bool profiles, double most_numbers)
-        : from(from), profiles(profiles), rows(COLUMNS, most_numbers), event_of(blocks), begun(blocks),
-          position(blocks), last_start(blocks, NAN), slip(blocks) {}
+    // from : events that begin earlier are left out; profiles : whether the slip of every block is kept; most : number
+    // of events and of slips in profiles at which the table is full
+    Catalogue(int blocks, double from, bool profiles, double most)
+        : from(from), profiles(profiles), most(size_t(most)), event_of(blocks), begun(blocks), position(blocks),
+          last_start(blocks, NAN), slip(blocks) {}
 
     // Begin again without events; all blocks that slip now have slipped since before.
     void restart() {
-        rows.clear();
-        profile_block.clear();
-        profile_slip.clear();
-        profile_end.clear();
+        table = {};
+        full = false;
         std::fill(event_of.begin(), event_of.end(), nullptr);
         std::fill(last_start.begin(), last_start.end(), NAN);
     }
@@ -93,7 +98,7 @@ class Catalogue {
     Event *of(int i) { return event_of[i] ? find(event_of[i]).get() : nullptr; }
 
     // Block i starts at position x.
-    void start(const Springs &springs, int i, const Clock &at, double x) {
+    void start(const Springs &springs, int i, const Clock &at, const Clock &load, double x) {
         std::shared_ptr<Event> event;
         for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) {
             const std::shared_ptr<Event> &beside = event_of[springs.neighbour[p]];
@@ -102,6 +107,7 @@ class Catalogue {
         if (!event) {
             event = std::make_shared<Event>();
             event->start = at;
+            event->load = load;
             event->epicentre = i;
         }
         event->slipping++;
@@ -135,6 +141,7 @@ class Catalogue {
         if (other->slips.size() > event->slips.size()) std::swap(event, other);
         if (event->start.until(other->start) < 0.0) {
             event->start = other->start;
+            event->load = other->load;
             event->epicentre = other->epicentre;
         }
         event->slipping += other->slipping;
@@ -153,34 +160,36 @@ class Catalogue {
             if (blocks.empty() || blocks.back() != i) blocks.push_back(i);
             slip[i] += far;
         }
-        const double interval = event.start.time - last_start[event.epicentre];
+        const double interval = event.load.time - last_start[event.epicentre];
         double moment = 0.0, largest = 0.0, drop = 0.0;
         for (int i : blocks) {
-            last_start[i] = event.start.time;
+            last_start[i] = event.load.time;
             moment += slip[i];
             largest = std::max(largest, slip[i]);
             // The spring force falls by (K slip)_i.
             drop -= springs.pull(slip.data(), i);
         }
-        const bool wanted = event.start.time >= from;
-        if (double *row = wanted ? rows.append(event.start.time) : nullptr) {
-            row[DURATION] = event.start.until(at);
-            row[EPICENTRE] = event.epicentre + 1;
-            row[FIRST] = blocks.front() + 1;
-            row[LAST] = blocks.back() + 1;
-            row[BLOCKS] = double(blocks.size());
-            row[MOMENT] = moment;
-            row[LARGEST] = largest;
-            row[PEAK] = event.peak_velocity;
-            row[DROP] = drop / double(blocks.size());
-            row[ENERGY] = event.energy;
-            row[INTERVAL] = interval;
+        full = std::max(table.time.size(), table.slip.size()) >= most;
+        if (event.load.time >= from && !full) {
+            table.time.push_back(event.load.time);
+            table.slip_time.push_back(event.start.time);
+            table.duration.push_back(event.start.until(at));
+            table.epicentre.push_back(event.epicentre + 1);
+            table.first_block.push_back(blocks.front() + 1);
+            table.last_block.push_back(blocks.back() + 1);
+            table.blocks.push_back(int(blocks.size()));
+            table.moment.push_back(moment);
+            table.largest_slip.push_back(largest);
+            table.peak_velocity.push_back(event.peak_velocity);
+            table.stress_drop.push_back(drop / double(blocks.size()));
+            table.energy_released.push_back(event.energy);
+            table.interval.push_back(interval);
             for (int i : blocks) {
                 if (!profiles) break;
-                profile_block.push_back(i + 1);
-                profile_slip.push_back(slip[i]);
+                table.slip_block.push_back(i + 1);
+                table.slip.push_back(slip[i]);
             }
-            profile_end.push_back(int64_t(profile_block.size()));
+            if (profiles) table.slip_end.push_back(int64_t(table.slip.size()));
         }
         for (int i : blocks) slip[i] = 0.0;
     }

@@ -24,6 +24,9 @@ class Exponents {
     Tangent tangent;
     bool running = false;
     int alive = 0, most_stuck = 0;
+    // Least time between two orthonormalisations, about that between two events: in a chain of three blocks a stop
+    // shortens a vector to 1e-4 of what the others leave of it at worst, in long chains to 1e-11.
+    double interval = 1.0;
     std::vector<double> growth, duration;
 
     Exponents(int blocks, int vectors, double start_time, std::vector<double> edges)
@@ -44,7 +47,7 @@ class Exponents {
         if (running || clock + length <= start_time) return;
         running = true;
         seed(state, 0);
-        due = clock + INTERVAL;
+        due = clock + interval;
         if (clock >= edge[0]) {
             batch = 0;
             batch_start = clock;
@@ -74,9 +77,6 @@ class Exponents {
     int lost() const { return std::max(most_stuck, alive < tangent.vectors ? 2 * tangent.blocks - alive : 0); }
 
   private:
-    // Least time between two orthonormalisations, about that between two events: in a chain of three blocks a stop
-    // shortens a vector to 1e-4 of what the others leave of it at worst, in long chains to 1e-11.
-    static constexpr double INTERVAL = 1.0;
     // A vector that has been shortened to less than this is one that stops have taken away: the rest is rounding.
     static constexpr double LOST = 1e-13;
 
@@ -155,7 +155,7 @@ class Exponents {
     // Orthonormalise, and go on to the batch in which the time now lies.
     void renew(const State<Blocks> &state, double clock, bool completed) {
         orthonormalise(true);
-        due = clock + INTERVAL;
+        due = clock + interval;
         while (batch < batches && (clock >= edge[batch + 1] || (completed && batch == batches - 1))) {
             if (batch >= 0) {
                 duration[batch] = clock - batch_start;

@@ -7,11 +7,12 @@ namespace bk {
 // rate.
 void Run::wait(int i) {
     const Springs &springs = model.springs;
-    const double rate = model.v * springs.driving[i];
+    const bool steady = loading == 0.0;
+    const double rate = (steady ? model.v : loading) * springs.driving[i];
     const double left = (springs.threshold[i] - waiting_force(i, since[i])) / rate;
-    begins[i] = rate > 0.0 ? since[i].after(left > 0.0 ? left : 0.0) : Clock{NEVER, 0.0};
+    begins[i] = rate > 0.0 ? (steady ? since : loaded)[i].after(left > 0.0 ? left : 0.0) : Clock{NEVER, 0.0};
     version[i]++;
-    if (rate > 0.0) queue.push({begins[i].time, i, false, version[i]});
+    if (rate > 0.0) starts().push({begins[i].time, i, false, version[i]});
 }
 
 // Plan a group's next piece and put its end into the queue; false where there is no motion.
@@ -30,18 +31,25 @@ int Run::run_groups() {
         return DIVERGED;
     }
     for (;;) {
-        while (!queue.empty()) {
-            const Next &next = queue.top();
-            const uint64_t valid = next.is_group ? groups[next.number]->version : version[next.number];
-            if (next.version == valid && (next.is_group || group_of[next.number] < 0)) break;
-            queue.pop();
-        }
+        drop_void(queue);
         if (const int reason = blocked(0)) return reason;
+        if (loading > 0.0 && queue.empty()) {
+            drop_void(waiting);
+            const Clock at = waiting.empty() ? Clock{NEVER, 0.0} : begins[waiting.top().number];
+            if (at.until(end) < 0.0) {
+                load = {end, 0.0};
+                remember();
+                return COMPLETED;
+            }
+            load = at;
+            if (!start_waiting()) return DIVERGED;
+            continue;
+        }
         const Next next = queue.empty() ? Next{NEVER, 0, false, 0} : queue.top();
         const Clock at = next.time == NEVER ? Clock{NEVER, 0.0}
                          : next.is_group    ? groups[next.number]->start.after(groups[next.number]->length)
                                             : begins[next.number];
-        if (at.until(end) < 0.0) {
+        if (loading == 0.0 && at.until(end) < 0.0) {
             remember();
             for (auto &group : groups)
                 if (catalogue && group->alive && group->planned)
@@ -59,6 +67,35 @@ int Run::run_groups() {
         if (!process(next)) return DIVERGED;
         if (halting && direction_of(halting_block) == 0.0) return HALTED;
     }
+}
+
+// Drop from a queue what no longer comes.
+void Run::drop_void(Queue &queue) {
+    while (!queue.empty()) {
+        const Next &next = queue.top();
+        const uint64_t valid = next.is_group ? groups[next.number]->version : version[next.number];
+        if (next.version == valid && (next.is_group || group_of[next.number] < 0)) return;
+        queue.pop();
+    }
+}
+
+// Let the blocks start that the loading clock has come to. Mirror images start at the same bit of it, and together.
+bool Run::start_waiting() {
+    const Springs &springs = model.springs;
+    std::vector<int> starting, members;
+    do {
+        starting.push_back(waiting.top().number);
+        waiting.pop();
+        drop_void(waiting);
+    } while (!waiting.empty() && begins[waiting.top().number].until(load) == 0.0);
+    for (int i : starting) {
+        gather(i, members);
+        for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) gather(springs.neighbour[p], members);
+    }
+    Group *group = &collect(members);
+    for (int i : starting) change(*group, lane_of[i], now);
+    for (group = complete(group); !log.accumulating && settle(*group, now);) group = complete(group);
+    return part(*group);
 }
 
 // Carry out what comes next, now.
@@ -103,6 +140,7 @@ Group &Run::collect(std::vector<int> &members) {
     for (int i : members) {
         if (slip[i] == 0.0) x[i] = stuck_position(i, now);
         since[i] = now;
+        loaded[i] = load;
         version[i]++;
     }
     return build(members, now);

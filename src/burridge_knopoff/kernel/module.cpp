@@ -43,6 +43,16 @@ auto numbers(const std::vector<double> &values) {
     return array<double>(values, {values.size()});
 }
 
+// A NumPy array that takes these values over.
+template <class T>
+nb::ndarray<nb::numpy, T> taken(std::vector<T> &values) {
+    auto *own = new std::vector<T>(std::move(values));
+    values.clear();
+    nb::capsule owner(own, [](void *p) noexcept { delete static_cast<std::vector<T> *>(p); });
+    const size_t shape[] = {own->size()};
+    return nb::ndarray<nb::numpy, T>(own->data(), 1, shape, owner);
+}
+
 void check_signals() {
     nb::gil_scoped_acquire held;
     if (PyErr_CheckSignals() != 0) throw nb::python_error();
@@ -294,16 +304,33 @@ NB_MODULE(_core, m) {
             "lost.");
 
     nb::class_<Catalogue>(m, "Catalogue", "Slip events of a run: slips that are connected in space and time.")
-        .def(nb::init<int, double, bool, double>(), "blocks"_a, "begin"_a, "profiles"_a, "most_numbers"_a)
-        .def_ro("rows", &Catalogue::rows)
+        .def(nb::init<int, double, bool, double>(), "blocks"_a, "begin"_a, "profiles"_a, "most"_a)
+        .def_ro("full", &Catalogue::full)
         .def(
-            "profile",
-            [](const Catalogue &catalogue) {
-                return nb::make_tuple(array<int64_t>(catalogue.profile_end, {catalogue.profile_end.size()}),
-                                      array<int32_t>(catalogue.profile_block, {catalogue.profile_block.size()}),
-                                      numbers(catalogue.profile_slip));
+            "take",
+            [](Catalogue &catalogue) {
+                Catalogue::Table &table = catalogue.table;
+                nb::dict made;
+                made["time"] = taken(table.time);
+                made["slip_time"] = taken(table.slip_time);
+                made["duration"] = taken(table.duration);
+                made["epicentre"] = taken(table.epicentre);
+                made["first_block"] = taken(table.first_block);
+                made["last_block"] = taken(table.last_block);
+                made["blocks"] = taken(table.blocks);
+                made["moment"] = taken(table.moment);
+                made["largest_slip"] = taken(table.largest_slip);
+                made["peak_velocity"] = taken(table.peak_velocity);
+                made["stress_drop"] = taken(table.stress_drop);
+                made["energy_released"] = taken(table.energy_released);
+                made["interval"] = taken(table.interval);
+                made["slip_end"] = taken(table.slip_end);
+                made["slip_block"] = taken(table.slip_block);
+                made["slip"] = taken(table.slip);
+                return made;
             },
-            "Ends of the events' slips, their blocks from 1 on, and how far each slipped.");
+            "The columns, with an entry for each event in the order in which events end, and the profiles; the "
+            "catalogue is empty afterwards.");
 
     nb::class_<Mark>(m, "Mark", "What repeats the last pieces of a run that ended.");
 
@@ -311,11 +338,11 @@ NB_MODULE(_core, m) {
         .def(
             "__init__",
             [](Run *at, const Model &model, EventLog &log, Observer &observer, Exponents &exponents, bool observing,
-               int local, long long step_limit) {
-                new (at) Run(model, log, observer, exponents, observing, local, step_limit);
+               int local, long long step_limit, double loading) {
+                new (at) Run(model, log, observer, exponents, observing, local, step_limit, loading);
                 at->check_signals = check_signals;
             },
-            "model"_a, "log"_a, "observer"_a, "exponents"_a, "observing"_a, "local"_a, "step_limit"_a,
+            "model"_a, "log"_a, "observer"_a, "exponents"_a, "observing"_a, "local"_a, "step_limit"_a, "loading"_a,
             nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>(), nb::keep_alive<1, 5>())
         .def(
             "begin",
@@ -346,7 +373,8 @@ NB_MODULE(_core, m) {
         .def_rw("end", &Run::end)
         .def_ro("steps", &Run::steps)
         .def_ro("local", &Run::local)
-        .def_prop_ro("clock", [](const Run &run) { return run.now.time; });
+        .def_prop_ro("clock", [](const Run &run) { return (run.loading > 0.0 ? run.load : run.now).time; })
+        .def_prop_ro("slip_clock", [](const Run &run) { return run.now.time; });
 
     nb::class_<TimeStepping>(m, "TimeStepping", "One run by Runge-Kutta of fourth order with a fixed step.")
         .def(

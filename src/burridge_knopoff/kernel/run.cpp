@@ -3,13 +3,13 @@
 namespace bk {
 
 void Run::restart(double time) {
-    now = {time, 0.0};
+    now = load = {time, 0.0};
     observer.begin = time;
     steps = 0;
     since_event = 0.0;
     log.restart();
     if (catalogue) catalogue->restart();
-    queue = {};
+    queue = waiting = {};
     spare.clear();
     for (int k = 0; k < int(groups.size()); k++) {
         groups[k]->version++;
@@ -42,7 +42,7 @@ void Run::state_of(int i, double &position, double &speed, double &direction) {
     }
     Group &group = *groups[group_of[i]];
     const int lane = lane_of[i];
-    position = group.state.position.lane(lane);
+    position = group.state.position.lane(lane) - loading * loaded[i].until(load);
     speed = group.state.velocity.lane(lane);
     direction = group.state.slip.lane(lane);
     const double t = group.start.until(now);
@@ -55,7 +55,7 @@ void Run::state_of(int i, double &position, double &speed, double &direction) {
 
 // Where a block is at a time, if it sticks.
 double Run::stuck_position(int i, const Clock &at) const {
-    if (group_of[i] < 0) return x[i] - model.v * since[i].until(at);
+    if (group_of[i] < 0) return (x[i] - model.v * since[i].until(at)) - loading * loaded[i].until(load);
     const Group &group = *groups[group_of[i]];
     return group.state.position.lane(lane_of[i]) - model.v * group.start.until(at);
 }
@@ -118,6 +118,7 @@ void Run::retire(Group &group) {
         slip[i] = group.state.slip.lane(k);
         touching[i] = group.state.touching.lane(k);
         since[i] = group.start;
+        loaded[i] = load;
         group_of[i] = -1;
     }
     group.version++;
@@ -138,7 +139,8 @@ void Run::change(Group &group, int lane, const Clock &at) {
     if (exponents.tangent.vectors > 0) exponents.tangent.change(group.state, i);
     const int kind = group.state.slip.lane(lane) == 0.0;
     group.state.transition(lane / LANES, from_bits(1 << lane % LANES));
-    if (catalogue && kind) catalogue->start(model.springs, i, at, group.state.position.lane(lane));
+    if (catalogue && kind)
+        catalogue->start(model.springs, i, at, loading > 0.0 ? load : at, group.state.position.lane(lane));
     if (catalogue && !kind) catalogue->stop(model.springs, model.v, i, at, group.state.position.lane(lane));
     log.add(i, kind, at.time, [&](double *row) {
         double direction;
@@ -178,6 +180,8 @@ void Run::carry_out(Group &group, const Clock &at) {
 void Run::remember() {
     marked.table.resize(size_t(blocks) * COLUMNS);
     marked.group = group_of;
+    marked.now = now;
+    marked.load = load;
     marked.since_event = since_event;
     if (catalogue) marked.catalogue = catalogue->open();
     marked.side = observer.side;
@@ -201,6 +205,7 @@ void Run::remember() {
             if (!local) marked.side = group.side;
         }
         row[6] = at.time, row[7] = at.rest;
+        row[10] = loaded[i].time, row[11] = loaded[i].rest;
     }
 }
 
@@ -224,7 +229,7 @@ int Run::blocked(int done) {
         work = 0;
     }
     if (log.accumulating) return ACCUMULATING_EVENTS;
-    if (log.full() || observer.crossings.full) return FULL;
+    if (log.full() || observer.crossings.full || (catalogue && catalogue->full)) return FULL;
     return steps >= step_limit ? STEP_LIMIT : COMPLETED;
 }
 
@@ -232,11 +237,18 @@ int Run::run_whole() {
     Group &group = *groups[group_of[0]];
     for (;;) {
         if (const int reason = blocked(blocks * exponents.tangent.vectors)) return reason;
+        if (loading > 0.0 && !group.planned && exponents.stuck(group.state) == blocks) {
+            if (load_next(group)) continue;
+            if (exponents.running) exponents.follow(group.state, load.time, true);
+            return COMPLETED;
+        }
         if (!group.planned && !plan(group)) {
             now = group.start;
             return DIVERGED;
         }
-        const double remaining = group.start.until(end), length = std::min(group.length, remaining);
+        // The loading clock, which ends a run, stands while blocks slip.
+        const double remaining = loading > 0.0 ? NEVER : group.start.until(end),
+                     length = std::min(group.length, remaining);
         const bool completed = group.length >= remaining, event = group.event && group.length <= remaining;
         const bool due = event || completed;
         // The end of the run has no part in the search: it must not move an event by a bit.
@@ -244,7 +256,7 @@ int Run::run_whole() {
         if (observing) observe(group, length);
         if (catalogue) group.record(*catalogue, polynomial, group.observed, length);
         if (exponents.tangent.vectors > 0) {
-            exponents.begin_within(group.state, group.start.time, length);
+            exponents.begin_within(group.state, loading > 0.0 ? load.time : group.start.time, length);
             if (exponents.running) follow(group, length);
         }
         now = group.start.after(length);
@@ -268,10 +280,48 @@ int Run::run_whole() {
         }
         // At events, so that all solvers look after them at the same times.
         if (exponents.running && (due || since_event >= LONGEST_FOLLOW))
-            exponents.follow(group.state, now.time, completed);
+            exponents.follow(group.state, loading > 0.0 ? load.time : now.time, completed);
         if (completed) return COMPLETED;
         if (halting && group.state.slip.lane(halting_block) == 0.0) return HALTED;
     }
+}
+
+// Let the driver, which stands while blocks slip, go on until a block starts; false if the run ends before.
+bool Run::load_next(Group &group) {
+    const Layout &layout = group.layout;
+    Vectors left(layout.columns);
+    double least = NEVER;
+    for (int c = 0; c < layout.columns; c++) {
+        const mask pulled = layout.present[c] & (layout.driving[c] > vec{});
+        const vec gap = largest(layout.threshold[c] - group.state.force(c), vec{});
+        left[c] = select(pulled, gap / (loading * layout.driving[c]), splat(NEVER));
+        least = std::min(least, least_lane(left[c]));
+    }
+    // The state stays where the last slip left it until the next start.
+    const Clock from = loaded[0];
+    if (exponents.tangent.vectors > 0) exponents.begin_within(group.state, from.time, least);
+    if (from.until(end) < least) {
+        load = {end, 0.0};
+        remember();
+        return false;
+    }
+    load = from.after(least);
+    // A batch of exponents begins before an event.
+    if (exponents.running) exponents.follow(group.state, load.time, false);
+    std::fill(loaded.begin(), loaded.end(), load);
+    due.assign(layout.columns, 0);
+    for (int c = 0; c < layout.columns; c++) {
+        group.state.position[c] -= loading * least;
+        due[c] = bits(left[c] == least);
+    }
+    if (exponents.running) {
+        int first = 0;
+        while (left.lane(first) != least) first++;
+        exponents.tangent.load_until_start(model.springs, first);
+    }
+    change_due(group, now);
+    while (!log.accumulating && settle(group, now)) {}
+    return true;
 }
 
 // Move the state on along the piece; in closed form, from the last event.

@@ -20,9 +20,11 @@ namespace bk {
 // What repeats the last pieces of a run that ended, so that one that goes on has the same pieces as if it had not.
 struct Mark {
     // For each block x, U', U'', age, slip, touching, a clock, that of its group, and what pulls on it from outside the
-    // group; without a group when it starts. The group, −1 for none.
+    // group; without a group when it starts; the loading clock at x. The group, −1 for none.
     std::vector<double> table;
     std::vector<int> group;
+    // The slip clock and, under quasi-static loading, the loading clock.
+    Clock now, load;
     // Positions and velocities at the last event, for the closed form.
     std::vector<double> origin, origin_velocity;
     // Slip events that had not ended.
@@ -33,7 +35,7 @@ struct Mark {
 
 class Run {
   public:
-    static constexpr int COLUMNS = 10;  // of the table of a mark
+    static constexpr int COLUMNS = 12;  // of the table of a mark
 
     // Number of blocks from which on groups are faster than one.
     static constexpr int MANY = 24;
@@ -46,9 +48,13 @@ class Run {
     Exponents &exponents;
     const bool observing, local;
     const long long step_limit;
+    // Velocity of the driver while all blocks stick, under quasi-static loading, where v = 0; 0 under steady loading.
+    const double loading;
     int halting_block = -1;
     double end;
     Clock now;
+    // Under quasi-static loading, the loading clock: it runs while all blocks stick, `now` while some slip.
+    Clock load;
     long long steps = 0;
     std::function<void()> check_signals = [] {};
     // The closed form between events, if that is wanted.
@@ -58,14 +64,16 @@ class Run {
 
     // local : 1 in groups, 0 as one, −1 whatever is faster
     Run(const Model &model, EventLog &log, Observer &observer, Exponents &exponents, bool observing, int local,
-        long long step_limit)
+        long long step_limit, double loading)
         : model(model), log(log), observer(observer), exponents(exponents), observing(observing),
           local(exponents.tangent.vectors == 0 && (local < 0 ? model.springs.blocks >= MANY : local > 0)),
-          step_limit(step_limit), end(observer.end()), blocks(model.springs.blocks),
+          step_limit(step_limit), loading(loading), end(observer.end()), blocks(model.springs.blocks),
           first(observer.section ? observer.section - 1 : 0),
           last(observer.section ? observer.section : model.springs.blocks), x(blocks), u(blocks), acceleration(blocks),
-          age(blocks), slip(blocks), touching(blocks), since(blocks), group_of(blocks, -1), lane_of(blocks, -1),
-          version(blocks), begins(blocks) {}
+          age(blocks), slip(blocks), touching(blocks), since(blocks), loaded(blocks), group_of(blocks, -1),
+          lane_of(blocks, -1), version(blocks), begins(blocks) {
+        if (loading > 0.0) exponents.interval = 0.0;
+    }
 
     Run(const Run &) = delete;
 
@@ -77,7 +85,7 @@ class Run {
             slip[i] = stuck[i] ? 0.0 : speed[i] < 0.0 ? -1.0 : 1.0;
             acceleration[i] = touching[i] = 0.0;
             age[i] = LONG;
-            since[i] = {time, 0.0};
+            since[i] = loaded[i] = {time, 0.0};
         }
         restart(time);
         settled = false;
@@ -94,8 +102,13 @@ class Run {
             slip[i] = row[4];
             touching[i] = row[5];
             since[i] = {row[6], row[7]};
+            loaded[i] = {row[10], row[11]};
         }
         restart(time);
+        if (loading > 0.0) {
+            now = mark.now;
+            load = mark.load;
+        }
         since_event = mark.since_event;
         if (catalogue && mark.catalogue) catalogue->resume(*mark.catalogue);
         // A section that is observed from now on is crossed from the side that the run was on.
@@ -105,7 +118,7 @@ class Run {
         for (int i = 0; i < blocks; i++) {
             if (mark.group[i] < 0) {
                 begins[i] = {row_of(mark, i)[8], row_of(mark, i)[9]};
-                if (begins[i].time < NEVER) queue.push({begins[i].time, i, false, version[i]});
+                if (begins[i].time < NEVER) starts().push({begins[i].time, i, false, version[i]});
                 continue;
             }
             if (mark.group[i] >= int(members.size())) members.resize(mark.group[i] + 1);
@@ -148,6 +161,8 @@ class Run {
     // Of blocks without a group, at the time `since`; of others when their group began.
     std::vector<double> x, u, acceleration, age, slip, touching;
     std::vector<Clock> since;
+    // The loading clock at these positions.
+    std::vector<Clock> loaded;
     std::vector<int> group_of, lane_of;
     std::vector<uint64_t> version;
     std::vector<std::unique_ptr<Group>> groups;
@@ -163,7 +178,10 @@ class Run {
             return time > other.time || (time == other.time && number > other.number);
         }
     };
-    std::priority_queue<Next, std::vector<Next>, std::greater<Next>> queue;
+    // What the slip clock comes to next, and what the loading clock does.
+    using Queue = std::priority_queue<Next, std::vector<Next>, std::greater<Next>>;
+    Queue queue, waiting;
+    Queue &starts() { return loading > 0.0 ? waiting : queue; }
 
     static const double *row_of(const Mark &mark, int i) { return &mark.table[size_t(i) * COLUMNS]; }
 
@@ -185,12 +203,15 @@ class Run {
 
     // One group.
     int run_whole();
+    bool load_next(Group &group);
     void advance(Group &group, double length);
     void observe(Group &group, double to);
     void follow(Group &group, double length);
 
     // Many groups, in groups.cpp.
     int run_groups();
+    void drop_void(Queue &queue);
+    bool start_waiting();
     void wait(int i);
     bool schedule(Group &group);
     bool process(const Next &next);

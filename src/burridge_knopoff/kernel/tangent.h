@@ -57,8 +57,22 @@ class Tangent {
         } else if (state.model.drops() && state.at_threshold(c, state.force(c))[lane]) {
             Vectors relative(columns);
             for (int k = 0; k < columns; k++) relative[k] = state.velocity[k] - state.model.v;
-            const double factor = sign * state.start_acceleration(c)[lane] / state.force_rate(relative.at(), c)[lane];
+            const double rate = state.force_rate(relative.at(), c)[lane];
+            // Where the driver stands the perturbed block starts at the same time: the driver has gone less or more
+            // far.
+            if (rate == 0.0) return;
+            const double factor = sign * state.start_acceleration(c)[lane] / rate;
             for (int v = 0; v < vectors; v++) u(v)[i] = factor * state.model.springs.pull(x(v), i);
+        }
+    }
+
+    // Carry the perturbations to the start of block i by the driver alone: it goes as far as takes s_i to the
+    // threshold, x_j → x_j + δs_i/D_i for every block.
+    void load_until_start(const Springs &springs, int i) {
+        forget_stops();
+        for (int v = 0; v < vectors; v++) {
+            const double less = springs.pull(x(v), i) / springs.driving[i];
+            for (int j = 0; j < blocks; j++) x(v)[j] += less;
         }
     }
 

@@ -7,9 +7,12 @@ import numpy as np
 from burridge_knopoff.kernel._core import KernelModel
 from burridge_knopoff.model.model import Model
 
+#: steady: the driver moves at the velocity v | quasistatic: it stands while any block slips
+LOADINGS = ("steady", "quasistatic")
 
-def kernel_model(model: Model) -> KernelModel:
-    """Return the chain, friction law and driver of a model for the kernel."""
+
+def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
+    """Return the chain, friction law and driver of a model for the kernel; loading : one of LOADINGS."""
     chain, law = model.chain, model.law
     operations, constants = law.tape.table
     start, index, strength = chain.neighbours
@@ -29,6 +32,6 @@ def kernel_model(model: Model) -> KernelModel:
         linear=law.is_linear,
         rate=-float(law.slope(0.0)),
         steepest=law.steepest,
-        v=model.v,
+        v=model.v if loading == "steady" else 0.0,
         symmetric=model.contact == "symmetric",
     )

@@ -7,9 +7,10 @@ from functools import partial
 
 import numpy as np
 
-from burridge_knopoff.kernel._core import EventLog, Exponents, Observer, Run, TimeStepping
+from burridge_knopoff.kernel._core import Catalogue, EventLog, Exponents, Observer, Run, TimeStepping
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.running.kernel_model import kernel_model
+from burridge_knopoff.model.ranges import OneOf
+from burridge_knopoff.running.kernel_model import LOADINGS, kernel_model
 from burridge_knopoff.running.normal_modes import normal_modes
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
@@ -34,8 +35,13 @@ class Runner:
     exponents : perturbations from which Lyapunov exponents are computed
     perturbations : tangent vectors to carry along unchanged by the solver, columns of shape (2 blocks, vectors)
     groups : whether blocks that slip together move in groups of their own; None for whatever is faster
+    catalogue : records slip events
+    loading : steady, or quasistatic, for the solver series without an observer. Quasi-static, times of states and of
+        `run` are of the loading clock τ, the displacement of the driver over v. The slip clock of events runs while
+        blocks slip. Exponents are rates in the loading clock.
 
-    Raises ValueError if the solver needs a closed form and the model has none.
+    Raises ValueError if the solver needs a closed form and the model has none, and for quasi-static loading of friction
+    that does not drop as slip begins: a block at its threshold would stay there.
     """
 
     def __init__(
@@ -51,6 +57,8 @@ class Runner:
         exponents: Exponents | None = None,
         perturbations: np.ndarray | None = None,
         groups: bool | None = None,
+        catalogue: Catalogue | None = None,
+        loading: str = "steady",
     ) -> None:
         instance_of(model, Model, "model")
         if solver == "map" and not model.has_closed_form:
@@ -58,9 +66,17 @@ class Runner:
                 "solver: got 'map', expected series | rk4: map needs a closed form, that is a linear friction law, not "
                 "too steep, in a uniform chain with open ends"
             )
+        quasistatic = OneOf(LOADINGS).form(loading, "loading") == "quasistatic"
+        if quasistatic and float(model.law(0.0)) >= 1.0:
+            raise ValueError(
+                f"loading: got 'quasistatic', expected steady: friction of the law {model.law.name} does not drop as "
+                "slip begins, and a block at its threshold would stay there"
+            )
+        if quasistatic and solver != "series":
+            raise refusal("solver", solver, "series under quasi-static loading")
         self.model = model
         # These decide the steps: a continued run repeats the steps of the whole run only if they are equal.
-        self.solver = model, solver, step if solver == "rk4" else None
+        self.solver = model, solver, step if solver == "rk4" else None, loading
         blocks = model.blocks
         rate_limit = EVENTS_PER_BLOCK_AND_UNIT * blocks
         self.log = EventLog(blocks, events_from, keep_events, rate_limit, stops_only, MOST_NUMBERS)
@@ -75,10 +91,20 @@ class Runner:
         else:
             choice = 0 if solver == "map" else -1 if groups is None else int(groups)
             self.kernel = Run(
-                kernel_model(model), self.log, self.observer, exponents, observer is not None, choice, STEP_LIMIT
+                kernel_model(model, loading),
+                self.log,
+                self.observer,
+                exponents,
+                observer is not None,
+                choice,
+                STEP_LIMIT,
+                model.v if quasistatic else 0.0,
             )
+            if catalogue is not None:
+                self.kernel.record(catalogue)
             if solver == "map":
                 self.kernel.use_modes(partial(normal_modes, model.chain))
+        self.catalogue = catalogue
         if perturbations is not None:
             self.carry(perturbations)
 
@@ -117,11 +143,12 @@ class Runner:
             raise ValueError("solver: got 'rk4', expected series | map for a run to a time or a stop")
         status = Status(self.kernel.run())
         for key, table, remedy in (
+            ("catalogue", self.catalogue, "a shorter window, or none of the profiles"),
             ("events", self.log.earlier_events, "none, or a shorter transient or window"),
             ("events", self.log.events, "none, or a shorter event_window or window"),
             ("window", self.observer.crossings, "a shorter one"),
         ):
-            if table.full:
+            if table is not None and table.full:
                 most = f"{MOST_NUMBERS:.0e} numbers to keep by τ = {self.clock:.6g}"
                 raise ValueError(f"{key}: got more than {most}, expected {remedy}")
         return status
@@ -138,7 +165,7 @@ class Runner:
 
     @property
     def clock(self) -> float:
-        """The present time τ."""
+        """The present time τ, quasi-static that of the loading clock."""
         return self.kernel.clock
 
     @property

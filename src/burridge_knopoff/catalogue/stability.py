@@ -1,0 +1,89 @@
+"""How slip events let perturbations grow: Lyapunov exponents and multipliers per event."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from burridge_knopoff.catalogue.events import MOST_EVENTS
+from burridge_knopoff.kernel._core import Catalogue, Exponents
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+
+#: Batches for the errors of exponents.
+BATCHES = 16
+
+
+@dataclass(frozen=True)
+class EventExponents:
+    """Lyapunov exponents of the map from one slip event to the next, in descending order.
+
+    exponent, error : growth of the logarithm of perturbations per event, and its standard error from batches, shape
+        (count,); −∞ for perturbations that events take away
+    events : number of events over which it was taken
+    status : how the run ended
+    """
+
+    exponent: np.ndarray
+    error: np.ndarray
+    events: int
+    status: Status
+
+
+def event_exponents(
+    model: Model,
+    start: ChainState,
+    end: float,
+    *,
+    begin: float = 0.0,
+    count: int = 1,
+    loading: str = "quasistatic",
+) -> EventExponents:
+    """Return the largest Lyapunov exponents per slip event, between two times of the loading clock.
+
+    start, end, begin, loading : see `record_events`; perturbations start halfway between start and begin, and turn
+        into the growing directions first
+    count : how many exponents
+
+    Under quasi-static loading N blocks have N − 1 finite exponents: the state at the start of an event has N positions,
+    of which the threshold fixes one.
+
+    Reference: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30.
+    """
+    catalogue = Catalogue(model.blocks, begin, False, MOST_EVENTS)
+    early = 0.5 * (start.time + begin)
+    exponents = Exponents(model.blocks, count, early, np.linspace(begin, end, BATCHES + 1))
+    runner = Runner(model, exponents=exponents, catalogue=catalogue, loading=loading, groups=False)
+    runner.begin(start)
+    status = runner.run(end)
+    time, growth = catalogue.take()["time"], exponents.results()["growth"]
+    events = len(time)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean = growth.sum(axis=0) / events
+        share = np.histogram(time, np.linspace(begin, end, BATCHES + 1))[0] / events
+        scatter = growth - mean * (share * events)[:, None]
+        error = np.sqrt(BATCHES / (BATCHES - 1) * np.sum(scatter**2, axis=0)) / events
+    return EventExponents(mean, np.where(np.isfinite(mean), error, 0.0), events, status)
+
+
+def event_multipliers(model: Model, start: ChainState, end: float, *, loading: str = "quasistatic") -> np.ndarray:
+    """Return the multipliers of the events between two moments of rest, in descending order of size, shape (blocks,).
+
+    start, end : a state in which all blocks stick, and τ of another such moment; for the multipliers of a periodic
+        motion, a period later
+    loading : see `record_events`
+
+    They are eigenvalues of what the events make of displacements of the blocks. Under quasi-static loading one of them
+    is 0, as the threshold fixes one displacement. Raises ValueError if the run ends early or a block slips at its end.
+    """
+    blocks = model.blocks
+    perturbations = np.vstack([np.eye(blocks), np.zeros((blocks, blocks))])
+    runner = Runner(model, perturbations=perturbations, loading=loading, groups=False)
+    runner.begin(start)
+    status = runner.run(end)
+    if status != Status.COMPLETED or not runner.state().stuck.all():
+        raise ValueError(f"end: got {end!r}, expected a time at which all blocks stick")
+    values = np.linalg.eigvals(runner.perturbations[:blocks])
+    return values[np.argsort(-np.abs(values), kind="stable")]
