@@ -31,6 +31,11 @@ for stage in ("attractors", "basins", "bifurcations", "phases", "solvers", "proo
         include: f"workflow/rules/{stage}.smk"
 
 
+if "catalogue" in STUDY.stages:
+
+    include: "workflow/rules/catalogue.smk"
+
+
 include: "workflow/rules/two_blocks.smk"
 include: "workflow/rules/summaries.smk"
 include: "workflow/rules/figures.smk"

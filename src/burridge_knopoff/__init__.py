@@ -8,6 +8,9 @@ an `InitialState` to begin from, a `ChainState` on the way.
 Runs: `simulate` makes a `Run`, a `Trajectory`, by `Settings`, seen on a `Section`; `sweep` makes many of them along a;
 `open_study` reads those of a study.
 
+Slip events: `record_events` and `Run.catalogue` make a `Catalogue`, the `SlipEvents` of a run; `fit_slope` fits the
+`Slope` of their magnitudes.
+
 Attractors and basins: `find_attractors` by `SearchSettings` and `MotionSettings` returns each `Attractor` with its
 `SteadyMotion`, `MotionKind` and `Symmetry`; `label_states` tells which of them states reach, `basin_map` those of a
 plane.

@@ -2,10 +2,15 @@
 from .attractors.attractor import Attractor as Attractor
 from .attractors.labels import label_states as label_states
 from .attractors.settings import SearchSettings as SearchSettings
+from .catalogue.events import SlipEvents as SlipEvents
+from .catalogue.slope import Slope as Slope
+from .catalogue.slope import fit_slope as fit_slope
 from .laws import FormulaLaw as FormulaLaw
 from .laws import Law as Law
 from .laws import law_of as law_of
 from .library.basin_map import basin_map as basin_map
+from .library.catalogue import Catalogue as Catalogue
+from .library.catalogue import record_events as record_events
 from .library.find_attractors import find_attractors as find_attractors
 from .library.open_study import open_study as open_study
 from .library.run import Run as Run

@@ -1,4 +1,6 @@
-"""Runs along a: the numbers of single runs, on any number of cores, and errors that name their a."""
+"""Runs over parameters: the numbers of single runs, on any number of cores, and errors that name their point."""
+
+from itertools import product
 
 import numpy as np
 import pytest
@@ -33,6 +35,34 @@ def test_a_model_and_the_number_of_cores():
     assert all(way.identical(ways[0]) for way in ways)
 
 
+@pytest.mark.parametrize(
+    ("law", "axes"),
+    [
+        ("nonlinear", {"a": [0.3, 0.05], "v": [0.2, 0.1, 0.15]}),
+        ("carlson_langer", {"coupling": [0.8, 1.3], "a": [0.3, 0.5], "sigma": [0.02, 0.2]}),
+        ("linearized", {"mass": [1.0, 2.5], "threshold": [0.9, 1.1], "pulling": [0.7]}),
+    ],
+)
+def test_a_grid_over_several_parameters_has_the_numbers_of_single_runs(law, axes):
+    model = Model(Chain(3), law_of(law, 0.08))
+    runs = sweep(model, initial="plus", **axes, **SHORT)
+    # a is first, since it is an argument of its own; the others are in the order given.
+    assert runs["mean_distance"].dims == tuple(sorted(axes, key=lambda name: name != "a"))
+    for values in product(*axes.values()):
+        point = dict(zip(axes, values, strict=True))
+        run = simulate(model.at(**point), "plus", **SHORT)
+        for name, numbers in runs.sel(point).drop_vars("status").data_vars.items():
+            assert np.array_equal(numbers, getattr(run, name), equal_nan=True), (name, point)
+
+
+def test_parameters_that_are_one_number_are_no_dimensions():
+    runs = sweep("carlson_langer", 0.3, v=[0.1, 0.2], sigma=0.05, coupling=1.1, **SHORT)
+    assert runs["mean_distance"].dims == ("v",)
+    assert (runs["a"].item(), runs.attrs["law_sigma"], runs.attrs["chain_coupling"]) == (0.3, 0.05, 1.1)
+    same = sweep(Model(Chain(3, coupling=1.1), law_of("carlson_langer", 0.3, {"sigma": 0.05})), v=[0.1, 0.2], **SHORT)
+    assert runs.identical(same)
+
+
 def test_a_run_that_does_not_complete_is_there():
     runs = sweep("linearized", [0.1, 1.9], contact="symmetric", transient=0.0, window=1e4)
     assert runs["status"].values.tolist() == [0, 3]
@@ -51,7 +81,13 @@ def test_a_run_that_does_not_complete_is_there():
         ({"colour": "blue"}, "colour: not a setting"),
         ({"lyapunov_exponents": 7}, "lyapunov_exponents: 7"),
         ({"chain": Chain(4)}, "blocks: 4"),
-        ({"law": Model(Chain(3), law_of("linearized", 0.1)), "v": 0.2}, "beside a model"),
+        ({"law": Model(Chain(3), law_of("linearized", 0.1)), "chain": Chain(3)}, "beside a model"),
+        ({"v": [0.1, 0.0]}, "v: 0.0"),
+        ({"v": [0.1, 0.1]}, "v: got 0.1 twice"),
+        ({"sigma": [0.1]}, "sigma: not a setting or a parameter"),
+        ({"coupling": [1.0, -1.0]}, "coupling: -1.0"),
+        ({"chain": Chain(3, coupling=(1.0, 2.0)), "coupling": [1.0, 2.0]}, "coupling: (1.0, 2.0)"),
+        ({"a": [0.1, 1.9], "threshold": [1.0, 1.2], "solver": "map"}, "a = 1.9, threshold = 1.2: solver: 'map'"),
     ],
 )
 def test_bad_input_is_refused_in_one_line(options, words):

@@ -53,7 +53,7 @@ def correct_calls():
             "return_time": orbit.return_time,
             "symmetry": Symmetry.ASYMMETRIC,
         },
-        "follow": {"orbit": orbit, "a_range": (0.0864, 0.0866), "settings": Following()},
+        "follow": {"orbit": orbit, "interval": (0.0864, 0.0866), "settings": Following()},
         "label_states": {"model": MODEL, "attractors": [], "position": np.ones((1, 3)), "velocity": np.ones((1, 3))},
         "law_of": {"name": "linearized", "a": 0.08, "description": {}},
         "locate_bifurcations": {"branch": branch},

@@ -42,8 +42,9 @@ def branch(monkeypatch):
 
     def made(value, a=lambda length: length, kind=BifurcationKind.PERIOD_DOUBLING):
         def point(length, slope=1.0):
-            orbit = SimpleNamespace(a=a(length), symmetry=Symmetry.ASYMMETRIC, period=1.0)
-            return stand_in(BranchOrbit, orbit=orbit, multipliers=value(length), length=length, tangent=[slope])
+            orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
+            told = {"value": a(length), "multipliers": value(length), "length": length, "tangent": [slope]}
+            return stand_in(BranchOrbit, orbit=orbit, **told)
 
         monkeypatch.setattr(bifurcations, "critical_values", lambda orbit, value: {(kind, "keeping"): value})
         monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
@@ -83,7 +84,7 @@ def test_the_place_of_a_bifurcation_is_known_within_where_the_sign_changes(branc
     point = branch(lambda length: np.expm1(3.0 * (length - 0.3)) if abs(length - 0.3) > dead else 0.0, place)
     (bifurcation,) = bifurcations._roots(point(0.0), point(0.5))
     assert bifurcation.a == pytest.approx(place(0.3))
-    assert bifurcation.a_error == pytest.approx(error, rel=1e-3, abs=0.0)
+    assert bifurcation.error == pytest.approx(error, rel=1e-3, abs=0.0)
     assert (bifurcation.before.length, bifurcation.after.length) == (0.0, 0.5)
 
 
@@ -92,7 +93,7 @@ def test_noise_of_one_sign_holds_no_bifurcation_from_both_sides(monkeypatch, bra
     point = branch(lambda length: length - 0.3 if abs(length - 0.3) > 3e-9 else 1e-15)
     monkeypatch.setattr(bifurcations, "brentq", lambda value, low, high, **_: 0.3)
     (bifurcation,) = bifurcations._roots(point(0.0), point(0.5))
-    assert bifurcation.a_error == pytest.approx(1e-8, rel=1e-3, abs=0.0)
+    assert bifurcation.error == pytest.approx(1e-8, rel=1e-3, abs=0.0)
 
 
 def test_a_value_that_is_0_for_long_is_no_bifurcation(monkeypatch, branch):
@@ -125,9 +126,10 @@ def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeyp
 
     def point(length):
         values = np.array([0.6 + 0.8j, 0.6 - 0.8j])
-        orbit = SimpleNamespace(a=0.1 + length, symmetry=Symmetry.SYNCHRONIZED)
+        orbit = SimpleNamespace(symmetry=Symmetry.SYNCHRONIZED)
         multipliers = SimpleNamespace(keeping=values, breaking=values, length=length)
-        return stand_in(BranchOrbit, orbit=orbit, multipliers=multipliers, length=length, tangent=[1.0])
+        told = {"value": 0.1 + length, "multipliers": multipliers, "length": length, "tangent": [1.0]}
+        return stand_in(BranchOrbit, orbit=orbit, **told)
 
     def values(orbit, found):
         sign = {"period_doubling": 1.0, "torus": -1.0, "pitchfork": -1.0, "fold": 1.0}
@@ -177,11 +179,11 @@ def test_the_period_at_a_bifurcation_is_that_of_the_orbits_before_it(before, exp
     ],
 )
 def test_an_orbit_grazes_at_the_length_that_is_left(remaining, slope, beyond, a, error, turns):
-    point = stand_in(BranchOrbit, orbit=SimpleNamespace(a=0.1), remaining=remaining, tangent=[9.0, slope], corner=True)
+    point = stand_in(BranchOrbit, value=0.1, remaining=remaining, tangent=[9.0, slope], corner=True)
     following = [] if beyond is None else [stand_in(BranchOrbit, tangent=[-9.0, beyond], corner=False)]
     (bifurcation,) = locate_bifurcations([point, *following])
     assert (bifurcation.kind, bifurcation.turns) == (BifurcationKind.GRAZING, turns)
-    assert (bifurcation.a, bifurcation.a_error) == (
+    assert (bifurcation.a, bifurcation.error) == (
         pytest.approx(a, abs=1e-12),
         pytest.approx(error, rel=1e-9, abs=0.0),
     )
@@ -203,8 +205,9 @@ def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_that(monkeyp
     """It is looked for both ways, as far as the branch has come in its last steps and twice its last change of a."""
     asked, own = [], locate_bifurcations
 
-    def followed(orbit, a_range, *, upward):
-        asked.append((orbit, *a_range))
+    def followed(orbit, interval, *, parameter, upward):
+        assert parameter == "a"
+        asked.append((orbit, *interval))
         return upward
 
     def located(branch):
@@ -216,15 +219,16 @@ def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_that(monkeyp
     monkeypatch.setattr(bifurcations, "follow", followed)
     monkeypatch.setattr(bifurcations, "locate_bifurcations", located)
     simple = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
-    orbits = [SimpleNamespace(a=a, symmetry=Symmetry.ASYMMETRIC, period=2.0) for a in (0.11, 0.12)]
-    point = stand_in(BranchOrbit, orbit=orbits[0], length=0.02, corner=False)
-    found = list(own([point, stand_in(BranchOrbit, orbit=orbits[1], length=0.03, joined=simple, corner=False)]))
+    orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=2.0)
+    point = stand_in(BranchOrbit, orbit=orbit, value=0.11, length=0.02, corner=False)
+    end = stand_in(BranchOrbit, orbit=orbit, value=0.12, length=0.03, joined=simple, corner=False)
+    found = list(own([point, end]))
     assert asked == [(simple, pytest.approx(0.05), pytest.approx(0.19))] * 2
     if expected is None:
         assert found == []
         return
     (bifurcation,) = found
-    assert (bifurcation.a, bifurcation.a_error, bifurcation.kind, bifurcation.at) == (
+    assert (bifurcation.a, bifurcation.error, bifurcation.kind, bifurcation.at) == (
         expected,
         1e-9,
         BifurcationKind.PERIOD_DOUBLING,

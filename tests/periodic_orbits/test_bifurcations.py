@@ -60,7 +60,7 @@ def test_synchrony_is_lost_in_a_pitchfork(families, law):
     (bifurcation,) = locate_bifurcations(follow(families[law].at(0.08), (0.01, 0.095), STEPS))
     assert bifurcation.kind == BifurcationKind.PITCHFORK
     assert bifurcation.a == pytest.approx(CRITICAL[law], abs=1e-10)
-    assert bifurcation.a_error <= 1e-10
+    assert bifurcation.error <= 1e-10
     assert bifurcation.loses_stability
     assert not bifurcation.keeps_stability
     assert not bifurcation.turns
@@ -125,7 +125,7 @@ def test_stable_and_unstable_orbits_meet_where_they_graze(six):
     for bifurcation in (six.downward.end, six.upward.end):
         assert bifurcation.kind == BifurcationKind.GRAZING
         assert bifurcation.turns
-        assert bifurcation.a_error < 1e-10
+        assert bifurcation.error < 1e-10
         assert sorted(bifurcation.after.orbit.stop_counts) == [2, 6, 6]
         assert bifurcation.after.multipliers.unstable == 1
     assert six.stable[0].orbit.a == pytest.approx(six.downward.end.a, abs=1e-9)

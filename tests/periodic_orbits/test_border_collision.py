@@ -186,17 +186,17 @@ def turn(monkeypatch):
             return SimpleNamespace(orbit=SimpleNamespace(stop_counts=stop_counts))
 
         monkeypatch.setattr(border_collision, "drops", lambda model: drops)
-        monkeypatch.setattr(border_collision, "model_at", lambda model, a: a)
         monkeypatch.setattr(border_collision, "orbit_of", orbit_of)
-        monkeypatch.setattr(border_collision, "tangent_of", lambda number: np.array([number, 0.0]))
+        monkeypatch.setattr(border_collision, "tangent_of", lambda number, line: np.array([number, 0.0]))
         monkeypatch.setattr(border_collision, "step_along", step)
         monkeypatch.setattr(
             border_collision, "simpler_orbit", lambda orbit: "one" if orbit.stop_counts in simple else None
         )
         reference = ChainState(np.array([0.5, 0.25]), np.zeros(2), np.zeros(2, dtype=bool))
-        known = {"model": SimpleNamespace(blocks=2), "a": 2e-6, "return_time": 1.0, "symmetry": None}
+        known = {"model": SimpleNamespace(blocks=2), "return_time": 1.0, "symmetry": None}
         orbit = SimpleNamespace(reference=reference, stop_counts=here, **known)
-        point = SimpleNamespace(orbit=orbit, tangent=np.array([4.0, -2.0, 0.0, 0.0, 0.0, -1.0]))
+        line = SimpleNamespace(coordinate=lambda model: 2e-6, model=lambda model, a: a, least=0.0)
+        point = SimpleNamespace(orbit=orbit, line=line, tangent=np.array([4.0, -2.0, 0.0, 0.0, 0.0, -1.0]))
         found = border_collision.turn_corner(point)
         return found and found.orbit.stop_counts, tried, tangents
 

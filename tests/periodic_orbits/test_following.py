@@ -82,7 +82,7 @@ def test_a_branch_is_told_where_it_begins():
     orbit = limit_cycle(SLOW, synchronized_orbit(SLOW).reference)
     for a_range in ((0.08, 0.08), (0.08, 0.09), (0.07, 0.08)):
         assert follow(orbit, a_range, Following(most_orbits=1))[0].orbit is orbit
-    with pytest.raises(ValueError, match=r"^a_range: got \(0\.09, 0\.07\), expected \(low, high\) with low ≤ high$"):
+    with pytest.raises(ValueError, match=r"^interval: got \(0\.09, 0\.07\), expected \(low, high\) with low ≤ high$"):
         follow(orbit, (0.09, 0.07))
 
 
@@ -98,6 +98,10 @@ class Step:
     corner: bool = False
     joined: str | None = None
     tangent: tuple[float, ...] = (1.0,)
+
+    @property
+    def value(self):
+        return self.orbit.a
 
 
 def a_step(a, length=0.0, **told):
@@ -115,8 +119,10 @@ def walk(monkeypatch):
             lengths.append(length)
             return next(smooth)
 
+        line = SimpleNamespace(value=lambda model: model.a)
+        monkeypatch.setattr(following, "line_of", lambda orbit, parameter: line)
         monkeypatch.setattr(following, "simpler_orbit", lambda orbit: None)
-        monkeypatch.setattr(following, "begin_branch", lambda orbit, upward: Step(orbit))
+        monkeypatch.setattr(following, "begin_branch", lambda orbit, upward, line: Step(orbit))
         monkeypatch.setattr(following, "smooth_step", step)
         monkeypatch.setattr(following, "come_to_corner", lambda points, length: next(corners))
         monkeypatch.setattr(following, "turn_corner", lambda point: next(turned))

@@ -22,7 +22,7 @@ def test_the_derivative_by_a_is_taken_from_the_side_that_the_law_allows():
         start = model.begin(PAPER_STATES["plus"])
         mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
         end = mapping.end(start, 1.0)
-        return mapping.a_derivative(start, 1.0, end, mapping.event_rows()[:, 1:])
+        return mapping.parameter_derivative(start, 1.0, end, mapping.event_rows()[:, 1:])
 
     assert np.abs(derivative(1.0)).max() > 0.05
     assert derivative(1.0) == pytest.approx(derivative(1.0 - 1e-6), abs=1e-4)
@@ -56,8 +56,8 @@ def test_the_derivative_by_a_is_that_of_the_same_events_in_the_same_order(monkey
 
     monkeypatch.setattr(return_map, "Runner", runner)
     mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
-    found = mapping.a_derivative(end, 1.0, end, np.array([[0, 0], [1, 0]]))
+    found = mapping.parameter_derivative(end, 1.0, end, np.array([[0, 0], [1, 0]]))
     # The last is below: a smaller by 1e-8.
     assert found == pytest.approx([3.0, 3.0, 3.0, 0.0, 0.0, 0.0])
     monkeypatch.setattr(return_map, "Runner", lambda model, keep_events: ran([], end))
-    assert mapping.a_derivative(end, 1.0, end, np.zeros((0, 2))).tolist() == [0.0] * 6
+    assert mapping.parameter_derivative(end, 1.0, end, np.zeros((0, 2))).tolist() == [0.0] * 6

@@ -84,7 +84,12 @@ def run_files(study: Study) -> list[Named]:
 def _other_files(study: Study) -> Iterator[Named]:
     maps = [{"law": law, "a": a} for law, a in study.basin_maps]
     tiles = [{**one, "tile": str(tile)} for one in maps for tile in range(study.config["basins"]["tiles"])]
-    for form, known in (("basins/{law}/a{a}/pairs", maps), ("basins/{law}/a{a}/tile{tile}", tiles)):
+    runs = [{"law": law, "a": a} for law in study.laws for a in study.catalogue_a]
+    for form, known in (
+        ("basins/{law}/a{a}/pairs", maps),
+        ("basins/{law}/a{a}/tile{tile}", tiles),
+        ("catalogues/{law}/a{a}", runs),
+    ):
         yield [f"{form}.nc"], form, known
     for folder in ("attractors", "refined", "returns", "bifurcations", "phases"):
         stage = "attractors" if folder == "returns" else folder

@@ -27,6 +27,7 @@ COMMANDS = {
     "orbit": "the synchronized orbit, or the periodic orbit reached from a state, and its multipliers",
     "attractors": "find the attractors reached from sampled initial states",
     "basins": "map the attractor reached from each state in a plane",
+    "catalogue": "record the slip events of one run and the slope of their magnitudes",
     "show": "describe and plot a point file or a summary",
     "check": "find points of a study that are missing, corrupt, stale or failed",
     "prune": "delete results that no longer belong to a study",

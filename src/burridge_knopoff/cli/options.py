@@ -17,7 +17,7 @@ from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import LAW_NAME, Model
-from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, Whole
+from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.provenance.files import check_target
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.values import shown
@@ -104,6 +104,9 @@ def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any
     """
     for name in names or fields_of(kind):
         field, key = fields_of(kind)[name], name + suffix
+        if isinstance(field.range, TrueOrFalse):
+            group.add_argument(f"--{key.replace('_', '-')}", action="store_true", help=field.description)
+            continue
         default = defaults.get(name, None if field.default in (REQUIRED, FOLLOWS) else field.default)
         words = field.description.replace("%", "%%")
         shown = ",".join(f"{item:g}" for item in default) if isinstance(default, tuple) else default

@@ -22,6 +22,7 @@ from burridge_knopoff.dataset.variables import (
     fill,
     flag,
 )
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.seal import write_sealed
 from burridge_knopoff.provenance.sources import SOFTWARE, provenance, source_fingerprint
 from burridge_knopoff.running.command import CHAIN_OPTIONS, simulate_command
@@ -137,10 +138,7 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
         "keywords": "stick-slip, Burridge-Knopoff model, synchronization",
         "source": f"{SOFTWARE}, event-driven or time-stepping simulation",
         "history": simulate_command(model, trajectory.initial, settings),
-        "law": model.law.name,
-        "law_formula": model.law.formula,
-        **{f"law_{key}": value for key, value in model.law.numbers.items()},
-        **{f"chain_{key}": value for key in CHAIN_OPTIONS if (value := getattr(model.chain, key)) is not None},
+        **model_attributes(model),
         "solver": settings.solver,
         "initial": trajectory.initial.name,
         "contact": model.contact,
@@ -154,6 +152,16 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
         attributes["step"] = settings.step
     attributes.update(provenance(__name__))
     return attributes
+
+
+def model_attributes(model: Model) -> dict[str, Any]:
+    """Return the global attributes that describe the law and the chain of a model."""
+    return {
+        "law": model.law.name,
+        "law_formula": model.law.formula,
+        **{f"law_{key}": value for key, value in model.law.numbers.items()},
+        **{f"chain_{key}": value for key in CHAIN_OPTIONS if (value := getattr(model.chain, key)) is not None},
+    }
 
 
 def write_point(trajectory: Trajectory, path: str | Path) -> None:

@@ -216,10 +216,17 @@ class Run:
     @property
     def slip_clock(self) -> float: ...
 
-class TimeStepping:
-    """One run by Runge-Kutta of fourth order with a fixed step."""
+class StepMark:
+    """What repeats the last step of a run that ended."""
 
-    def __init__(self, model: KernelModel, log: EventLog, observer: Observer, step: float) -> None: ...
+class TimeStepping:
+    """
+    One run with a fixed step, by Runge-Kutta of fourth order or by Euler's method.
+    """
+
+    def __init__(
+        self, model: KernelModel, log: EventLog, observer: Observer, step: float, euler: bool = ...
+    ) -> None: ...
     def begin(
         self,
         position: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
@@ -227,14 +234,13 @@ class TimeStepping:
         stuck: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order="C", device="cpu", writable=False)],
         time: float = ...,
     ) -> None: ...
-    def mark(self) -> NDArray[numpy.float64]: ...
-    def resume(
-        self,
-        mark: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
-        time: float,
-    ) -> None: ...
+    def mark(self) -> StepMark: ...
+    def resume(self, mark: StepMark, time: float) -> None: ...
     def run(self) -> int: ...
     def values(self) -> tuple: ...
+    def record(self, catalogue: Catalogue) -> None:
+        """Record slip events in a catalogue from the next beginning on."""
+
     @property
     def steps(self) -> int: ...
     @property

@@ -12,8 +12,8 @@
 #pragma once
 
 #include <algorithm>
-#include <memory>
 
+#include "polynomial.h"
 #include "record.h"
 #include "springs.h"
 
@@ -26,7 +26,12 @@ class Catalogue {
         int epicentre = 0, slipping = 0;
         double peak_velocity = 0.0, energy = 0.0;
         std::vector<std::pair<int, double>> slips;  // block, and how far it slipped
-        std::shared_ptr<Event> merged;              // the event that goes on with this one
+        // The event that goes on with this one, −1 for none; the events that this one goes on with.
+        int merged = -1;
+        std::vector<int> absorbed;
+        // The speed of a block over a piece of its motion, of some length, in which it may exceed the peak velocity,
+        // and its bound: as a rule a later speed is higher, and the maximum need not be found.
+        double bound = 0.0, length = 0.0, speed[Blocks::ORDER + 1];
     };
 
     // Columns, with an entry for each event, in the order in which events end. Blocks count from 1.
@@ -49,113 +54,168 @@ class Catalogue {
     // from : events that begin earlier are left out; profiles : whether the slip of every block is kept; most : number
     // of events and of slips in profiles at which the table is full
     Catalogue(int blocks, double from, bool profiles, double most)
-        : from(from), profiles(profiles), most(size_t(most)), event_of(blocks), begun(blocks), position(blocks),
+        : from(from), profiles(profiles), most(size_t(most)), event_of(blocks, -1), begun(blocks), position(blocks),
           last_start(blocks, NAN), slip(blocks) {}
 
     // Begin again without events; all blocks that slip now have slipped since before.
     void restart() {
         table = {};
         full = false;
-        std::fill(event_of.begin(), event_of.end(), nullptr);
+        clear();
         std::fill(last_start.begin(), last_start.end(), NAN);
     }
 
     // Events that have not ended, for a run that goes on.
     struct Open {
         std::vector<Event> events;
-        std::vector<int> event_of;  // −1 for none
+        std::vector<int> event_of;
         std::vector<Clock> begun;
         std::vector<double> position, last_start;
     };
 
     Open open() const {
         Open made{{}, std::vector<int>(event_of.size(), -1), begun, position, last_start};
-        std::vector<std::shared_ptr<Event>> known;
+        std::vector<int> known;
         for (size_t i = 0; i < event_of.size(); i++) {
-            if (!event_of[i]) continue;
-            const std::shared_ptr<Event> event = find(event_of[i]);
-            const size_t k = std::find(known.begin(), known.end(), event) - known.begin();
-            if (k == known.size()) {
+            if (event_of[i] < 0) continue;
+            const int event = find(event_of[i]), k = int(std::find(known.begin(), known.end(), event) - known.begin());
+            if (k == int(known.size())) {
                 known.push_back(event);
-                made.events.push_back(*event);
+                made.events.push_back(events[event]);
+                made.events.back().absorbed.clear();
             }
-            made.event_of[i] = int(k);
+            made.event_of[i] = k;
         }
         return made;
     }
 
     void resume(const Open &open) {
-        std::vector<std::shared_ptr<Event>> known;
-        for (const Event &event : open.events) known.push_back(std::make_shared<Event>(event));
-        for (size_t i = 0; i < event_of.size(); i++)
-            event_of[i] = open.event_of[i] < 0 ? nullptr : known[open.event_of[i]];
+        clear();
+        events = open.events;
+        event_of = open.event_of;
         begun = open.begun;
         position = open.position;
         last_start = open.last_start;
     }
 
     // The event of a slipping block; nullptr if it sticks, or slips since before the catalogue began.
-    Event *of(int i) { return event_of[i] ? find(event_of[i]).get() : nullptr; }
+    Event *of(int i) {
+        if (event_of[i] < 0) return nullptr;
+        event_of[i] = find(event_of[i]);
+        return &events[event_of[i]];
+    }
 
     // Block i starts at position x.
     void start(const Springs &springs, int i, const Clock &at, const Clock &load, double x) {
-        std::shared_ptr<Event> event;
+        int number = -1;
         for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) {
-            const std::shared_ptr<Event> &beside = event_of[springs.neighbour[p]];
-            if (beside) event = event ? joined(event, find(beside)) : find(beside);
+            const int beside = event_of[springs.neighbour[p]];
+            if (beside >= 0) number = number < 0 ? find(beside) : joined(number, find(beside));
         }
-        if (!event) {
-            event = std::make_shared<Event>();
-            event->start = at;
-            event->load = load;
-            event->epicentre = i;
+        if (number < 0) {
+            if (spare.empty()) {
+                spare.push_back(int(events.size()));
+                events.emplace_back();
+            }
+            number = spare.back();
+            spare.pop_back();
+            Event &event = events[number];
+            event.start = at;
+            event.load = load;
+            event.epicentre = i;
+            event.peak_velocity = event.energy = event.bound = 0.0;
         }
-        event->slipping++;
-        event_of[i] = event;
+        events[number].slipping++;
+        event_of[i] = number;
         begun[i] = at;
         position[i] = x;
     }
 
     // Block i stops at position x.
     void stop(const Springs &springs, double v, int i, const Clock &at, double x) {
-        if (!event_of[i]) return;
-        const std::shared_ptr<Event> event = find(event_of[i]);
-        event_of[i] = nullptr;
-        event->slips.emplace_back(i, (x - position[i]) + v * begun[i].until(at));
-        if (--event->slipping == 0) finish(springs, *event, at);
+        if (event_of[i] < 0) return;
+        const int number = find(event_of[i]);
+        Event &event = events[number];
+        event_of[i] = -1;
+        event.slips.emplace_back(i, (x - position[i]) + v * begun[i].until(at));
+        if (--event.slipping > 0) return;
+        finish(springs, event, at);
+        for (int k : event.absorbed) release(k);
+        release(number);
+    }
+
+    // A block of the event has a speed with these coefficients over a piece, at most `bound`.
+    void consider(Event &event, const Polynomial &speed, double length, double bound) {
+        find_peak(event);
+        if (bound <= event.peak_velocity) return;
+        event.bound = bound;
+        event.length = length;
+        std::copy(speed.coefficient, speed.coefficient + Blocks::ORDER + 1, event.speed);
     }
 
   private:
-    std::vector<std::shared_ptr<Event>> event_of;
+    std::vector<Event> events;
+    std::vector<int> spare, event_of;  // −1 for none
+    std::vector<int> blocks;           // of the event that ends
     std::vector<Clock> begun;
     std::vector<double> position, last_start, slip;
+    Polynomial polynomial;
 
-    static std::shared_ptr<Event> find(std::shared_ptr<Event> event) {
-        while (event->merged) event = event->merged;
-        return event;
+    void clear() {
+        events.clear();
+        spare.clear();
+        std::fill(event_of.begin(), event_of.end(), -1);
+    }
+
+    int find(int number) const {
+        while (events[number].merged >= 0) number = events[number].merged;
+        return number;
+    }
+
+    void release(int number) {
+        Event &event = events[number];
+        event.slips.clear();
+        event.absorbed.clear();
+        event.merged = -1;
+        event.slipping = 0;
+        spare.push_back(number);
+    }
+
+    void find_peak(Event &event) {
+        if (event.bound > event.peak_velocity) {
+            polynomial.load(event.speed, 1, Blocks::ORDER);
+            event.peak_velocity = polynomial.maximum(event.length, event.peak_velocity);
+        }
+        event.bound = 0.0;
     }
 
     // One event of two, with the earlier start.
-    static std::shared_ptr<Event> joined(std::shared_ptr<Event> event, std::shared_ptr<Event> other) {
-        if (event == other) return event;
-        if (other->slips.size() > event->slips.size()) std::swap(event, other);
-        if (event->start.until(other->start) < 0.0) {
-            event->start = other->start;
-            event->load = other->load;
-            event->epicentre = other->epicentre;
+    int joined(int number, int other_number) {
+        if (number == other_number) return number;
+        if (events[other_number].slips.size() > events[number].slips.size()) std::swap(number, other_number);
+        Event &event = events[number], &other = events[other_number];
+        if (event.start.until(other.start) < 0.0) {
+            event.start = other.start;
+            event.load = other.load;
+            event.epicentre = other.epicentre;
         }
-        event->slipping += other->slipping;
-        event->energy += other->energy;
-        event->peak_velocity = std::max(event->peak_velocity, other->peak_velocity);
-        event->slips.insert(event->slips.end(), other->slips.begin(), other->slips.end());
-        other->slips = {};
-        other->merged = event;
-        return event;
+        event.slipping += other.slipping;
+        event.energy += other.energy;
+        find_peak(event);
+        find_peak(other);
+        event.peak_velocity = std::max(event.peak_velocity, other.peak_velocity);
+        event.slips.insert(event.slips.end(), other.slips.begin(), other.slips.end());
+        event.absorbed.push_back(other_number);
+        event.absorbed.insert(event.absorbed.end(), other.absorbed.begin(), other.absorbed.end());
+        other.absorbed.clear();
+        other.merged = number;
+        return number;
     }
 
     void finish(const Springs &springs, Event &event, const Clock &at) {
+        find_peak(event);
         std::sort(event.slips.begin(), event.slips.end());
-        std::vector<int> blocks;
+        blocks.clear();
         for (auto [i, far] : event.slips) {
             if (blocks.empty() || blocks.back() != i) blocks.push_back(i);
             slip[i] += far;

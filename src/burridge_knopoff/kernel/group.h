@@ -136,32 +136,42 @@ struct Group {
     }
 
     // Add to the slip events what the blocks of a piece do between two times of it.
-    void record(Catalogue &catalogue, Polynomial &polynomial, double from, double to) {
+    // advanced : whether the state is at the later time, else at the start of the piece
+    void record(Catalogue &catalogue, Polynomial &polynomial, double from, double to, bool advanced) {
         const double t = to - from, v = state.model.v;
         if (!(t > 0.0)) return;
-        begun.reserve(layout.columns);
-        ended.reserve(layout.columns);
-        for (int c = 0; c < layout.columns; c++) {
-            begun[c] = from > 0.0 ? series.value(series.position, c, splat(from)) : series.x(0)[c];
-            ended[c] = series.value(series.position, c, splat(to));
+        if (from > 0.0 || !advanced) {
+            for (Vectors *row : {&begun, &ended}) row->reserve(layout.columns);
+            for (int c = 0; c < layout.columns; c++) {
+                begun[c] = series.value(series.position, c, splat(from));
+                ended[c] = series.value(series.position, c, splat(to));
+            }
         }
+        const vec *first = from > 0.0 || !advanced ? begun.at() : series.x(0);
+        const vec *last = advanced ? state.position.at() : ended.at();
+        const double drifted = advanced ? 0.0 : to;
         for (int c = 0; c < layout.columns; c++) {
             const int slips = bits(layout.present[c] & (state.slip[c] != vec{}));
             if (!slips) continue;
-            const vec far = (ended[c] - begun[c]) + v * t, load = layout.driving[c] * v;
-            const vec before = force(begun.at(), c, from), after = force(ended.at(), c, to);
-            const vec path =
-                (series.integral(c, splat(to)) - series.integral(c, splat(from))) - begun[c] * t + 0.5 * v * t * t;
-            const vec energy = 0.5 * (before + (after - load * t)) * far + load * (t * far - path);
+            const vec far = (last[c] - first[c]) + v * t, load = layout.driving[c] * v;
+            const vec before = force(first, c, drifted - t), after = force(last, c, drifted);
+            vec energy = 0.5 * (before + (after - load * t)) * far;
+            if (v > 0.0) {
+                vec path = series.integral(c, splat(to));
+                if (from > 0.0) path -= series.integral(c, splat(from));
+                energy += load * (t * (far - 0.5 * v * t) - (path - first[c] * t));
+            }
             const vec bound = search.bound_in_piece(c);
+            const vec speed = state.slip[c] * (advanced ? state.velocity[c] : vec{});
             for (int lane = 0; slips >> lane; lane++) {
                 const int place = c * LANES + lane;
                 Catalogue::Event *event = slips >> lane & 1 ? catalogue.of(layout.member[place]) : nullptr;
                 if (!event) continue;
                 event->energy += energy[lane];
+                event->peak_velocity = std::max(event->peak_velocity, speed[lane]);
                 if (bound[lane] <= event->peak_velocity) continue;
                 load_speed(polynomial, place, from);
-                event->peak_velocity = polynomial.maximum(t, event->peak_velocity);
+                catalogue.consider(*event, polynomial, t, bound[lane]);
             }
         }
     }

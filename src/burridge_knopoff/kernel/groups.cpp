@@ -53,7 +53,7 @@ int Run::run_groups() {
             remember();
             for (auto &group : groups)
                 if (catalogue && group->alive && group->planned)
-                    group->record(*catalogue, polynomial, group->observed, group->start.until(end));
+                    group->record(*catalogue, polynomial, group->observed, group->start.until(end), false);
             observe_all({end, 0.0});
             for (auto &group : groups)
                 if (group->alive && group->planned) group->observed = group->start.until(end);
@@ -213,10 +213,10 @@ bool Run::part(Group &group) {
 void Run::end_piece(Group &group, double to) {
     if (!group.planned) return;
     if (observing && !observer.section_only) group.extremes(observer, polynomial, group.observed, to);
-    if (catalogue) group.record(*catalogue, polynomial, group.observed, to);
     if (observing && holds_end(group)) observe_distance(group.start.after(to));
-    group.observed = to;
     group.advance(to);
+    if (catalogue) group.record(*catalogue, polynomial, group.observed, to, true);
+    group.observed = to;
 }
 
 bool Run::holds_end(const Group &group) const {

@@ -376,31 +376,32 @@ NB_MODULE(_core, m) {
         .def_prop_ro("clock", [](const Run &run) { return (run.loading > 0.0 ? run.load : run.now).time; })
         .def_prop_ro("slip_clock", [](const Run &run) { return run.now.time; });
 
-    nb::class_<TimeStepping>(m, "TimeStepping", "One run by Runge-Kutta of fourth order with a fixed step.")
+    nb::class_<StepMark>(m, "StepMark", "What repeats the last step of a run that ended.");
+
+    nb::class_<TimeStepping>(m, "TimeStepping",
+                             "One run with a fixed step, by Runge-Kutta of fourth order or by Euler's method.")
         .def(
             "__init__",
-            [](TimeStepping *at, const Model &model, EventLog &log, Observer &observer, double step) {
-                new (at) TimeStepping(model, log, observer, step);
+            [](TimeStepping *at, const Model &model, EventLog &log, Observer &observer, double step, bool euler) {
+                new (at) TimeStepping(model, log, observer, step, euler);
                 at->check_signals = check_signals;
             },
-            "model"_a, "log"_a, "observer"_a, "step"_a, nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(),
-            nb::keep_alive<1, 4>())
+            "model"_a, "log"_a, "observer"_a, "step"_a, "euler"_a = false, nb::keep_alive<1, 2>(),
+            nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
         .def(
             "begin",
             [](TimeStepping &run, Numbers position, Numbers velocity, Array1<bool> stuck, double time) {
                 run.begin(position.data(), velocity.data(), stuck.data(), time);
             },
             "position"_a, "velocity"_a, "stuck"_a, "time"_a = 0.0)
-        .def("mark",
-             [](const TimeStepping &run) {
-                 std::vector<double> x(run.slip.size()), u(x.size()), slip(x.size());
-                 run.values(x.data(), u.data(), slip.data());
-                 return numbers(slip);
-             })
+        .def("mark", &TimeStepping::mark)
         .def(
-            "resume", [](TimeStepping &run, Numbers mark, double) { run.resume(mark.data()); }, "mark"_a, "time"_a)
+            "resume", [](TimeStepping &run, const StepMark &mark, double) { run.resume(mark); }, "mark"_a, "time"_a)
         .def("run", &TimeStepping::run, nb::call_guard<nb::gil_scoped_release>())
-        .def("values", [](TimeStepping &run) { return values(run, int(run.slip.size())); })
+        .def("values", [](TimeStepping &run) { return values(run, run.model.springs.blocks); })
+        .def(
+            "record", [](TimeStepping &run, Catalogue &catalogue) { run.catalogue = &catalogue; }, "catalogue"_a,
+            nb::keep_alive<1, 2>(), "Record slip events in a catalogue from the next beginning on.")
         .def_ro("steps", &TimeStepping::steps)
         .def_ro("clock", &TimeStepping::clock);
 

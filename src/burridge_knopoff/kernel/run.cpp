@@ -254,15 +254,15 @@ int Run::run_whole() {
         // The end of the run has no part in the search: it must not move an event by a bit.
         if (completed) remember();
         if (observing) observe(group, length);
-        if (catalogue) group.record(*catalogue, polynomial, group.observed, length);
         if (exponents.tangent.vectors > 0) {
             exponents.begin_within(group.state, loading > 0.0 ? load.time : group.start.time, length);
             if (exponents.running) follow(group, length);
         }
         now = group.start.after(length);
-        group.observed = length;
         since_event += length;
         if (group.length > remaining && !exponents.running) {
+            if (catalogue) group.record(*catalogue, polynomial, group.observed, length, false);
+            group.observed = length;
             since_event -= length;
             return COMPLETED;
         }
@@ -327,6 +327,8 @@ bool Run::load_next(Group &group) {
 // Move the state on along the piece; in closed form, from the last event.
 void Run::advance(Group &group, double length) {
     group.advance(length);
+    if (catalogue) group.record(*catalogue, polynomial, group.observed, length, true);
+    group.observed = length;
     if (modes) modes->advance(group.state, since_event);
 }
 

@@ -102,9 +102,14 @@ struct Series {
 
     // The integral of the positions of a column from 0 to t.
     vec integral(int c, vec t) const {
-        vec total{};
-        for (int k = ORDER; k >= 0; k--) total = total * t + INVERSE[k + 1] * position[size_t(k) * columns + c];
-        return total * t;
+        const vec *term = position.at(c), square = t * t;
+        vec even = INVERSE[ORDER + 1] * term[size_t(ORDER) * columns],
+            odd = INVERSE[ORDER] * term[size_t(ORDER - 1) * columns];
+        for (int k = ORDER - 2; k > 0; k -= 2) {
+            even = even * square + INVERSE[k + 1] * term[size_t(k) * columns];
+            odd = odd * square + INVERSE[k] * term[size_t(k - 1) * columns];
+        }
+        return t * ((even * square + t * odd) + term[0]);
     }
 
     // Move the state on by t where `moved` says so.

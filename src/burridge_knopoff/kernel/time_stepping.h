@@ -1,27 +1,37 @@
-// The paper's own method, for comparison: Runge-Kutta of fourth order with a fixed step, events at step ends.
+// The usual methods, for comparison: a fixed step with events at step ends.
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "group.h"
 
 namespace bk {
 
-// One run with step h; between step ends the motion is the cubic through both states and their slopes.
+// What repeats the last step of a run that ended: slip directions, and the slip events that had not ended.
+struct StepMark {
+    std::vector<double> slip;
+    std::optional<Catalogue::Open> catalogue;
+};
+
+// One run with step h by the paper's Runge-Kutta method of fourth order, or by Euler's explicit method. Between step
+// ends the motion is the cubic through both states and their slopes.
 class TimeStepping {
   public:
     const Model &model;
     EventLog &log;
     Observer &observer;
     const double step;
+    const bool euler;
     double clock = 0.0;
     long long steps = 0;
-    std::vector<double> slip;
     std::function<void()> check_signals = [] {};
+    // Slip events are recorded in it, if that is wanted.
+    Catalogue *catalogue = nullptr;
 
-    TimeStepping(const Model &model, EventLog &log, Observer &observer, double step)
-        : model(model), log(log), observer(observer), step(step), slip(model.springs.blocks), n(model.springs.blocks),
-          state(model, layout), old_x(n), old_u(n), force(n) {
+    TimeStepping(const Model &model, EventLog &log, Observer &observer, double step, bool euler)
+        : model(model), log(log), observer(observer), step(step), euler(euler), n(model.springs.blocks),
+          state(model, layout), old_x(n), old_u(n) {
         for (auto *table : {&speed, &acceleration}) table->assign(4, std::vector<double>(n));
         for (auto *table : {&x, &u}) table->assign(4, std::vector<double>(n));
         for (int i = 0; i < n; i++) layout.member.push_back(i);
@@ -41,11 +51,20 @@ class TimeStepping {
         settled = false;
         observer.begin = time;
         log.restart();
+        if (catalogue) catalogue->restart();
+    }
+
+    StepMark mark() const {
+        StepMark made{std::vector<double>(n), {}};
+        for (int i = 0; i < n; i++) made.slip[i] = state.slip.lane(i);
+        if (catalogue) made.catalogue = catalogue->open();
+        return made;
     }
 
     // Go on as if the run that has come to this state had not ended.
-    void resume(const double *direction) {
-        for (int i = 0; i < n; i++) state.slip.lane(i) = direction[i];
+    void resume(const StepMark &mark) {
+        for (int i = 0; i < n; i++) state.slip.lane(i) = mark.slip[i];
+        if (catalogue && mark.catalogue) catalogue->resume(*mark.catalogue);
         settled = true;
     }
 
@@ -74,18 +93,11 @@ class TimeStepping {
             std::copy(position, position + n, old_x.begin());
             std::copy(velocity, velocity + n, old_u.begin());
             slope(0);
-            stage(0, 0.5 * h);
-            slope(1);
-            stage(1, 0.5 * h);
-            slope(2);
-            stage(2, h);
-            slope(3);
+            if (euler)
+                stage(0, h);
+            else
+                runge_kutta(h);
             for (int i = 0; i < n; i++) {
-                position[i] = old_x[i] + h * (speed[0][i] + 2.0 * speed[1][i] + 2.0 * speed[2][i] + speed[3][i]) / 6.0;
-                velocity[i] = old_u[i] + h *
-                                             (acceleration[0][i] + 2.0 * acceleration[1][i] + 2.0 * acceleration[2][i] +
-                                              acceleration[3][i]) /
-                                             6.0;
                 state.touching.lane(i) = 0.0;
                 if (!(std::fabs(velocity[i]) < ABSURD_SPEED)) return DIVERGED;
             }
@@ -95,11 +107,12 @@ class TimeStepping {
                 if (!(std::fabs(acceleration[3][i]) * h < ABSURD_SPEED)) return DIVERGED;
             interpolate(h);
             observe(h);
+            if (catalogue) record(h);
             clock = after;
             steps++;
             settle();
             if (log.accumulating) return ACCUMULATING_EVENTS;
-            if (log.full() || observer.crossings.full) return FULL;
+            if (log.full() || observer.crossings.full || (catalogue && catalogue->full)) return FULL;
         }
         return COMPLETED;
     }
@@ -112,7 +125,7 @@ class TimeStepping {
     Polynomial polynomial;
     long long earlier_steps = 0;
     bool settled = false;
-    std::vector<double> old_x, old_u, force;
+    std::vector<double> old_x, old_u;
     // Slopes of the four stages, and the coefficients of the cubics, lowest power first.
     std::vector<std::vector<double>> speed, acceleration, x, u;
 
@@ -136,6 +149,38 @@ class TimeStepping {
         for (int i = 0; i < n; i++) {
             state.position.lane(i) = old_x[i] + h * speed[row][i];
             state.velocity.lane(i) = old_u[i] + h * acceleration[row][i];
+        }
+    }
+
+    // The state at the end of the step, whose first slope is in row 0.
+    void runge_kutta(double h) {
+        stage(0, 0.5 * h);
+        slope(1);
+        stage(1, 0.5 * h);
+        slope(2);
+        stage(2, h);
+        slope(3);
+        for (int i = 0; i < n; i++) {
+            state.position.lane(i) =
+                old_x[i] + h * (speed[0][i] + 2.0 * speed[1][i] + 2.0 * speed[2][i] + speed[3][i]) / 6.0;
+            state.velocity.lane(i) =
+                old_u[i] +
+                h * (acceleration[0][i] + 2.0 * acceleration[1][i] + 2.0 * acceleration[2][i] + acceleration[3][i]) /
+                    6.0;
+        }
+    }
+
+    // Add to the slip events what the step did, its work by the trapezoidal rule and the speeds at its end.
+    void record(double h) {
+        const double *position = &state.position.lane(0);
+        for (int i = 0; i < n; i++) {
+            const double direction = state.slip.lane(i);
+            Catalogue::Event *event = direction != 0.0 ? catalogue->of(i) : nullptr;
+            if (!event) continue;
+            const double force = model.springs.sliding_force[i] +
+                                 0.5 * (model.springs.pull(old_x.data(), i) + model.springs.pull(position, i));
+            event->energy += force * ((position[i] - old_x[i]) + model.v * h);
+            event->peak_velocity = std::max(event->peak_velocity, direction * state.velocity.lane(i));
         }
     }
 
@@ -214,6 +259,9 @@ class TimeStepping {
                     if (!(due[c] >> lane & 1)) continue;
                     const int i = c * LANES + lane, kind = state.slip.lane(i) == 0.0;
                     state.transition(c, from_bits(1 << lane));
+                    const double x = state.position.lane(i);
+                    if (catalogue && kind) catalogue->start(model.springs, i, {clock, 0.0}, {clock, 0.0}, x);
+                    if (catalogue && !kind) catalogue->stop(model.springs, model.v, i, {clock, 0.0}, x);
                     log.add(i, kind, clock, [&](double *row) {
                         std::copy(&state.position.lane(0), &state.position.lane(0) + n, row);
                         std::copy(&state.velocity.lane(0), &state.velocity.lane(0) + n, row + n);

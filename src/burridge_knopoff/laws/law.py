@@ -132,11 +132,11 @@ class Law:
     def _key(self) -> tuple[object, ...]:
         return self.name, self.formula, self.a, tuple(self.numbers.items())
 
-    def at(self, a: float) -> Self:
-        """Return the same law at another friction parameter."""
+    def at(self, a: float | None = None, /, **numbers: float) -> Self:
+        """Return the same law at another friction parameter, or with other values of some of its numbers."""
         other = object.__new__(type(self))
         other.name, other.formula = self.name, self.formula
-        other._set(a, self.numbers)
+        other._set(self.a if a is None else a, {**self.numbers, **numbers})
         return other
 
     @cached_property

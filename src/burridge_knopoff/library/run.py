@@ -5,7 +5,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from burridge_knopoff.dataset.point import to_dataset
+from burridge_knopoff.library.catalogue import Catalogue, record_events
 from burridge_knopoff.library.plot import plot_run
+from burridge_knopoff.running.settings import DURATION, TIME
 from burridge_knopoff.running.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -20,6 +22,9 @@ class Run(Trajectory):
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20)
     >>> run.to_dataset().velocity.dims
     ('trajectory_time', 'block')
+    >>> events = run.catalogue(200)
+    >>> events.begin_time, int(events.blocks.max())
+    (20.0, 3)
     """
 
     def plot(self) -> Figure:
@@ -29,3 +34,26 @@ class Run(Trajectory):
     def to_dataset(self) -> xarray.Dataset:
         """Return the run as an xarray Dataset, the same as its point file."""
         return to_dataset(self)
+
+    def catalogue(
+        self, window: float = 7000.0, *, transient: float = 0.0, profiles: bool = False, loading: str = "steady"
+    ) -> Catalogue:
+        """Return the catalogue of slip events of a run that continues from the end of this one, by the same solver.
+
+        window : length of the catalogue; transient : time before it; both on the loading clock
+        profiles, loading : see `record_events`
+
+        Raises ValueError as `record_events` does.
+        """
+        window, transient = TIME.form(window, "window"), DURATION.form(transient, "transient")
+        begin = self.end_time + transient
+        return record_events(
+            self.model,
+            self.final,
+            begin + window,
+            begin=begin,
+            profiles=profiles,
+            loading=loading,
+            solver=self.settings.solver,
+            step=self.settings.step,
+        )

@@ -1,20 +1,25 @@
-"""Runs along a, one on each core."""
+"""Runs over one or several parameters, one on each core."""
 
 from __future__ import annotations
 
 import os
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from typing import TYPE_CHECKING, Unpack
+from itertools import product
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from burridge_knopoff.dataset.point import to_dataset
-from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
+from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values
+from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.laws import Law
+from burridge_knopoff.library.by_name import settings_of, shows
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.parameters import names_of, value_of
 from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
@@ -23,33 +28,38 @@ from burridge_knopoff.values import shown
 if TYPE_CHECKING:
     import xarray
 
+_T = TypeVar("_T")
+
 #: Dimensions of the same size in every run.
 _EVERYWHERE = {"batch", "exponent"}
+_KEPT = {name: item for name, item in POINT_VARIABLES.items() if set(item.dimensions) <= _EVERYWHERE}
 
 
 @shows(Settings)
 def sweep(
     law: Model | GivenLaw,
-    a: Sequence[float] | np.ndarray,
+    a: float | Sequence[float] | np.ndarray | None = None,
     initial: Initial = "minus",
     settings: Settings | None = None,
     *,
     chain: Chain | None = None,
-    v: float | None = None,
     contact: str | None = None,
     cores: int | None = None,
-    **by_name: Unpack[RunSettings],
+    **by_name: Any,
 ) -> xarray.Dataset:
-    """Run a simulation at each of several a, and return the numbers of a run, a batch or an exponent, over a.
+    """Run a simulation at each of several a, or at each point of a grid over any parameters of the model.
 
-    law : a `Model`, at any a, with its own chain, v and contact; or a law in any form that `simulate` takes
-    a : friction parameters, shape (n,); `a` of the Dataset, in the same order
-    initial, settings, chain, v, contact, by_name : see `simulate`
+    law : a `Model` with its own chain, contact and values of all parameters; or a law in any form that `simulate` takes
+    a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
+    by_name : other parameters, v, coupling, pulling, threshold, mass, and the numbers of the law such as sigma, each
+        one number or a sequence; and settings of the run by name
+    initial, settings, chain, contact : see `simulate`
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
 
-    The variables are those of a point file (docs/data.md) with `a` as the first dimension, among them `mean_distance`,
-    `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for a completed run. Raises ValueError, one
-    line, for a wrong argument; an error at one a names it.
+    Each parameter given as a sequence is a dimension of the Dataset: first a, then the others in the order given. The
+    variables are the numbers of a run, a batch or an exponent in a point file (docs/data.md), among them
+    `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for a completed run. Raises
+    ValueError, one line, for a wrong argument; an error at one point names it.
 
     >>> from burridge_knopoff import sweep
     >>> runs = sweep("nonlinear", [0.02, 0.05, 0.3], transient=1000, window=500, batches=2)
@@ -57,49 +67,88 @@ def sweep(
     (('a',), (3, 3))
     >>> (runs.mean_distance < 1e-6).values.tolist()
     [True, True, False]
+    >>> runs = sweep("linearized", 0.08, "plus", v=[0.05, 0.1], coupling=[0.9, 1.0, 1.1], transient=1000, window=500)
+    >>> runs.mean_distance.dims, runs.mean_distance.shape
+    (('v', 'coupling'), (2, 3))
     """
     state = given_state(initial)
-    chosen = settings_of(Settings, settings, by_name)
-    values = np.asanyarray(a, dtype=object).ravel().tolist()
-    if not values:
-        raise ValueError("a: got no value, expected at least one")
+    own = fields_of(Settings)
+    chosen = settings_of(Settings, settings, {name: value for name, value in by_name.items() if name in own})
     if cores is not None:
         cores = Whole(1, 1024).form(cores, "cores")
-    if isinstance(law, Model):
-        models = [given_model(law, None, 0, chain, v, contact).at(value) for value in values]
-    else:
-        models = [given_model(law, value, state.blocks, chain, v, contact) for value in values]
-    value, count = Counter(model.a for model in models).most_common(1)[0]
-    if count > 1:
-        raise ValueError(f"a: got {shown(value)} twice, expected each value once")
-    for model in models:
+    parameters = {name: value for name, value in (("a", a), *by_name.items()) if name not in own and value is not None}
+    base, axes = _grid(law, parameters, state.blocks, chain, contact)
+    points = [dict(zip(axes, values, strict=True)) for values in product(*axes.values())]
+    models = [_named(point, base.at, **point) for point in points]
+    for point, model in zip(points, models, strict=True):
         chosen.check_chain(model.chain)
-        model.begin(state, chosen.start)
+        _named(point if len(axes) > 1 else {}, model.begin, state, chosen.start)
 
-    def one(model: Model) -> xarray.Dataset:
-        try:
-            return _numbers(to_dataset(run(model, state, chosen)))
-        except (ValueError, MemoryError) as error:
-            raise type(error)(f"a = {model.a!r}: {error}") from error
+    def one(point: Mapping[str, float], model: Model) -> tuple[dict[str, Any], dict[str, Any]]:
+        found = _named(point, run, model, state, chosen)
+        values = point_values(found)
+        return {name: values[name] for name in _KEPT}, point_attributes(found)
 
     # The kernel releases Python's global lock while it runs: threads use all cores.
     with ThreadPoolExecutor(cores or _cores()) as pool:
         try:
-            found = list(pool.map(one, models))
+            found = list(pool.map(one, points, models))
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
     import xarray
 
-    return xarray.concat(
-        found, "a", data_vars=[*found[0]], coords="minimal", compat="override", combine_attrs="drop_conflicts"
-    )
+    shape = [len(values) for values in axes.values()]
+    data: dict[str, Any] = {}
+    for name, item in _KEPT.items():
+        if item.coordinate:
+            data[name] = item.dimensions, np.asarray(found[0][0][name], item.dtype), item.all_attributes()
+        else:
+            array = np.array([numbers[name] for numbers, _ in found], item.dtype)
+            data[name] = (*axes, *item.dimensions), array.reshape(*shape, *array.shape[1:]), item.all_attributes()
+    for name, values in axes.items():
+        item = _KEPT.get(name, Variable((), "f8", f"parameter {name} of the model"))
+        data[name] = name, values, item.all_attributes()
+    first, *others = (attributes for _, attributes in found)
+    common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
+    return xarray.Dataset(data, attrs=common).set_coords({name for name, item in _KEPT.items() if item.coordinate})
 
 
-def _numbers(point: xarray.Dataset) -> xarray.Dataset:
-    """Return a run without the dimensions that vary between runs, and without the description of its initial state."""
-    kept = [name for name, item in point.data_vars.items() if set(item.dims) <= _EVERYWHERE]
-    return point[kept].drop_vars("block", errors="ignore")
+def _grid(
+    law: Model | GivenLaw, parameters: Mapping[str, Any], blocks: int | None, chain: Chain | None, contact: str | None
+) -> tuple[Model, dict[str, list[float]]]:
+    """Return the model with all parameters that are one number, and the values of those that are several."""
+    arrays = {name: np.asanyarray(value, dtype=object) for name, value in parameters.items()}
+    axes: dict[str, list[float]] = {name: given.ravel().tolist() for name, given in arrays.items() if given.ndim}
+    for name, values in axes.items():
+        if not values:
+            raise ValueError(f"{name}: got no value, expected at least one")
+    single = {name: value for name, value in parameters.items() if name not in axes}
+    if isinstance(law, Model):
+        base = given_model(law, None, blocks, chain, None, contact)
+    else:
+        first = axes["a"][0] if "a" in axes else single.get("a", law.a if isinstance(law, Law) else None)
+        base = given_model(law, first, blocks, chain, None, contact)
+    for name in parameters:
+        if name not in names_of(base):
+            known = " | ".join([*names_of(base), *sorted(fields_of(Settings))])
+            raise ValueError(f"{name}: not a setting or a parameter, expected {known}")
+    base = base.at(**single)
+    for name, values in axes.items():
+        axes[name] = [value_of(base.at(**{name: value}), name) for value in values]
+        value, count = Counter(axes[name]).most_common(1)[0]
+        if count > 1:
+            raise ValueError(f"{name}: got {shown(value)} twice, expected each value once")
+    return base, axes
+
+
+def _named(point: Mapping[str, float], function: Callable[..., _T], *given: Any, **by_name: Any) -> _T:
+    """Return the value of a function; an error names the point of the grid."""
+    try:
+        return function(*given, **by_name)
+    except (ValueError, MemoryError) as error:
+        place = ", ".join(f"{name} = {value!r}" for name, value in point.items())
+        raise type(error)(f"{place}: {error}" if place else str(error)) from error
 
 
 def _cores() -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Annotated, Any
 
@@ -13,6 +13,7 @@ from burridge_knopoff.laws.law import FASTEST
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.parameters import at
 from burridge_knopoff.model.ranges import Number, OneOf, Text
 from burridge_knopoff.values import instance_of, read_only
 
@@ -40,6 +41,8 @@ class Model:
     >>> model = Model(Chain(4), law_of("nonlinear", 0.08), v=0.12)
     >>> model.blocks, model.a, model.at(0.1).a
     (4, 0.08, 0.1)
+    >>> model.at(coupling=2.0, v=0.2).chain.coupling
+    2.0
     >>> model.sliding_offset.shape
     (4,)
     """
@@ -75,9 +78,12 @@ class Model:
         """Friction parameter of the law."""
         return self.law.a
 
-    def at(self, a: float) -> Model:
-        """Return the same model at another friction parameter."""
-        return replace(self, law=self.law.at(a))
+    def at(self, a: float | None = None, /, **parameters: float) -> Model:
+        """Return the same model at another a, or at other values of any parameters, such as `at(v=0.2, coupling=1.5)`.
+
+        Raises ValueError, one line, as `parameters.at` does.
+        """
+        return at(self, parameters if a is None else {"a": a, **parameters})
 
     @property
     def has_closed_form(self) -> bool:

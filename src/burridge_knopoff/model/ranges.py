@@ -98,6 +98,17 @@ class OneOf(Range):
         return " | ".join(self.words)
 
 
+class TrueOrFalse(Range):
+    """True or false."""
+
+    def _fit(self, value: Any, key: str) -> bool | None:
+        value = scalar(value)
+        return bool(value) if isinstance(value, bool | np.bool_) else None
+
+    def __str__(self) -> str:
+        return "true | false"
+
+
 @dataclass(eq=False, repr=False)
 class Text(Range):
     """A text that matches a pattern in full; `words` describes the pattern."""

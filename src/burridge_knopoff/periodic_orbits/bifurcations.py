@@ -31,7 +31,7 @@ from burridge_knopoff.values import each_instance_of
 TOLERANCE = 1e-14
 SIDES = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7)
 
-# Rounding error of a; smaller errors are not reported.
+# Rounding error of a parameter of about 1; smaller errors are not reported.
 ROUNDING = 1e-12
 
 # Range, in steps, searched for the end of a branch around the point where it has joined another branch.
@@ -52,23 +52,23 @@ JOINED = 1e-4
 class Bifurcation:
     """A bifurcation on a branch of periodic orbits.
 
-    a, a_error : friction parameter, and half the width of its bracket
+    value, error : parameter along which the branch was followed, and half the width of its bracket
     at : the orbit there, as accurately as known; where the branch joins one of simpler orbits, the simpler orbit
     before, after : orbits on the branch on either side; `after` is None where the branch ends or joins a branch of
         simpler orbits
-    turns : whether the branch turns back in a there
+    turns : whether the branch turns back in the parameter there
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
     >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
     >>> branch = follow(orbit, (0.086, 0.0875))
     >>> (bifurcation,) = locate_bifurcations(branch)
-    >>> bifurcation.kind.name, bifurcation.loses_stability, bifurcation.a_error < 1e-9
+    >>> bifurcation.kind.name, bifurcation.loses_stability, bifurcation.error < 1e-9
     ('PITCHFORK', True, True)
     """
 
-    a: float
-    a_error: float
+    value: float
+    error: float
     kind: BifurcationKind
     at: BranchOrbit
     before: BranchOrbit
@@ -76,8 +76,18 @@ class Bifurcation:
     turns: bool
 
     def __repr__(self) -> str:
-        at = f"a = {self.a:.12g} +- {self.a_error:.1g}"
+        at = f"{self.parameter} = {self.value:.12g} +- {self.error:.1g}"
         return f"<Bifurcation: {self.kind.name.lower()} at {at}, period {self.period:.9g}>"
+
+    @property
+    def parameter(self) -> str:
+        """The parameter along which the branch was followed."""
+        return self.before.line.parameter
+
+    @property
+    def a(self) -> float:
+        """Friction parameter."""
+        return self.value if self.parameter == "a" else self.at.orbit.a
 
     @property
     def period(self) -> float:
@@ -138,11 +148,11 @@ def _bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
 
 
 def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Bifurcation:
-    """Return the grazing at a corner; the error of its a is the remaining length to the corner."""
-    left = point.remaining * float(point.tangent[-1])
+    """Return the grazing at a corner; the error of the parameter is the remaining length to the corner."""
+    left = point.remaining * float(point.tangent[-1]) * point.line.rates[0]
     turns = following is not None and point.tangent[-1] * following.tangent[-1] < 0.0
     return Bifurcation(
-        point.orbit.a + left, max(abs(left), ROUNDING), BifurcationKind.GRAZING, point, point, following, turns
+        point.value + left, max(abs(left), ROUNDING), BifurcationKind.GRAZING, point, point, following, turns
     )
 
 
@@ -187,8 +197,8 @@ def _root(
     # Breaking a symmetry other than the mirror's, such as that of a ring, gives a multiplier +1 that is not a fold.
     if kind is None or (kind == BifurcationKind.FOLD and not turns):
         return None
-    error = max(0.5 * abs(high.orbit.a - low.orbit.a), abs(at.orbit.a - low.orbit.a), ROUNDING)
-    return root, Bifurcation(at.orbit.a, error, kind, at, first, second, turns)
+    error = max(0.5 * abs(high.value - low.value), abs(at.value - low.value), ROUNDING)
+    return root, Bifurcation(at.value, error, kind, at, first, second, turns)
 
 
 def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcation]:
@@ -196,20 +206,23 @@ def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcation]:
     simple = following.joined
     if simple is None:
         return []
-    reach = NEAR_JOINT * abs(following.orbit.a - point.orbit.a) + point.length + following.length
-    around = following.orbit.a - reach, following.orbit.a + reach
+    lengths = point.line.rates[0] * (point.length + following.length)
+    reach = NEAR_JOINT * abs(following.value - point.value) + lengths
+    around = following.value - reach, following.value + reach
     kind = _joint_kind(point.orbit, simple)
     found = []
     for upward in (True, False):
         found += [
             bifurcation
-            for bifurcation in locate_bifurcations(follow(simple, around, upward=upward))
+            for bifurcation in locate_bifurcations(
+                follow(simple, around, parameter=point.line.parameter, upward=upward)
+            )
             if bifurcation.kind == kind
         ]
     if not found:
         return []
-    bifurcation = min(found, key=lambda bifurcation: abs(bifurcation.a - following.orbit.a))
-    return [Bifurcation(bifurcation.a, bifurcation.a_error, bifurcation.kind, bifurcation.at, point, None, False)]
+    bifurcation = min(found, key=lambda bifurcation: abs(bifurcation.value - following.value))
+    return [Bifurcation(bifurcation.value, bifurcation.error, bifurcation.kind, bifurcation.at, point, None, False)]
 
 
 def _kind(at: BranchOrbit, key: tuple[BifurcationKind, str]) -> BifurcationKind | None:

@@ -21,7 +21,7 @@ import numpy as np
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.floquet import critical_values
-from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
+from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.grazing_distances import drops
 from burridge_knopoff.periodic_orbits.minimal_orbit import simpler_orbit
 from burridge_knopoff.periodic_orbits.periodic import orbit_of
@@ -123,7 +123,7 @@ def come_to_corner(before: Sequence[BranchOrbit], length: float) -> list[BranchO
 
 def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
     """Return an orbit on the other side of the grazing that a branch has reached; None if the branch ends there."""
-    orbit = point.orbit
+    orbit, line = point.orbit, point.line
     if drops(orbit.model):
         return None
     blocks = orbit.model.blocks
@@ -132,8 +132,9 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
         vector = orbit.reference.vector() + beyond * change
         state = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
         try:
-            model = model_at(orbit.model, max(orbit.a + beyond * float(point.tangent[-1]), 0.0))
-            tangent = tangent_of(orbit_of(model, state, orbit.return_time, orbit.symmetry))
+            there = line.coordinate(orbit.model) + beyond * float(point.tangent[-1])
+            model = line.model(orbit.model, max(there, line.least))
+            tangent = tangent_of(orbit_of(model, state, orbit.return_time, orbit.symmetry), line)
         except OrbitError:
             continue
         for length in FIRST_STEPS:

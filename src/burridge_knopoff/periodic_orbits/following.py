@@ -1,4 +1,4 @@
-"""Continuation of periodic orbits in a: through folds and around grazings, stable or unstable."""
+"""Continuation of periodic orbits in a parameter: through folds and around grazings, stable or unstable."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from burridge_knopoff.periodic_orbits.floquet import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.minimal_orbit import simpler_orbit, simplest
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
-from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch, line_of
 from burridge_knopoff.values import instance_of, real_number, refusal
 
 # Distance, for v = 0.1, within which an orbit about to become more symmetric, or of half the period, returns to its
@@ -26,6 +26,9 @@ FASTER = 2.0
 @dataclass(frozen=True)
 class Following:
     """Options of the continuation: lengths of steps along the branch, mostly in a, and the maximum number of orbits.
+
+    Along another parameter, the unit of length is the change of it that changes the return of the orbit by about as
+    much as a change of 1 in a does on a short orbit. On long orbits, whose return changes faster, the unit is smaller.
 
     >>> from burridge_knopoff import Following
     >>> Following(most_orbits=20).largest_step
@@ -43,25 +46,28 @@ FOLLOWING = Following()
 
 def follow(
     orbit: PeriodicOrbit,
-    a_range: tuple[float, float],
+    interval: tuple[float, float] = (-math.inf, math.inf),
     settings: Following = FOLLOWING,
     *,
+    parameter: str = "a",
     upward: bool = True,
     enough: Callable[[list[BranchOrbit]], bool] = lambda points: False,
 ) -> list[BranchOrbit]:
-    """Return the orbits of a branch starting from one of them, until a leaves a range or `enough` says so.
+    """Return the orbits of a branch starting from one of them, until a parameter leaves an interval.
 
-    orbit : stable or unstable, of any chain; reduced to its simplest form first; a_range : (low, high)
-    settings : lengths of steps; upward : whether a grows at first
+    orbit : stable or unstable, of any chain; reduced to its simplest form first
+    interval : (low, high) of the parameter; by default as far as the branch goes
+    settings : lengths of steps; upward : whether the parameter grows at first
+    parameter : a, a number of the law such as sigma, v, coupling, pulling, threshold or mass (`Model.at`)
     enough : called after each orbit except those on a corner, with all orbits so far
 
     A grazing orbit is in the list with `corner` set; the next orbit, if there is one, is on the other side. The branch
     also ends where it joins one of simpler orbits, where no step is short enough, and at the `settings.most_orbits`-th
-    orbit, or the next one if that is on a corner. If a is then still within the range, the rest of the branch has not
-    been followed.
+    orbit, or the next one if that is on a corner. If the parameter is then still within the interval, the rest of the
+    branch has not been followed.
 
-    Raises OrbitError if it cannot start, for example if the orbit is not within the range, and ValueError for an
-    invalid range.
+    Raises OrbitError if it cannot start, for example if the orbit is not within the interval, and ValueError for an
+    invalid interval, and for what is no parameter of the model.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
     docs/bifurcations.md explains how a branch continues where its orbit grazes.
@@ -74,22 +80,26 @@ def follow(
     [0.0865, 0.0866, 0.0868, 0.0872, 0.0877]
     >>> [point.multipliers.unstable for point in branch]
     [0, 0, 0, 1, 1]
+    >>> branch = follow(orbit, (0.9, 1.0), parameter="coupling", upward=False)
+    >>> round(branch[-1].value, 3) <= 0.9, branch[-1].orbit.a
+    (True, 0.0865)
     """
     try:
-        low, high = (real_number(value) for value in a_range)
+        low, high = (real_number(value) for value in interval)
     except (TypeError, ValueError):
         low = high = math.nan
     if not low <= high:
-        raise refusal("a_range", a_range, "(low, high) with low ≤ high")
+        raise refusal("interval", interval, "(low, high) with low ≤ high")
     instance_of(orbit, PeriodicOrbit, "orbit")
     instance_of(settings, Following, "settings")
-    if not low <= orbit.a <= high:
-        raise OrbitError(f"a = {orbit.a!r}: not within the range {low!r} to {high!r}")
-    points = [begin_branch(simpler_orbit(orbit) or orbit, upward)]
+    line = line_of(orbit, parameter)
+    if not low <= line.value(orbit.model) <= high:
+        raise OrbitError(f"{line.place(orbit.model)}: not within the range {low!r} to {high!r}")
+    points = [begin_branch(simpler_orbit(orbit) or orbit, upward, line)]
     length = settings.first_step
 
     def goes_on() -> bool:
-        return len(points) < settings.most_orbits and low <= points[-1].orbit.a <= high and not enough(points)
+        return len(points) < settings.most_orbits and low <= points[-1].value <= high and not enough(points)
 
     while goes_on():
         found = smooth_step(points, length)
@@ -118,7 +128,7 @@ def follow(
 def _passed(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:
     """Return the simpler orbit that a branch has passed, on to its own mirror image; None if there is none.
 
-    The branch turns back in a there, but the multiplier only touches 1, unlike at a fold.
+    The branch turns back there, but the multiplier only touches 1, unlike at a fold.
     """
     if first.tangent[-1] * second.tangent[-1] > 0.0:
         return None

@@ -20,7 +20,8 @@ import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
-from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distance, model_at, rate
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distance, rate
+from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A, ParameterLine
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions, mirror
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.settings import LONGEST
@@ -156,12 +157,14 @@ def solve_return(
     constraint: tuple[np.ndarray, float] | None = None,
     origin: tuple[np.ndarray, float, float] | None = None,
     enough: float = ENOUGH,
+    line: ParameterLine = ALONG_A,
 ) -> PeriodicOrbit:
     """Return the orbit that solves the equations, by Newton's method from a guess of its reference state.
 
     constraint : a vector over (positions and velocities, time, a), an origin of the same form, and the required product
         of the vector with the change from the origin; makes a another unknown
     enough : residual at which the iteration ends; 0 iterates to rounding
+    line : takes the place of a
 
     Raises OrbitError if Newton's method does not converge.
     """
@@ -170,7 +173,7 @@ def solve_return(
     count, unknowns = basis.shape[1], basis.shape[1] + (1 if constraint is None else 2)
     first, last = start.vector(), np.inf
     state, blocks = first.copy(), model.blocks
-    by_a: np.ndarray | None = None
+    by_parameter: np.ndarray | None = None
     mapping = ReturnMap(model, symmetry)
     for iteration in range(ITERATIONS):
         here = ChainState(state[:blocks], state[blocks:], start.stuck)
@@ -185,12 +188,14 @@ def solve_return(
         jacobian[count, :count] = phase
         if constraint is not None and origin is not None:
             vector, amount = constraint
-            change = np.concatenate([state - origin[0], [time - origin[1], model.a - origin[2]]])
+            change = np.concatenate([state - origin[0], [time - origin[1], line.coordinate(model) - origin[2]]])
             values[-1] = vector @ change - amount
             # Expensive, and nearly constant between iterations.
-            if by_a is None:
-                by_a = basis.T @ mapping.a_derivative(here, time, end, mapping.event_rows()[:, 1:])
-            jacobian[:count, -1] = by_a
+            if by_parameter is None:
+                by_parameter = basis.T @ mapping.parameter_derivative(
+                    here, time, end, mapping.event_rows()[:, 1:], line
+                )
+            jacobian[:count, -1] = by_parameter
             jacobian[-1] = np.concatenate([vector[:-2] @ basis, vector[-2:]])
         size = float(np.abs(values).max())
         if size <= enough or (size <= TOLERANCE * max(1.0, model.v) and size > 0.25 * last):
@@ -211,9 +216,9 @@ def solve_return(
         if not time > 0.0:
             break
         if constraint is not None:
-            model = model_at(model, model.a + float(step[-1]))
+            model = line.model(model, line.coordinate(model) + float(step[-1]))
             mapping = ReturnMap(model, symmetry)
-    raise OrbitError(f"a = {model.a!r}: no periodic orbit found near the guess")
+    raise OrbitError(f"{line.place(model)}: no periodic orbit found near the guess")
 
 
 def refined(orbit: PeriodicOrbit) -> PeriodicOrbit:

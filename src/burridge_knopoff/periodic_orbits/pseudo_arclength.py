@@ -1,7 +1,7 @@
-"""Pseudo-arclength continuation of periodic orbits in the friction parameter a: through folds, up to grazings.
+"""Pseudo-arclength continuation of periodic orbits in a parameter: through folds, up to grazings.
 
-A step follows the tangent of the branch in (state, return time, a) and is corrected perpendicular to it. No step passes
-a grazing: there the branch has a corner (`corner`), which `follow` goes around.
+A step follows the tangent of the branch in (state, return time, parameter) and is corrected perpendicular to it. No
+step passes a grazing: there the branch has a corner (`corner`), which `follow` goes around.
 
 Reference: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 and 745.
 """
@@ -14,18 +14,25 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.parameters import at, value_of
 from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
-from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, model_at, rate
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, rate
 from burridge_knopoff.periodic_orbits.grazing_distances import Contacts, contacts
+from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A, ParameterLine
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, safe_offset, solve_return
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
 
-# Length along a branch is mostly length in a: positions, in units of 0.1 v, and times have smaller weights.
+# Length along a branch is mostly length in the parameter: positions, in units of 0.1 v, and times have smaller weights.
 STATE_WEIGHT = 0.01
 TIME_WEIGHT = 1e-4
 
 # Fraction of a change of state by which the tangent is carried from one reference state to another.
 PART = 1e-6
+
+# Change of the return of an orbit, for v = 0.1, that a step of length 1 makes: a change of 1 in a makes about this one
+# where all blocks stop once in a period. A step is at most so long relative to the parameter.
+CHANGE = 0.25
+LONGEST = 10.0
 
 # Cosine of the largest angle between the tangents at both ends of a step; sharper turns need shorter steps.
 STRAIGHT = 0.8
@@ -33,8 +40,9 @@ STRAIGHT = 0.8
 
 @dataclass(frozen=True, eq=False)
 class BranchOrbit:
-    """An orbit on a branch and the unit tangent there, over (positions and velocities, return time, a).
+    """An orbit on a branch and the unit tangent there, over (positions and velocities, return time, parameter).
 
+    line : the parameter along which the branch is followed, in units in which it is measured
     length : from the previous orbit, along its tangent
     joined : the simpler form of this orbit, more symmetric or of half the period, if the branch has reached another
         branch; the branch ends before it
@@ -53,9 +61,15 @@ class BranchOrbit:
     length: float = 0.0
     joined: PeriodicOrbit | None = None
     remaining: float = np.nan
+    line: ParameterLine = ALONG_A
 
     def __repr__(self) -> str:
         return f"<BranchOrbit: {self.orbit!r}>"
+
+    @cached_property
+    def value(self) -> float:
+        """The value of the parameter along which the branch is followed."""
+        return self.line.value(self.orbit.model)
 
     @property
     def corner(self) -> bool:
@@ -73,12 +87,39 @@ class BranchOrbit:
         return multipliers(self.orbit)
 
 
+def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
+    """Return the line along one parameter of an orbit, in units in which its return changes by CHANGE.
+
+    The return of a long orbit changes faster, so that its unit is smaller. Positions and velocities are compared in
+    units of v, since they grow with it. For a, the unit is 1.
+
+    Raises ValueError, one line, if the model has no one number of this name.
+    """
+    value = value_of(orbit.model, parameter)
+    if parameter == "a":
+        return ALONG_A
+    size, change = abs(value) or 1.0, 0.0
+    for step in (PART * size, -PART * size):
+        try:
+            model = at(orbit.model, {parameter: value + step})
+            larger = model.v / orbit.model.v
+            start = ChainState(
+                larger * orbit.reference.position, larger * orbit.reference.velocity, orbit.reference.stuck
+            )
+            end = ReturnMap(model, orbit.symmetry).end(start, orbit.return_time)
+        except ValueError:
+            continue
+        apart = end.vector() / model.scale - orbit.returned.vector() / orbit.model.scale
+        change = max(change, float(np.abs(apart).max() / abs(step)))
+    return ParameterLine((parameter,), (value,), (min(LONGEST * size, CHANGE / max(change, 1e-300)),))
+
+
 def weights(model: Model) -> np.ndarray:
-    """Return the weight of each component of (positions and velocities, return time, a) in a squared length."""
+    """Return the weight of each component of (positions and velocities, return time, parameter) in a squared length."""
     return np.concatenate([np.full(2 * model.blocks, STATE_WEIGHT / model.scale**2), [TIME_WEIGHT, 1.0]])
 
 
-def tangent_of(orbit: PeriodicOrbit) -> np.ndarray:
+def tangent_of(orbit: PeriodicOrbit, line: ParameterLine = ALONG_A) -> np.ndarray:
     """Return the unit tangent of the branch at an orbit, of either sign."""
     model, start, time = orbit.model, orbit.reference, orbit.return_time
     basis = directions(start.stuck, orbit.symmetry)
@@ -88,17 +129,17 @@ def tangent_of(orbit: PeriodicOrbit) -> np.ndarray:
     matrix = np.zeros((count + 1, count + 2))
     matrix[:count, :count] = basis.T @ orbit.monodromy @ basis - np.eye(count)
     matrix[:count, count] = basis.T @ mapping.time_derivative(end)
-    matrix[:count, count + 1] = basis.T @ mapping.a_derivative(start, time, end, events)
+    matrix[:count, count + 1] = basis.T @ mapping.parameter_derivative(start, time, end, events, line)
     matrix[count, :count] = rate(model, start) @ basis
     null = np.linalg.svd(matrix)[2][-1]
     vector = np.concatenate([basis @ null[:count], null[count:]])
     return vector / np.sqrt(weights(model) @ vector**2)
 
 
-def begin_branch(orbit: PeriodicOrbit, upward: bool) -> BranchOrbit:
-    """Return an orbit with the tangent along which a grows or falls."""
-    tangent = tangent_of(orbit)
-    return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent)
+def begin_branch(orbit: PeriodicOrbit, upward: bool, line: ParameterLine = ALONG_A) -> BranchOrbit:
+    """Return an orbit with the tangent along which the parameter grows or falls."""
+    tangent = tangent_of(orbit, line)
+    return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent, line=line)
 
 
 def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = None) -> BranchOrbit:
@@ -108,11 +149,12 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
 
     Raises OrbitError if none is found, or if the branch turns sharply on the way.
     """
-    orbit = point.orbit
+    orbit, line = point.orbit, point.line
+    here = line.coordinate(orbit.model)
     tangent = point.tangent if tangent is None else tangent
     blocks = orbit.model.blocks
     base = orbit.reference.vector()
-    model = model_at(orbit.model, orbit.a + length * float(tangent[-1]))
+    model = line.model(orbit.model, here + length * float(tangent[-1]))
     guess = base + length * tangent[:-2]
     start = ChainState(guess[:blocks], guess[blocks:], orbit.reference.stuck)
     time = orbit.return_time + length * float(tangent[-2])
@@ -122,32 +164,34 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
         time,
         orbit.symmetry,
         (weights(model) * tangent, length),
-        (base, orbit.return_time, orbit.a),
+        (base, orbit.return_time, here),
+        line=line,
     )
     model = found.model
-    following = tangent_of(found)
+    following = tangent_of(found, line)
     cosine = float(following @ (weights(model) * tangent))
     if tangent is point.tangent and abs(cosine) < STRAIGHT:
-        raise OrbitError(f"a = {model.a!r}: the branch turns too sharply within a step of {length!r}")
+        raise OrbitError(f"{line.place(model)}: the branch turns too sharply within a step of {length!r}")
     following = following if cosine > 0.0 else -following
     offset = safe_offset(found)
     if offset == 0.0:
-        return BranchOrbit(found, following, length)
-    carried = _carried(found, following, offset)
+        return BranchOrbit(found, following, length, line=line)
+    carried = _carried(found, following, offset, line)
     there = flow(model, found.reference, offset)[0].state()
     moved = orbit_of(model, there, found.return_time, orbit.symmetry)
-    following = tangent_of(moved)
+    following = tangent_of(moved, line)
     side = following @ (weights(model) * carried)
-    return BranchOrbit(moved, following if side > 0.0 else -following, length)
+    return BranchOrbit(moved, following if side > 0.0 else -following, length, line=line)
 
 
-def _carried(orbit: PeriodicOrbit, tangent: np.ndarray, time: float) -> np.ndarray:
+def _carried(orbit: PeriodicOrbit, tangent: np.ndarray, time: float, line: ParameterLine) -> np.ndarray:
     """Return a tangent carried to the state a time after the reference, perpendicular to the flow there."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + PART * tangent[:-2]
     near = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
     here = flow(orbit.model, orbit.reference, time)[0].state()
-    there = flow(model_at(orbit.model, orbit.a + PART * float(tangent[-1])), near, time)[0].state()
+    model = line.model(orbit.model, line.coordinate(orbit.model) + PART * float(tangent[-1]))
+    there = flow(model, near, time)[0].state()
     change = (there.vector() - here.vector()) / PART
     along = rate(orbit.model, here)
     return np.concatenate([change - along * (along @ change) / (along @ along), tangent[-2:]])

@@ -15,11 +15,12 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.periodic_orbits.flow import OrbitError, after, model_at, rate
+from burridge_knopoff.periodic_orbits.flow import OrbitError, after, rate
+from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A, ParameterLine
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 
-# Step in a for the derivative of a return. The error is of the same order, small enough for Newton's method and
+# Step for the derivative of a return. The error is of the same order, small enough for Newton's method and
 # tangents.
 STEP = 1e-7
 LEAST_STEP = 1e-13
@@ -58,27 +59,30 @@ class ReturnMap:
         """Return time, block (0 …) and kind (0 stop, 1 start) of each event of the last return, not mirrored."""
         return np.stack(self._runner.events(), axis=1)
 
-    def a_derivative(self, start: ChainState, time: float, end: ChainState, events: np.ndarray) -> np.ndarray:
+    def parameter_derivative(
+        self, start: ChainState, time: float, end: ChainState, events: np.ndarray, line: ParameterLine = ALONG_A
+    ) -> np.ndarray:
         """Return the derivative of the end of a return with respect to a, shape (2 blocks,).
 
         start, time, end : of the return; events : blocks and kinds of its events in order, shape (n, 2)
+        line : takes the place of a
 
         By finite differences; next to a grazing, where the derivative jumps, on the side of the orbit. Raises
         OrbitError if there is none.
         """
-        step = STEP
+        step, here = STEP, line.coordinate(self.model)
         while step > LEAST_STEP:
-            for a in (self.model.a + step, self.model.a - step):
+            for there in (here + step, here - step):
                 try:
-                    model = model_at(self.model, a)
+                    model = line.model(self.model, there)
                 except OrbitError:
                     continue
                 runner = Runner(model, keep_events=True)
                 moved = self._mirrored(after(runner, start, time))
                 if np.array_equal(np.stack(runner.events()[1:], axis=1), events):
-                    return (moved.vector() - end.vector()) / (a - self.model.a)
+                    return (moved.vector() - end.vector()) / (there - here)
             step *= 0.1
-        raise OrbitError(f"a = {self.model.a!r}: stops and starts change however little a does")
+        raise OrbitError(f"{line.place(self.model)}: stops and starts change however little this does")
 
     def time_derivative(self, end: ChainState) -> np.ndarray:
         """Return the derivative of the end with respect to the time, shape (2 blocks,)."""

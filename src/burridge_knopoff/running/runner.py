@@ -18,6 +18,9 @@ from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
 
 NEVER = 1e300
 
+#: Solvers with a fixed step.
+STEPPING = ("rk4", "euler")
+
 # Real motion stays far below: a slip of a block takes about one time unit or longer.
 EVENTS_PER_BLOCK_AND_UNIT = 1000
 STEP_LIMIT = 10**10
@@ -26,8 +29,8 @@ STEP_LIMIT = 10**10
 class Runner:
     """A solver of one model.
 
-    solver : series, map (closed form) or rk4
-    step : time step of rk4
+    solver : series, map (closed form), rk4, or euler for comparison (explicit)
+    step : time step of rk4 and euler
     events_from : time from which events are kept with the state; earlier events have time, block and kind only
     keep_events : whether events are kept; otherwise they are only counted
     stops_only : whether only the stops from `events_from` on are kept
@@ -76,7 +79,8 @@ class Runner:
             raise refusal("solver", solver, "series under quasi-static loading")
         self.model = model
         # These decide the steps: a continued run repeats the steps of the whole run only if they are equal.
-        self.solver = model, solver, step if solver == "rk4" else None, loading
+        stepping = solver in STEPPING
+        self.solver = model, solver, step if stepping else None, loading
         blocks = model.blocks
         rate_limit = EVENTS_PER_BLOCK_AND_UNIT * blocks
         self.log = EventLog(blocks, events_from, keep_events, rate_limit, stops_only, MOST_NUMBERS)
@@ -86,8 +90,8 @@ class Runner:
             exponents = Exponents(blocks, count, NEVER, np.array([NEVER, NEVER]))
         self.exponents = exponents
         self.kernel: Run | TimeStepping
-        if solver == "rk4":
-            self.kernel = TimeStepping(kernel_model(model), self.log, self.observer, step)
+        if stepping:
+            self.kernel = TimeStepping(kernel_model(model), self.log, self.observer, step, solver == "euler")
         else:
             choice = 0 if solver == "map" else -1 if groups is None else int(groups)
             self.kernel = Run(
@@ -100,11 +104,11 @@ class Runner:
                 STEP_LIMIT,
                 model.v if quasistatic else 0.0,
             )
-            if catalogue is not None:
-                self.kernel.record(catalogue)
             if solver == "map":
                 self.kernel.use_modes(partial(normal_modes, model.chain))
         self.catalogue = catalogue
+        if catalogue is not None:
+            self.kernel.record(catalogue)
         if perturbations is not None:
             self.carry(perturbations)
 
@@ -133,14 +137,14 @@ class Runner:
 
         halting_block : halt at each stop of this block; the next call continues from there
 
-        Raises ValueError if `rk4` is given either argument, since it only integrates the observer's window, and if the
-        run would keep more than MOST_NUMBERS numbers.
+        Raises ValueError if `rk4` or `euler` is given either argument, since they only integrate the observer's window,
+        and if the run would keep more than MOST_NUMBERS numbers.
         """
         if isinstance(self.kernel, Run):
             self.kernel.halting_block = halting_block
             self.kernel.end = self.observer.end if until is None else until
         elif until is not None or halting_block >= 0:
-            raise ValueError("solver: got 'rk4', expected series | map for a run to a time or a stop")
+            raise ValueError(f"solver: got {self.solver[1]!r}, expected series | map for a run to a time or a stop")
         status = Status(self.kernel.run())
         for key, table, remedy in (
             ("catalogue", self.catalogue, "a shorter window, or none of the profiles"),

@@ -13,10 +13,15 @@ from matplotlib.figure import Figure
 from burridge_knopoff.figures.description import Description, figure_descriptions
 from burridge_knopoff.figures.distance import FLOOR, linear_top
 from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_section
+from burridge_knopoff.figures.slip_events import draw_run
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, say_nothing, styled, write_figure
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
+from burridge_knopoff.summaries.catalogue import summarize
 from burridge_knopoff.values import cut, shown
+
+#: Name of the module that makes the catalogue file of a run.
+CATALOGUE_FILE = "slip_events"
 
 FORMATS = (".png", ".pdf", ".svg")
 
@@ -38,6 +43,10 @@ def write_picture(result: Result, path: str | Path) -> str:
     if result.is_point:
         write_figure(draw_point(result.data), path)
         return f"{path}: J, section points and velocities"
+    if result.name == CATALOGUE_FILE:
+        law, a = result.data.attrs["law"], result.data["a"].item()
+        write_figure(draw_run(summarize([result.data], [law], [a]).isel(law=0, a=0)), path)
+        return f"{path}: slips in space and time, their recurrence, rates, extents and intervals"
     figure = _figure_of(result)
     inputs = [result.data if name == result.name else _beside(result, name) for name in figure.inputs]
     module = import_module(f"burridge_knopoff.figures.{figure.name}")

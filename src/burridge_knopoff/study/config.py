@@ -13,6 +13,7 @@ from typing import Any
 
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings, PhaseSettings
+from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
@@ -62,11 +63,15 @@ def _part(kind: type, *without: str, **other: Field) -> dict[str, Field]:
     return {name: other.get(name, field) for name, field in fields_of(kind).items() if name not in without}
 
 
-def _section(fields: Mapping[str, Field]) -> Field:
-    return Field(Keys(fields), "", {})
+def _section(fields: Mapping[str, Field], default: Any = None) -> Field:
+    return Field(Keys(fields), "", {} if default is None else default)
 
 
-_SETTINGS, _SAMPLE = fields_of(Settings), fields_of(Sample)
+def _as_in_study(field: Field) -> Field:
+    return replace(field, description=f"{field.description}; by default the study's", default=FOLLOWS)
+
+
+_SETTINGS, _SAMPLE, _CATALOGUE = fields_of(Settings), fields_of(Sample), fields_of(CatalogueSettings)
 _STATE = {name: replace(field, default=FOLLOWS) for name, field in fields_of(InitialState).items()}
 _SOLVER = OneOf(SOLVERS)
 
@@ -118,6 +123,15 @@ PHASES = {
         FOLLOWS,
     ),
     **_part(PhaseSettings),
+}
+CATALOGUE = {
+    "a": Field(
+        replace(VALUES, each=A, distinct=True),
+        "values of the grid with a catalogue of slip events; by default all",
+        FOLLOWS,
+    ),
+    "initial": Field(Text(), "initial state of these runs; by default the study's first", FOLLOWS),
+    **_part(CatalogueSettings, **{name: _as_in_study(_CATALOGUE[name]) for name in ("transient", "window")}),
 }
 TWO_BLOCKS = {
     "a": Field(
@@ -179,5 +193,6 @@ CONFIG = Keys(
         "basins": _section(BASINS),
         "phases": _section(PHASES),
         "chains": _section(CHAINS),
+        "catalogue": _section(CATALOGUE, FOLLOWS),
     }
 )

@@ -24,6 +24,18 @@ def basin_keys(study: Study, *unused: str) -> dict[str, Any]:
     return {key: value for key, value in study.config["basins"].items() if key not in others}
 
 
+def catalogue_keys(study: Study) -> dict[str, Any]:
+    """Return the keys of `catalogue` that decide a run: those of the fit decide the statistics only."""
+    others = {"a", "initial", "low", "high"}
+    return {key: value for key, value in study.config["catalogue"].items() if key not in others}
+
+
+def catalogue_run(study: Study, law: str) -> dict[str, Any]:
+    """Return start, solver and step of the runs that record catalogues, which are those of the points."""
+    settings = study.settings(law)
+    return {"start": settings.start, "solver": settings.solver, "step": settings.step}
+
+
 def motion_config(study: Study) -> dict[str, Any]:
     """Return how kinds of motion are distinguished."""
     return {**study.config["motion"], **keys(study, "synchronization_threshold", "section")}

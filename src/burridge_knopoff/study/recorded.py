@@ -15,8 +15,8 @@ from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.study import Study, load_study
 from burridge_knopoff.values import joined
 
-#: Keys without a default, which the config of a row or a ring does not have.
-_OF_NETWORKS = ("chain.grid", "chain.springs")
+#: Keys without a default, which a complete config need not have.
+_OPTIONAL = ("chain.grid", "chain.springs", "catalogue", "catalogue.low", "catalogue.high")
 _RUN = re.compile(r"(?:points|solvers/(?P<solver>\w+))/(?P<law>\w+)/(?P<initial>\w+)/a(?P<a>[\d.]+)\.nc")
 
 
@@ -31,6 +31,9 @@ def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
         raise ValueError(f"{path}: not a study of this version ({key}); run snakemake again")
     # The form of a complete config is the config itself. A default may however be refused if it is given explicitly.
     asked = {name: value for name, value in record["config"].items() if value != CONFIG.fields[name].default}
+    if isinstance(solvers := asked.get("solvers"), dict):
+        # Left out, the stage has no values of a.
+        asked["solvers"] = {key: value for key, value in solvers.items() if (key, value) != ("a", [])}
     study = load_study(asked, str(path))
     if (study.config, study.grid) != (record["config"], record["grid"]):
         raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
@@ -54,8 +57,9 @@ def _other_key(config: Any, keys: Keys, place: str = "") -> str:
     """Return a key that a complete config has and this version lacks, or the reverse; empty if there is none."""
     if not isinstance(config, dict):
         return place
-    sections = {name: field.range for name, field in keys.fields.items() if isinstance(field.range, Keys)}
+    there = {name: field.range for name, field in keys.fields.items() if name in config}
+    sections = {name: inside for name, inside in there.items() if isinstance(inside, Keys)}
     found = [joined(place, name) for name in sorted(config.keys() ^ keys.fields.keys())]
-    found = [key for key in found if key not in _OF_NETWORKS]
+    found = [key for key in found if key not in _OPTIONAL]
     found += [_other_key(config[name], inside, joined(place, name)) for name, inside in sections.items() if not found]
     return next(filter(None, found), "")

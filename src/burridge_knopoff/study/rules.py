@@ -166,6 +166,21 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
                 raise refusal(key, a, "a value of the grid")
 
 
+def fill_catalogue(config: dict[str, Any], grid: Collection[float]) -> None:
+    """Check the values of a and the initial state of catalogues, and fill in the study's, if there are catalogues."""
+    if "catalogue" not in config:
+        return
+    section = config["catalogue"]
+    of_study = {"initial": next(iter(config["initial"])), "transient": config["transient"], "window": config["window"]}
+    for key, value in of_study.items():
+        section.setdefault(key, value)
+    OneOf(tuple(config["initial"])).form(section["initial"], "catalogue.initial")
+    for a in section.setdefault("a", list(grid)):
+        if a not in grid:
+            raise refusal("catalogue.a", a, "a value of the grid")
+    section["a"] = [a for a in grid if a in section["a"]]
+
+
 def fill_chains(config: Mapping[str, Any]) -> None:
     """Convert the lists of a of longer chains to numbers."""
     chains = config["chains"]

@@ -8,6 +8,7 @@ OPTIONAL = {
     "phases": "attractors",
     "solvers": "",
     "two_blocks": "",
+    "catalogue": "",
     "proof": "",
     "claims": "",
 }

@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from burridge_knopoff.basins.settings import BasinSettings
+from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
@@ -124,6 +125,7 @@ class Study:
             "basins": self.basin_maps,
             "phases": self.config["phases"]["a"],
             "two_blocks": self.has_several_laws and not self.single_length_key,
+            "catalogue": "catalogue" in self.config,
             "proof": self.proved_laws,
         }
         return tuple(stage for stage in stages.OPTIONAL if stage not in self.left_out and there.get(stage, True))
@@ -148,6 +150,12 @@ class Study:
         """Law and name of a for every basin map."""
         names = {value: name for name, value in self.grid.items()}
         return [(law, names[a]) for law, values in self.config["basins"]["a"].items() for a in values]
+
+    @property
+    def catalogue_a(self) -> list[str]:
+        """Names of the values of a with a catalogue of slip events."""
+        chosen = self.config["catalogue"]["a"] if "catalogue" in self.stages else []
+        return [name for name, value in self.grid.items() if value in chosen]
 
     @property
     def single_length_key(self) -> str:
@@ -289,6 +297,9 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
         _settings_of(BasinSettings, filled["basins"])
     with rules.under("chains."):
         _settings_of(Sample, filled["chains"])
+    rules.fill_catalogue(filled, values)
+    with rules.under("catalogue."):
+        _settings_of(CatalogueSettings, filled.get("catalogue", {}))
     rules.fill_values(filled, set(values), study.blocks, study.shown_a)
     for law in study.laws if has_springs and "solvers" in study.stages else ():
         for solver in study.other_solvers(law):

@@ -191,7 +191,7 @@ def _append_bifurcation(values: dict[str, list[Any]], entry: Entry, blocks: int)
     values["motion_after"].append(entry.motion[1])
     bifurcation = entry.bifurcation
     after = bifurcation.after if bifurcation else None
-    values["a_error"].append(bifurcation.a_error if bifurcation else 1.0)
+    values["a_error"].append(bifurcation.error if bifurcation else 1.0)
     values["turns"].append(int(bifurcation.turns) if bifurcation else -1)
     values["period"].append(bifurcation.period if bifurcation else np.nan)
     values["mean_distance"].append(bifurcation.mean_distance if bifurcation else np.nan)

@@ -1,0 +1,100 @@
+"""Catalogue files: the netCDF form of the slip events of a run, a row an event."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from burridge_knopoff.catalogue.events import SlipEvents, record_events
+from burridge_knopoff.catalogue.settings import CatalogueSettings
+from burridge_knopoff.dataset.point import STATUS_FLAG, model_attributes
+from burridge_knopoff.dataset.variables import CONVENTIONS, Variable, described
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.provenance.sources import provenance
+
+if TYPE_CHECKING:
+    import xarray
+
+_V = Variable
+_EVENT = ("event",)
+CATALOGUE_VARIABLES = {
+    "a": _V((), "f8", "friction parameter a", coordinate=True),
+    "v": _V((), "f8", "driver velocity v", coordinate=True),
+    "status": _V((), "i1", "how the run ended", STATUS_FLAG),
+    "time": _V(_EVENT, "f8", "time tau of the first start, on the loading clock", coordinate=True),
+    "slip_time": _V(
+        _EVENT,
+        "f8",
+        "time of the first start on the slip clock",
+        {"comment": "the same as time under steady loading; under quasi-static loading it stands between the events"},
+    ),
+    "duration": _V(_EVENT, "f8", "slip time from the first start to the last stop"),
+    "epicentre": _V(_EVENT, "i4", "block that starts first"),
+    "first_block": _V(_EVENT, "i4", "first slipping block along the chain"),
+    "last_block": _V(_EVENT, "i4", "last slipping block along the chain"),
+    "blocks": _V(_EVENT, "i4", "number of slipping blocks"),
+    "moment": _V(_EVENT, "f8", "moment: sum of the slips of all blocks"),
+    "magnitude": _V(_EVENT, "f8", "magnitude: natural logarithm of the modulus of the moment"),
+    "largest_slip": _V(_EVENT, "f8", "largest slip of a block"),
+    "peak_velocity": _V(_EVENT, "f8", "highest slip speed of a block"),
+    "stress_drop": _V(_EVENT, "f8", "decrease of the spring force, mean over the slipping blocks"),
+    "energy_released": _V(_EVENT, "f8", "work of the springs on the blocks, which friction dissipates"),
+    "interval": _V(_EVENT, "f8", "time tau since the last event that contains the epicentre, NaN for the first"),
+}
+#: With profiles, the slips of all events in the order of the events: a contiguous ragged array.
+PROFILE_VARIABLES = {
+    "slip_block": _V(("slip",), "i4", "block that slips"),
+    "slip_distance": _V(("slip",), "f8", "how far the block slips in the event"),
+}
+
+
+def catalogue_dataset(
+    events: SlipEvents, model: Model, begin: float, end: float, attributes: dict[str, Any]
+) -> xarray.Dataset:
+    """Return a catalogue as an xarray Dataset.
+
+    begin, end : of the catalogue on the loading clock
+    attributes : further global attributes: initial state, loading, solver, history
+    """
+    import xarray
+
+    own = {"a": model.a, "v": model.v, "slip_block": events.slip_block, "slip_distance": events.slip}
+    variables = {**CATALOGUE_VARIABLES, **(PROFILE_VARIABLES if len(events.slip) else {})}
+    values = {name: own[name] if name in own else getattr(events, name) for name in variables}
+    data = described(variables, values)
+    if len(events.slip):
+        data["blocks"][2]["sample_dimension"] = "slip"
+    head = {
+        "Conventions": CONVENTIONS,
+        "title": f"Slip events of a Burridge-Knopoff chain of {model.blocks} blocks, {model.law.name} friction law",
+        "summary": (
+            "One row for each event of connected slips: of neighbouring blocks at the same time. Blocks count from 1. "
+            "All quantities are dimensionless."
+        ),
+        **model_attributes(model),
+        "contact": model.contact,
+        "blocks": model.blocks,
+        "begin_time": begin,
+        "end_time": end,
+        **attributes,
+        **provenance(__name__),
+    }
+    coordinates = [name for name, item in variables.items() if item.coordinate]
+    return xarray.Dataset(data, attrs=head).set_coords(coordinates)
+
+
+def catalogue_of_run(
+    model: Model, initial: InitialState, settings: CatalogueSettings, start: str, solver: str, step: float
+) -> xarray.Dataset:
+    """Run a model from an initial state, and return the catalogue of its slip events as a Dataset.
+
+    start, solver, step : see `Settings`
+    """
+    ran = {"loading": settings.loading, "solver": solver}
+    begin, end = settings.transient, settings.end
+    at = model.begin(initial, start)
+    events = record_events(model, at, end, begin=begin, profiles=settings.profiles, step=step, **ran)
+    about: dict[str, Any] = {"initial": initial.name, "start": start, **ran, "history": "snakemake"}
+    if solver == "rk4":
+        about["step"] = step
+    return catalogue_dataset(events, model, begin, end, about)

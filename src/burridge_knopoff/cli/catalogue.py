@@ -1,0 +1,63 @@
+"""`bk catalogue`: the slip events of one run."""
+
+from __future__ import annotations
+
+import argparse
+
+from burridge_knopoff.catalogue.settings import CatalogueSettings
+from burridge_knopoff.cli.options import add, add_model, add_state, command_of, model_of, said_of, settings_of, state_of
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.status import EXIT_CODE, Status
+from burridge_knopoff.study.formatting import plain, with_error
+
+DESCRIPTION = """Record the slip events of one run and fit the slope of their magnitudes (docs/catalogues.md).
+An event is a set of slips of neighbouring blocks at the same time. Its magnitude is ln M, M the sum of the slips.
+Exit code: 3 if the run hit a limit or diverged; its events until then are written all the same."""
+
+EXAMPLES = """  bk catalogue --law carlson_langer --a 3 --v 0.01 --blocks 50 --coupling 9 --pulling 1 --start tested \\
+    --position random=uniform,low=-1,high=-0.9,seed=1 --velocity 0 --transient 300 --window 2000 --out slips.nc
+  bk catalogue --law linearized --a 0.1 --transient 100 --window 500 --profiles
+"""
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of a run and of its catalogue."""
+    add_model(parser)
+    add_state(parser, "minus")
+    run = parser.add_argument_group("run")
+    add(run, Settings, "start", "solver", "step")
+    add(run, CatalogueSettings, "loading", "transient", "window")
+    add(parser.add_argument_group("slope"), CatalogueSettings, "low", "high")
+    out = parser.add_argument_group("output")
+    add(out, CatalogueSettings, "profiles")
+    out.add_argument("--out", metavar="FILE", help="write the events as netCDF; `bk show --plot` draws them")
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run the model, and print how many events there are of which sizes."""
+    from burridge_knopoff.catalogue.slip_events import catalogue_of_run
+    from burridge_knopoff.dataset.summary import write_summary
+    from burridge_knopoff.summaries.catalogue import summarize
+
+    state = state_of(options) or PAPER_STATES["minus"]
+    model, settings = model_of(options, state), settings_of(CatalogueSettings, options)
+    events = catalogue_of_run(model, state, settings, options.start, options.solver, options.step)
+    found = summarize([events], [model.law.name], [model.a], settings.low, settings.high).isel(law=0, a=0)
+    status = Status(found["status"].item())
+    count = found["event_count"].item()
+    print(f"{said_of(model)}, from {state.name}: {status.name.lower()}\n")
+    print(f"events      {count} from tau = {settings.transient:g} to {settings.end:g}")
+    if count:
+        magnitude, blocks = events["magnitude"].values, events["blocks"].values
+        print(f"rate        {found['event_rate'].item():.6g} per unit of tau")
+        print(f"magnitude   {magnitude.min():.4g} to {magnitude.max():.4g}; {blocks.min()} to {blocks.max()} blocks")
+        names = ("slope", "slope_error", "slope_low", "slope_high", "slope_count", "slope_p_value")
+        slope, error, low, high, fitted, p_value = (found[name].item() for name in names)
+        where = f"{fitted} events from {low:g} to {high:g}"
+        fit = f"{plain(with_error(slope, error))}, p = {p_value:.2g}, of" if slope == slope else "none:"
+        print(f"slope       {fit} {where}")
+    if options.out:
+        write_summary(events.assign_attrs(history=command_of(options)), options.out)
+        print(f"written: {options.out}")
+    return 0 if status == Status.COMPLETED else EXIT_CODE

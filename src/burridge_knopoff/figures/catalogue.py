@@ -1,0 +1,47 @@
+"""The rates of slip events by magnitude with their slope, the extents, and the intervals."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.slip_events import draw_extent, draw_interval, draw_rate, slope_words
+from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
+
+TITLE = "Slip events"
+CATEGORY = "Slip events"
+INPUTS = ("catalogue",)
+CAPTION = """\
+Slip events of the catalogues, for each friction law and up to six values of a. Top: rate of events per unit of time and
+of magnitude, the natural logarithm of the moment M. Each broad line is the rate exp(−b ln M) that was fitted by maximum
+likelihood in its range; the legend has the slope b with its standard error, and the probability p that events of such a
+distribution differ from it by as much. Middle: mean number of slipping blocks of the events of a magnitude. Bottom:
+intervals since the last event that contains the epicentre, as shares in logarithmic bins.
+"""
+
+#: Most values of a that are shown.
+MOST = 6
+
+
+@styled
+def draw(catalogue: xarray.Dataset) -> Figure:
+    """Draw rates, extents and intervals, a column for each law, a colour for each a."""
+    laws, count = catalogue["law"].values, catalogue.sizes["a"]
+    chosen = np.unique(np.linspace(0, count - 1, min(MOST, count)).round().astype(int))
+    figure, panels = new_figure(page_width(len(laws)), 7.5, rows=3, columns=len(laws), share_columns=False)
+    for column, law in enumerate(laws):
+        rate, extent, interval = panels[column :: len(laws)]
+        for number, k in enumerate(chosen):
+            run = catalogue.sel(law=law).isel(a=k)
+            draw_rate(rate, run, color(number))
+            draw_extent(extent, run, color(number))
+            draw_interval(interval, run, color(number))
+            rate.plot([], [], color=color(number), label=f"$a={run['a'].item():g}$: {slope_words(run)}")
+        rate.legend(handlelength=1.2)
+        if column:
+            for panel in (rate, extent, interval):
+                panel.set_ylabel("")
+    names = ("rates", "extent", "intervals")
+    label_panels(panels, [f"{name}, {law} law" for name in names for law in laws])
+    return figure

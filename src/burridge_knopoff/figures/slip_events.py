@@ -1,0 +1,121 @@
+"""Panels of slip events: rates with their slope, extents, intervals, map of slips, recurrence; and all of one run."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
+
+from burridge_knopoff.figures.style import PAGE, label_panels, say_nothing, styled
+
+MAGNITUDE = r"magnitude $\ln M$"
+INTERVAL = r"interval $\Delta\tau$"
+_MARKS: dict[str, Any] = {"marker": "o", "markersize": 2.6, "linewidth": 0.6}
+
+
+def draw_rate(panel: Axes, run: xarray.Dataset, color: str) -> None:
+    """Draw the rate of events against magnitude, and the fitted slope over the range of the fit."""
+    rate = run["magnitude_rate"].where(run["magnitude_rate"] > 0.0)
+    panel.semilogy(run["magnitude"], rate, color=color, **_MARKS)
+    low, high, b = (run[name].item() for name in ("slope_low", "slope_high", "slope"))
+    if np.isfinite(b):
+        magnitude = np.array([low, high])
+        density = np.exp(-b * (magnitude - low)) * (b / -np.expm1(-b * (high - low)) if b else 1.0 / (high - low))
+        fitted = run["slope_count"].item() * run["event_rate"].item() / run["event_count"].item()
+        panel.semilogy(magnitude, fitted * density, color=color, linewidth=2.4, alpha=0.45, zorder=0)
+    panel.set(xlabel=MAGNITUDE, ylabel=r"events per $\tau$ and $\ln M$")
+
+
+def draw_extent(panel: Axes, run: xarray.Dataset, color: str) -> None:
+    """Draw the mean number of slipping blocks against magnitude."""
+    panel.semilogy(run["magnitude"], run["mean_extent"], color=color, **_MARKS)
+    panel.set(xlabel=MAGNITUDE, ylabel="mean number of blocks")
+
+
+def draw_interval(panel: Axes, run: xarray.Dataset, color: str) -> None:
+    """Draw the share of events by the interval since the last event that contains the epicentre."""
+    count = run["interval_count"]
+    share = count.where(count > 0) / max(int(count.sum()), 1)
+    panel.loglog(run["interval"], share, color=color, **_MARKS)
+    if run["interval"].values[-1:] > 10.0 * run["interval"].values[:1]:
+        # Powers of ten are enough.
+        panel.xaxis.set_minor_formatter(NullFormatter())
+    panel.set(xlabel=INTERVAL, ylabel="share of events")
+
+
+def draw_map(panel: Axes, run: xarray.Dataset, norm: Normalize) -> None:
+    """Draw the last events as bars over the blocks that slip, at their times, coloured by magnitude."""
+    blocks = run.sizes["block"]
+    there = np.flatnonzero(run["shown_first_block"].values > 0)
+    # The largest on top.
+    there = there[np.argsort(run["shown_magnitude"].values[there])]
+    bars, magnitudes = [], []
+    for k in there:
+        time, magnitude, first, last = (
+            run[f"shown_{name}"].values[k] for name in ("time", "magnitude", "first_block", "last_block")
+        )
+        for low, high in [(first, last)] if first <= last else [(first, blocks), (1, last)]:
+            bars.append([(low - 0.5, time), (high + 0.5, time)])
+            magnitudes.append(magnitude)
+    if not bars:
+        say_nothing(panel, "no events")
+        return
+    panel.add_collection(LineCollection(bars, array=np.array(magnitudes), norm=norm, cmap="viridis_r", linewidth=0.9))
+    times = run["shown_time"].values[there]
+    panel.set(xlim=(0.5, blocks + 0.5), xlabel="block", ylabel=r"$\tau$")
+    panel.set_ylim(times.min(), max(times.max(), times.min() + 1.0))
+
+
+def draw_recurrence(panel: Axes, run: xarray.Dataset, color: str) -> None:
+    """Draw the mean time between events that contain a block, with its standard deviation."""
+    block, mean, spread = (run[name].values for name in ("block", "recurrence", "recurrence_spread"))
+    panel.fill_between(block, np.maximum(mean - spread, 0.0), mean + spread, color=color, alpha=0.2, linewidth=0)
+    panel.plot(block, mean, color=color, marker="." if len(block) < 40 else "")
+    panel.set(xlabel="block", ylabel=INTERVAL, ylim=(0.0, None))
+
+
+def magnitude_norm(runs: xarray.Dataset) -> Normalize:
+    """Return the scale of colours of the maps of some runs."""
+    values = runs["shown_magnitude"].values
+    finite = values[np.isfinite(values)]
+    return Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0.0, 1.0)
+
+
+def add_magnitudes(figure: Figure, norm: Normalize, panels: list[Axes]) -> None:
+    """Add the bar of colours of maps."""
+    figure.colorbar(ScalarMappable(norm, mpl.colormaps["viridis_r"]), ax=panels, label=MAGNITUDE, aspect=30)
+
+
+@styled
+def draw_run(run: xarray.Dataset) -> Figure:
+    """Draw everything about one run, a summary at one law and a."""
+    figure = Figure(figsize=(PAGE, 5.4), layout="constrained")
+    grid = figure.add_gridspec(3, 2, width_ratios=(1.15, 1.0))
+    slips, recurrence = figure.add_subplot(grid[:2, 0]), figure.add_subplot(grid[2, 0])
+    others = [figure.add_subplot(grid[row, 1]) for row in range(3)]
+    norm = magnitude_norm(run)
+    draw_map(slips, run, norm)
+    add_magnitudes(figure, norm, [slips])
+    draw_recurrence(recurrence, run, "black")
+    recurrence.set_xlim(slips.get_xlim())
+    for panel, draw in zip(others, (draw_rate, draw_extent, draw_interval), strict=True):
+        draw(panel, run, "black")
+    label_panels([slips, recurrence, *others], ["slips", "recurrence", slope_words(run), "extent", "intervals"])
+    return figure
+
+
+def slope_words(run: xarray.Dataset) -> str:
+    """Return slope, error and p-value of the fit for a legend; empty if there is no slope."""
+    b, error, p = (run[name].item() for name in ("slope", "slope_error", "slope_p_value"))
+    if not np.isfinite(b):
+        return "no slope"
+    digits = max(0, min(6, 1 - int(np.floor(np.log10(error))))) if error > 0.0 else 2
+    return rf"$b={b:.{digits}f}\pm{error:.{digits}f}$, " + (rf"$p={p:.2f}$" if p >= 0.005 else "$p<0.005$")

@@ -1,0 +1,42 @@
+"""The slips in space and time, and the recurrence of slips at each block."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.slip_events import add_magnitudes, draw_map, draw_recurrence, magnitude_norm
+from burridge_knopoff.figures.style import ACROSS, label_panels, page_width, styled
+
+TITLE = "Slips in space and time"
+CATEGORY = "Slip events"
+INPUTS = ("catalogue",)
+FROM_STUDY = ("shown_law",)
+CAPTION = """\
+Slip events in space and time under the law of the figures of single runs, for up to three values of a. Each bar is one
+of the last events of the run, from its first to its last slipping block, at its time and coloured by its magnitude.
+Below, the mean time between events that contain a block, with its standard deviation (band).
+"""
+
+
+@styled
+def draw(catalogue: xarray.Dataset, shown_law: str) -> Figure:
+    """Draw the maps of slips of the last events, and the recurrence of each block, a column for each a."""
+    count = catalogue.sizes["a"]
+    chosen = np.unique(np.linspace(0, count - 1, min(ACROSS, count)).round().astype(int))
+    runs = catalogue.sel(law=shown_law).isel(a=chosen)
+    figure = Figure(figsize=(page_width(len(chosen)), 5.8), layout="constrained")
+    panels = list(figure.subplots(2, len(chosen), sharex="col", squeeze=False, height_ratios=(3, 1)).flat)
+    norm = magnitude_norm(runs)
+    for column in range(len(chosen)):
+        slips, recurrence = panels[column :: len(chosen)]
+        draw_map(slips, runs.isel(a=column), norm)
+        draw_recurrence(recurrence, runs.isel(a=column), "black")
+        slips.set_xlabel("")
+        if column:
+            slips.set_ylabel("")
+            recurrence.set_ylabel("")
+    add_magnitudes(figure, norm, panels[: len(chosen)])
+    label_panels(panels, [f"{name}, $a={a:g}$" for name in ("slips", "recurrence") for a in runs["a"].values])
+    return figure

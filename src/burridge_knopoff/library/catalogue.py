@@ -1,0 +1,105 @@
+"""Catalogues of slip events for notebooks and xarray."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from burridge_knopoff.catalogue import events
+from burridge_knopoff.catalogue.distribution import fit_range
+from burridge_knopoff.catalogue.events import SlipEvents
+from burridge_knopoff.catalogue.slope import Slope, fit_slope
+from burridge_knopoff.model.model import ChainState, Model
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Catalogue(SlipEvents):
+    """`SlipEvents` of a model that can be plotted and turned into a Dataset; `record_events` returns them.
+
+    begin_time, end_time : ends of the catalogue on the loading clock; loading, solver : of the run
+
+    >>> from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
+    >>> model = Model(Chain(20, coupling=9, pulling=1), law_of("carlson_langer", 3.0), v=0.01)
+    >>> rough = {"random": "uniform", "low": -1.0, "high": -0.9, "seed": 1}
+    >>> events = record_events(model, model.begin(InitialState("rough", rough, 0.0), "tested"), 500.0, begin=100.0)
+    >>> events.slope().count > 10
+    True
+    >>> events.to_dataset().magnitude.dims
+    ('event',)
+    """
+
+    model: Model
+    begin_time: float
+    end_time: float
+    loading: str
+    solver: str
+
+    def __repr__(self) -> str:
+        return (
+            f"<Catalogue of {len(self.time)} slip events of {self.model.blocks} blocks, {self.model.law.name} law, "
+            f"τ = {self.begin_time:g} to {self.end_time:g}, {self.status.name.lower()}>"
+        )
+
+    def slope(self, low: float | None = None, high: float | None = None) -> Slope:
+        """Return the slope of the magnitudes from `low` to `high`; see `fit_slope`.
+
+        By default from the most frequent magnitude of several blocks to the rarest below the one that releases most.
+        """
+        return fit_slope(self.magnitude, *fit_range(self.magnitude, self.moment, self.blocks, low, high))
+
+    def plot(self) -> Figure:
+        """Return a figure of the slips in space and time, their recurrence, rates, extents and intervals."""
+        # Imported here, so that a run without a picture does not load matplotlib.
+        from burridge_knopoff.figures.slip_events import draw_run
+        from burridge_knopoff.summaries.catalogue import summarize
+
+        return draw_run(summarize([self.to_dataset()], [self.model.law.name], [self.model.a]).isel(law=0, a=0))
+
+    def to_dataset(self) -> xarray.Dataset:
+        """Return the catalogue as an xarray Dataset, in the form of the catalogue files of a study."""
+        from burridge_knopoff.catalogue.slip_events import catalogue_dataset
+
+        about = {"start": "continued", "loading": self.loading, "solver": self.solver, "history": "record_events"}
+        return catalogue_dataset(self, self.model, self.begin_time, self.end_time, about)
+
+
+def record_events(
+    model: Model,
+    start: ChainState,
+    end: float,
+    *,
+    begin: float = 0.0,
+    profiles: bool = False,
+    loading: str = "steady",
+    solver: str = "series",
+    step: float = 1e-3,
+) -> Catalogue:
+    """Return the catalogue of the slip events of a run: those that begin after a time and end before its end.
+
+    model, start : what moves, and its state at the start, as of `Model.begin` or the `final` of another run; end : τ of
+        the end of the run
+    begin : events that begin earlier are left out; the intervals know of them
+    profiles : whether the slip of every block is kept
+    loading : steady: the driver always moves | quasistatic: it stands while any block slips, and loads to the next slip
+        when all rest
+    solver, step : see `Settings`
+
+    τ is the loading clock, the displacement of the driver over v. Blocks that slip at the start of the run belong to no
+    event until they have stopped. Raises ValueError, one line, for anything that model or solver do not allow.
+
+    >>> from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
+    >>> model = Model(Chain(1, pulling=1), law_of("linearized", 0.1), v=0.01)
+    >>> start = model.begin(InitialState("own", (-0.9,), (0.0,)), "tested")
+    >>> events = record_events(model, start, 100.0)
+    >>> len(events.time), events.blocks[0]
+    (14, 1)
+    """
+    found = events.record_events(
+        model, start, end, begin=begin, profiles=profiles, loading=loading, solver=solver, step=step
+    )
+    begin = max(begin, start.time)
+    return Catalogue(**vars(found), model=model, begin_time=begin, end_time=end, loading=loading, solver=solver)

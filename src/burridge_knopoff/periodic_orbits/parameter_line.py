@@ -1,0 +1,52 @@
+"""A line in the space of parameters, along which an orbit is continued: one parameter, or two in proportion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.parameters import at, value_of
+from burridge_knopoff.periodic_orbits.flow import OrbitError
+
+
+@dataclass(frozen=True)
+class ParameterLine:
+    """A line in the space of parameters: each is its origin plus its rate times the coordinate.
+
+    names : the first one tells the coordinate of a model
+    least : the least coordinate at which there is a model, if known
+    """
+
+    names: tuple[str, ...]
+    origins: tuple[float, ...]
+    rates: tuple[float, ...]
+    least: float = float("-inf")
+
+    @property
+    def parameter(self) -> str:
+        """The parameter that tells the coordinate."""
+        return self.names[0]
+
+    def value(self, model: Model) -> float:
+        """Return the value of the parameter that tells the coordinate."""
+        return value_of(model, self.names[0])
+
+    def coordinate(self, model: Model) -> float:
+        """Return the coordinate of a model."""
+        return (self.value(model) - self.origins[0]) / self.rates[0]
+
+    def model(self, model: Model, coordinate: float) -> Model:
+        """Return a model at another coordinate; raises OrbitError if there is none."""
+        values = [origin + rate * float(coordinate) for origin, rate in zip(self.origins, self.rates, strict=True)]
+        try:
+            return at(model, dict(zip(self.names, values, strict=True)))
+        except ValueError as error:
+            raise OrbitError(str(error)) from None
+
+    def place(self, model: Model) -> str:
+        """Return the values of the parameters of a model for a message."""
+        return ", ".join(f"{name} = {value_of(model, name)!r}" for name in self.names)
+
+
+#: The friction parameter: coordinates are a itself.
+ALONG_A = ParameterLine(("a",), (0.0,), (1.0,), least=0.0)

@@ -1,0 +1,151 @@
+"""How often slip events of which size occur, over (law, a): rates and their slope, extents, intervals, recurrence.
+
+Each value of a has a run of its own, whose catalogue file has all events. Rates are NaN for runs that did not complete.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.catalogue.distribution import EDGES, WIDTH, fit_range, recurrence
+from burridge_knopoff.catalogue.slope import fit_slope
+from burridge_knopoff.dataset.point import STATUS_FLAG
+from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.running.status import Status
+
+TITLE = "Slip events: rates, slopes, extents and intervals"
+
+#: Events of the map of slips, the last ones of a run.
+SHOWN = 3000
+
+_V = Variable
+_RUN = ("law", "a")
+_MAGNITUDE, _INTERVAL, _BLOCK, _SHOWN = ((*_RUN, name) for name in ("magnitude", "interval", "block", "shown_event"))
+VARIABLES = {
+    "status": _V(_RUN, "i1", "how the run ended", STATUS_FLAG),
+    "event_count": _V(_RUN, "i8", "number of events in the catalogue"),
+    "event_rate": _V(_RUN, "f8", "events per unit of time tau"),
+    "largest_magnitude": _V(_RUN, "f8", "largest magnitude"),
+    "slope": _V(_RUN, "f8", "slope b: the rate falls as exp(-b magnitude) in the range of the fit"),
+    "slope_error": _V(_RUN, "f8", "standard error of the slope"),
+    "slope_low": _V(_RUN, "f8", "smallest magnitude in the fit"),
+    "slope_high": _V(_RUN, "f8", "largest magnitude in the fit"),
+    "slope_count": _V(_RUN, "i8", "number of events in the fit"),
+    "slope_p_value": _V(
+        _RUN, "f8", "probability that a catalogue of this distribution differs from it by as much (Kolmogorov-Smirnov)"
+    ),
+    "magnitude_count": _V(_MAGNITUDE, "i8", "number of events in a bin of magnitudes"),
+    "magnitude_rate": _V(_MAGNITUDE, "f8", "events per unit of time tau and of magnitude"),
+    "mean_extent": _V(_MAGNITUDE, "f8", "mean number of slipping blocks of the events in a bin of magnitudes"),
+    "interval_count": _V(_INTERVAL, "i8", "number of events whose interval lies in a bin"),
+    "block_event_count": _V(_BLOCK, "i8", "number of events that contain a block"),
+    "recurrence": _V(_BLOCK, "f8", "mean time tau between events that contain a block"),
+    "recurrence_spread": _V(_BLOCK, "f8", "standard deviation of this time"),
+    "shown_time": _V(_SHOWN, "f8", "time tau of one of the last events, NaN if there are fewer"),
+    "shown_magnitude": _V(_SHOWN, "f8", "magnitude of this event"),
+    "shown_first_block": _V(_SHOWN, "i4", "its first slipping block, 0 if there are fewer"),
+    "shown_last_block": _V(_SHOWN, "i4", "its last slipping block"),
+}
+COORDINATES = {
+    "magnitude": _V(("magnitude",), "f8", "magnitude, natural logarithm of the moment, at the middle of a bin"),
+    "interval": _V(
+        ("interval",), "f8", "time tau since the last event that contains the epicentre, at the middle of a bin"
+    ),
+    "block": _V(("block",), "i4", "block number, 1 to N along the chain"),
+}
+#: Attributes of the catalogue files that all have in common.
+SHARED = ("contact", "loading", "start", "begin_time", "end_time")
+
+
+def summarize(
+    catalogues: Iterable[xarray.Dataset],
+    laws: Sequence[str],
+    grid: Sequence[float],
+    low: float | None = None,
+    high: float | None = None,
+) -> xarray.Dataset:
+    """Return the summary of the catalogue files of all laws at all a, in this order.
+
+    low, high : ends of the range in which slopes are fitted, by default those of `fit_range`
+    """
+    runs, attributes = [], {}
+    # Of all catalogues, one is held at a time.
+    for catalogue in catalogues:
+        runs.append(_one(catalogue, low, high))
+        attributes = {name: catalogue.attrs[name] for name in SHARED} | {"v": catalogue["v"].item()}
+    values = {
+        name: np.reshape([run[name] for run in runs], (len(laws), len(grid), *np.shape(runs[0][name])))
+        for name in VARIABLES
+    }
+    middle = {
+        "magnitude": EDGES[:-1] + WIDTH / 2,
+        "interval": np.exp(EDGES[:-1] + WIDTH / 2),
+        "block": np.arange(1, values["recurrence"].shape[-1] + 1),
+    }
+    coordinates = axes(law=laws, a=grid) | {
+        name: (name, middle[name].astype(item.dtype), item.all_attributes()) for name, item in COORDINATES.items()
+    }
+    head = {"history": "snakemake, from the catalogue files", "bin_width": WIDTH, **attributes}
+    whole = summary(TITLE, VARIABLES, values, coordinates, head, module=__name__)
+    there = {"magnitude": "magnitude_count", "interval": "interval_count", "shown_event": "shown_first_block"}
+    return whole.isel({name: _extent(whole[variable], name) for name, variable in there.items()})
+
+
+def _extent(counts: xarray.DataArray, name: str) -> slice:
+    """Return the part of a dimension outside of which all counts are 0."""
+    found = np.flatnonzero((counts > 0).any([other for other in counts.dims if other != name]).values)
+    return slice(found[0], found[-1] + 1) if len(found) else slice(0)
+
+
+def _one(catalogue: xarray.Dataset, low: float | None, high: float | None) -> dict[str, Any]:
+    """Return the values of all variables for one catalogue."""
+    length = catalogue.attrs["end_time"] - catalogue.attrs["begin_time"]
+    if catalogue["status"].item() != Status.COMPLETED:
+        length = np.nan
+    names = ("time", "magnitude", "moment", "blocks", "first_block", "last_block", "interval")
+    time, magnitude, moment, extent, first, last, interval = (catalogue[name].values for name in names)
+    count, covered = (np.histogram(magnitude, EDGES, weights=weights)[0] for weights in (None, extent))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        mean_extent = covered / count
+        among, _ = np.histogram(np.log(interval), EDGES)
+    containing, mean, spread = recurrence(time, first, last, catalogue.attrs["blocks"])
+    return {
+        "status": catalogue["status"].item(),
+        "event_count": len(time),
+        "event_rate": len(time) / length,
+        "largest_magnitude": magnitude.max() if len(time) else np.nan,
+        **_slope(magnitude, fit_range(magnitude, moment, extent, low, high), bool(np.isfinite(length))),
+        "magnitude_count": count,
+        "magnitude_rate": count / (length * WIDTH),
+        "mean_extent": mean_extent,
+        "interval_count": among,
+        "block_event_count": containing,
+        "recurrence": mean,
+        "recurrence_spread": spread,
+        "shown_time": _last(time, np.nan),
+        "shown_magnitude": _last(magnitude, np.nan),
+        "shown_first_block": _last(first, 0),
+        "shown_last_block": _last(last, 0),
+    }
+
+
+def _last(values: np.ndarray, none: float) -> np.ndarray:
+    """Return the last values of all events, shape (SHOWN,), filled up."""
+    return np.pad(values[-SHOWN:], (0, max(0, SHOWN - len(values))), constant_values=none)
+
+
+def _slope(magnitude: np.ndarray, fitted: tuple[float, float], completed: bool) -> Mapping[str, float]:
+    """Return the fit of a slope in a range, NaN if there is none."""
+    low, high = fitted
+    found = {"low": low, "high": high, "b": np.nan, "error": np.nan, "p_value": np.nan, "count": 0}
+    # There is no slope of too few events, nor if all are of one magnitude.
+    with suppress(ValueError):
+        found |= vars(fit_slope(magnitude, low, high)) if completed else {}
+    names = {"slope": "b", **{f"slope_{name}": name for name in ("error", "low", "high", "count", "p_value")}}
+    return {name: found[key] for name, key in names.items()}

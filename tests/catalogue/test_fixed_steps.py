@@ -1,0 +1,63 @@
+"""Catalogues of fixed steps tend to the exact one, of first order in the step; the closed form has the exact one."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.catalogue.events import record_events
+from tests.kernel.test_catalogue import at_rest
+from tests.refused import refused
+
+MODEL = Model(Chain(4, coupling=0.2, pulling=1.0), law_of("linearized", 1.2), 0.1)
+START = at_rest(MODEL, spread=0.3)
+END = 60.0
+COLUMNS = ("duration", "epicentre", "blocks", "moment", "largest_slip", "peak_velocity", "energy_released", "interval")
+STEPS = (1e-3, 3e-4, 1e-4, 3e-5)
+
+
+def order(errors):
+    return np.polyfit(np.log(STEPS), np.log(errors), 1)[0]
+
+
+@pytest.mark.parametrize("solver", ["rk4", "euler"])
+def test_first_order_in_the_step(solver):
+    """Stops and starts are late by half a step; Euler's method also errs in between."""
+    exact = record_events(MODEL, START, END)
+    assert exact.blocks.tolist() == [4, 1, 1, 1, 1, 3, 1]
+    runs = [record_events(MODEL, START, END, solver=solver, step=step) for step in STEPS]
+    for run in runs:
+        for name in ("epicentre", "first_block", "last_block", "blocks"):
+            assert np.array_equal(getattr(run, name), getattr(exact, name))
+    late = [np.abs(run.time - exact.time).max() for run in runs]
+    assert order(late) == pytest.approx(1.0, abs=0.2)
+    for name in ("moment", "peak_velocity", "stress_drop", "energy_released"):
+        errors = [np.abs(getattr(run, name) - getattr(exact, name)).max() for run in runs]
+        # A block has no speed where it stops: what is late by h there is wrong by h².
+        assert order(errors) > 1.4 if solver == "rk4" else order(errors) == pytest.approx(1.0, abs=0.1), name
+        assert errors[-1] < (1e-8 if solver == "rk4" else 5e-3), name
+
+
+def test_the_closed_form_has_the_exact_catalogue():
+    exact, mapped = (record_events(MODEL, START, END, solver=solver) for solver in ("series", "map"))
+    for name in COLUMNS:
+        assert np.allclose(getattr(mapped, name), getattr(exact, name), rtol=1e-9, atol=1e-12, equal_nan=True), name
+
+
+def test_runs_of_fixed_steps_continue_one_another():
+    options = {"solver": "rk4", "step": 2.0**-7}
+    whole = record_events(MODEL, START, END, **options)
+    middle = float(np.floor((whole.time[2] + 0.5 * whole.duration[2]) * 2**7) / 2**7)
+    first = record_events(MODEL, START, middle, **options)
+    second = record_events(MODEL, first.final, END, **options)
+    for name in COLUMNS:
+        found = np.concatenate([getattr(first, name), getattr(second, name)])
+        assert np.allclose(found, getattr(whole, name), rtol=1e-12, equal_nan=True), name
+
+
+def test_solvers_and_steps_that_there_are_not():
+    for solver in ("leapfrog", ["rk4"]):
+        with refused("solver: got", "series | map | rk4 | euler"):
+            record_events(MODEL, START, END, solver=solver)
+    for step in (0.0, -1e-3, float("nan"), "1"):
+        with refused("step: got", "a number above 0"):
+            record_events(MODEL, START, END, solver="euler", step=step)

@@ -1,0 +1,69 @@
+"""The parameters of a model by name: each changes the number in the equations of motion that bears its name."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, FormulaLaw, Model, law_of
+from burridge_knopoff.model.parameters import at, names_of, value_of
+from tests.refused import refused
+
+MODEL = Model(Chain(3, pulling=1.5), law_of("stribeck", 0.3), v=0.2)
+
+
+def test_the_names_are_those_of_the_law_the_driver_and_the_chain():
+    names = "a", "sigma", "eta", "v", "coupling", "pulling", "threshold", "mass"
+    assert names_of(MODEL) == names
+    assert [value_of(MODEL, name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 1.5, 1.0, 1.0]
+
+
+def test_a_model_at_other_parameters_is_one_made_of_them():
+    numbers = {"a": 0.4, "sigma": 0.1, "eta": 0.3, "v": 0.1, "coupling": 2, "pulling": 0.5, "threshold": 1.5, "mass": 3}
+    made = Model(
+        Chain(3, coupling=2.0, pulling=0.5, threshold=1.5, mass=3.0),
+        law_of("stribeck", 0.4, {"sigma": 0.1, "eta": 0.3}),
+        v=0.1,
+    )
+    assert MODEL.at(**numbers) == at(MODEL, numbers) == made
+    assert all(value_of(made, name) == value for name, value in numbers.items())
+    assert at(MODEL, {}) == MODEL
+    assert MODEL.at(0.4) == MODEL.at(a=0.4) == Model(MODEL.chain, MODEL.law.at(0.4), 0.2)
+    # What is computed of the chain once is kept.
+    assert MODEL.at(v=0.3).chain is MODEL.chain
+
+
+def test_other_contact_and_the_shape_of_the_chain_stay():
+    model = Model(Chain(4, ends="ring"), law_of("nonlinear", 0.1), contact="symmetric").at(pulling=0.25)
+    assert (model.contact, model.chain.ends, model.blocks) == ("symmetric", "ring", 4)
+    assert np.diag(model.chain.stiffness).tolist() == [2.25] * 4
+
+
+@pytest.mark.parametrize(
+    ("model", "parameters", "words"),
+    [
+        (MODEL, {"drop": 0.1}, "drop: not a parameter of this model, expected a | sigma | eta | v"),
+        (MODEL, {"v": 0}, "v: 0"),
+        (MODEL, {"v": True}, "v: True"),
+        (MODEL, {"a": None}, "a: None"),
+        (MODEL, {"mass": [1.0, 1.0, 1.0]}, "mass: [1.0, 1.0, 1.0]"),
+        (MODEL, {"coupling": -1.0}, "coupling: -1.0"),
+        (Model(Chain(2, mass=(1.0, 2.0)), MODEL.law), {"mass": 1.0}, "mass: (1.0, 2.0)"),
+        (
+            Model(Chain(2, threshold="random=uniform,low=0.9,high=1.1,seed=1"), MODEL.law),
+            {"threshold": 1.0},
+            "threshold",
+        ),
+        (
+            Model(Chain(2), FormulaLaw(0.1, "1/(1 + a*u*mass)", mass=2.0)),
+            {"mass": 1.0},
+            "mass: got a number of the law",
+        ),
+    ],
+)
+def test_what_is_no_number_of_the_model_is_refused(model, parameters, words):
+    with refused(words, match="expected"):
+        at(model, parameters)
+
+
+def test_a_word_is_no_value():
+    with refused("pulling: 'neighbours'", match="expected one number"):
+        value_of(Model(Chain(3), MODEL.law), "pulling")
