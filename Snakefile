@@ -36,10 +36,18 @@ if "catalogue" in STUDY.stages:
     include: "workflow/rules/catalogue.smk"
 
 
-include: "workflow/rules/two_blocks.smk"
+if not STUDY.is_plane:
+
+    include: "workflow/rules/two_blocks.smk"
+
+
 include: "workflow/rules/summaries.smk"
 include: "workflow/rules/figures.smk"
-include: "workflow/rules/chains.smk"
+
+
+if not STUDY.is_plane:
+
+    include: "workflow/rules/chains.smk"
 
 
 if "claims" in STUDY.stages:

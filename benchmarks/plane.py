@@ -1,6 +1,6 @@
 """CPU time of Lyapunov exponents over a plane of two parameters: two blocks, 100 values of a and 100 of v or coupling.
 
-    python benchmarks/plane.py
+python benchmarks/plane.py
 """
 
 import time

@@ -35,4 +35,4 @@ def grid_of(
     models = {**PAPER_MODELS, **(models or {})}
     models["chain"] = {**models["chain"], "blocks": states[0].blocks}
     runs = dict.fromkeys(models["laws"], Settings(**settings))
-    return Grid(folder, {state.name: state for state in states}, a, runs, models)
+    return Grid(folder, {state.name: state for state in states}, {"a": a}, runs, models)

@@ -13,12 +13,15 @@ import xarray
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.stored_returns import KnownAttractors, known_attractors, returns_of_law
 from burridge_knopoff.basins.settings import BasinSettings, PhaseSettings
+from burridge_knopoff.catalogue.settings import CatalogueSettings
+from burridge_knopoff.catalogue.slip_events import catalogue_of_run
 from burridge_knopoff.continuation.along_a import continue_attractors
 from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import sampled_states
 from burridge_knopoff.motion.settings import MotionSettings
+from burridge_knopoff.study.params import catalogue_run
 from burridge_knopoff.study.study import Study, load_study
 from burridge_knopoff.summaries import (
     agreement,
@@ -27,6 +30,7 @@ from burridge_knopoff.summaries import (
     basins,
     bifurcation_diagram,
     bifurcations,
+    catalogue,
     equilibrium,
     lyapunov,
     mean_distance,
@@ -80,12 +84,14 @@ STUDIES: dict[str, dict[str, Any]] = {
             "nonlinear": {},
             "squared": {"formula": "1/(1 + c*a*u)**2", "c": 0.5},
             "stribeck": {"sigma": 0.3},
-        }
+        },
+        "catalogue": {},
     },
     "ring": {
         "laws": {"slow": {"law": "exponential"}, "linearized": {}, "drop": {"law": "carlson_langer"}},
         "chain": {"ends": "ring"},
         "initial": _STATES,
+        "catalogue": {"a": [0.2]},
     },
     "unequal": {
         "laws": {"rough": {"law": "nonlinear"}, "smooth": {"formula": "1 - a*u"}},
@@ -184,6 +190,7 @@ class SmallStudy:
             "basins": self._basins(found["attractors"]),
             "bifurcations": self._bifurcations(found["attractors"], found["refined"]),
             **self._phases(found["attractors"]),
+            **self._catalogue(),
         }
 
     def _bifurcations(self, found: xarray.Dataset, further: xarray.Dataset) -> xarray.Dataset:
@@ -201,13 +208,26 @@ class SmallStudy:
         ]
         return {"phases": phases.merge(parts)} if grid else {}
 
+    def _catalogue(self) -> dict[str, xarray.Dataset]:
+        study, section = self.study, dict(self.study.config.get("catalogue", {}))
+        if not section:
+            return {}
+        initial, grid = study.state(section.pop("initial")), section.pop("a")
+        settings = CatalogueSettings(**section)
+        runs = [
+            catalogue_of_run(study.model(law, a), initial, settings, **catalogue_run(study, law))
+            for law in study.laws
+            for a in grid
+        ]
+        return {"catalogue": catalogue.summarize(runs, study.laws, grid)}
+
     def _known(self, found: xarray.Dataset, model: Model) -> KnownAttractors:
         return known_attractors(found, self.returns[model.law.name], model)
 
     def _solvers(self) -> xarray.Dataset:
         study = self.study
         compared = {"a": {name: value for name, value in study.grid.items() if value in study.config["solvers"]["a"]}}
-        grid = Grid.of(self.folder / "points", {**study.points, **compared})
+        grid = Grid.of(self.folder / "points", {**study.points, "parameters": compared})
         others = {}
         for solver in ("series", "map", "rk4"):
             known = [law for law in study.laws if solver in study.other_solvers(law)]

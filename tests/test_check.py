@@ -61,7 +61,7 @@ def whole(tmp_path_factory):
             write_point(run(study.model(law, grid.a[a]), state, settings), path)
     write_summary(mean_distance.summarize(grid, 1e-6), results / "summary" / "mean_distance.nc")
     write_study_record(
-        results, study.config, study.grid, config_file, read_yaml(config_file), "--configfile small.yaml", {}
+        results, study.config, study.parameters, config_file, read_yaml(config_file), "--configfile small.yaml", {}
     )
     return results
 
@@ -337,7 +337,9 @@ def test_files_of_stages_that_are_left_out_are_left_over(results, capsys):
     assert main(["check", str(results)]) == 1
     file.write_text(given)
     study = load_study(read_yaml(file), "small.yaml")
-    write_study_record(results, study.config, study.grid, "small.yaml", read_yaml(file), "--configfile small.yaml", {})
+    write_study_record(
+        results, study.config, study.parameters, "small.yaml", read_yaml(file), "--configfile small.yaml", {}
+    )
     capsys.readouterr()
     assert main(["check", str(results)]) == 0
     said = capsys.readouterr().out

@@ -5,11 +5,12 @@ The library is what is imported from here; `help` of each name has its shapes, u
 The model: `Model`, a `Chain` under a `Law` (`law_of` for those that are built in, `FormulaLaw` for one of one's own);
 an `InitialState` to begin from, a `ChainState` on the way.
 
-Runs: `simulate` makes a `Run`, a `Trajectory`, by `Settings`, seen on a `Section`; `sweep` makes many of them along a;
-`open_study` reads those of a study.
+Runs: `simulate` makes a `Run`, a `Trajectory`, by `Settings`, seen on a `Section`; `sweep` makes many of them over any
+parameters; `open_study` reads those of a study.
 
 Slip events: `record_events` and `Run.catalogue` make a `Catalogue`, the `SlipEvents` of a run; `fit_slope` fits the
-`Slope` of their magnitudes.
+`Slope` of their magnitudes. `event_exponents` returns the `EventExponents` of the map from event to event, and
+`event_multipliers` its multipliers.
 
 Attractors and basins: `find_attractors` by `SearchSettings` and `MotionSettings` returns each `Attractor` with its
 `SteadyMotion`, `MotionKind` and `Symmetry`; `label_states` tells which of them states reach, `basin_map` those of a
@@ -20,8 +21,9 @@ Its stability: `multipliers` returns `Multipliers`.
 
 Exponents: Lyapunov exponents come with a `Trajectory`; `transverse_exponent` is that of synchrony.
 
-Bifurcations: `follow` leads along a branch, each orbit a `BranchOrbit`, as `Following` says; `locate_bifurcations`
-finds every `Bifurcation` on it, and its `BifurcationKind`.
+Bifurcations: `follow` leads along a branch in any parameter, each orbit a `BranchOrbit`, as `Following` says;
+`locate_bifurcations` finds every `Bifurcation` on it, and its `BifurcationKind`; `follow_bifurcation` continues one in
+two parameters and returns a `BifurcationCurve`.
 """
 
 import lazy_loader

@@ -5,6 +5,9 @@ from .attractors.settings import SearchSettings as SearchSettings
 from .catalogue.events import SlipEvents as SlipEvents
 from .catalogue.slope import Slope as Slope
 from .catalogue.slope import fit_slope as fit_slope
+from .catalogue.stability import EventExponents as EventExponents
+from .catalogue.stability import event_exponents as event_exponents
+from .catalogue.stability import event_multipliers as event_multipliers
 from .laws import FormulaLaw as FormulaLaw
 from .laws import Law as Law
 from .laws import law_of as law_of
@@ -26,6 +29,8 @@ from .motion.limit_cycle import limit_cycle as limit_cycle
 from .motion.observables import SteadyMotion as SteadyMotion
 from .motion.settings import MotionSettings as MotionSettings
 from .motion.synchronized_orbit import synchronized_orbit as synchronized_orbit
+from .periodic_orbits.bifurcation_curve import BifurcationCurve as BifurcationCurve
+from .periodic_orbits.bifurcation_curve import follow_bifurcation as follow_bifurcation
 from .periodic_orbits.bifurcation_kind import BifurcationKind as BifurcationKind
 from .periodic_orbits.bifurcations import Bifurcation as Bifurcation
 from .periodic_orbits.bifurcations import locate_bifurcations as locate_bifurcations

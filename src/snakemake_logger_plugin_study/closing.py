@@ -93,9 +93,9 @@ def _incomplete(path: Path) -> list[str]:
     return [f"points: {words if reasons else f'all {total} completed'}"]
 
 
-def _undetermined(path: Path) -> list[str]:
-    counts = _flags(path, "kind")
-    said = f"kind of motion undetermined at {counts['undetermined']} of {counts.total()} (kind in {path})"
+def _undetermined(path: Path, kind: str = "kind") -> list[str]:
+    counts = _flags(path, kind)
+    said = f"kind of motion undetermined at {counts['undetermined']} of {counts.total()} ({kind} in {path})"
     return [f"points: {said}"] if counts["undetermined"] else []
 
 
@@ -103,6 +103,7 @@ def _undetermined(path: Path) -> list[str]:
 _READERS: dict[str, tuple[str, Callable[[Path], list[str]]]] = {
     "claims": ("summary/claims.json", _claims),
     "mean_distance": ("summary/mean_distance.nc", _incomplete),
+    "grid": ("summary/grid.nc", lambda path: [*_incomplete(path), *_undetermined(path, "run_kind")]),
     "agreement": ("summary/agreement.nc", _undetermined),
     "report": ("report.html", lambda path: [f"report: {path}"]),
 }

@@ -14,6 +14,7 @@ from pathlib import Path
 from statistics import fmean, median
 
 from burridge_knopoff.report.stages import job_costs
+from burridge_knopoff.study.stretches import stretches
 from burridge_knopoff.study.study import Study, all_points
 
 FILE = Path(__file__).with_name("durations.json")
@@ -72,6 +73,7 @@ def work_of(study: Study) -> dict[str, float]:
     of_phases = ("a", "inner_share", "amplitude", "phase_difference")
     return {
         "simulate": study.blocks * time,
+        "stretch": study.blocks * time * max(map(len, stretches(study).values()), default=0),
         "simulate_solver": study.blocks * time,
         "attractors_of_law": study.blocks * search["samples"] * (search["transient"] + search["window"]) * values,
         "two_blocks": pairs["samples"] * len(pairs["a"]) * len(study.laws) * time,

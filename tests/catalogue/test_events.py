@@ -42,3 +42,24 @@ def test_runs_that_continue_one_another_have_the_catalogue_of_the_whole(blocks):
     for name in ("duration", "epicentre", "moment", "peak_velocity", "energy_released", "interval"):
         found = np.concatenate([getattr(part, name) for part in parts])[order]
         assert np.allclose(found, getattr(whole, name), rtol=1e-12, atol=1e-15, equal_nan=True), name
+
+
+@pytest.mark.parametrize("ends", ["open", "ring"])
+def test_ends_and_intervals(ends):
+    """Events cover all blocks between their ends, in a ring over its joint too; intervals are those by block."""
+    model = Model(Chain(30, coupling=9.0, pulling=1.0, ends=ends), law_of("carlson_langer", 3.0), 0.01)
+    found = record_events(model, at_rest(model), 1500.0, profiles=True)
+    first, last = found.first_block, found.last_block
+    blocks = [set(part.tolist()) for part in np.split(found.slip_block, found.slip_end[:-1])]
+    for part, low, high in zip(blocks, first, last, strict=True):
+        assert part == {(k - 1) % 30 + 1 for k in range(low, high + 1 + 30 * (low > high))}
+    assert (first > last).any() == (ends == "ring")
+    assert not (found.interval <= 0.0).any()
+    stop, known = found.time + found.duration, 0
+    for k, epicentre in enumerate(found.epicentre):
+        before = [j for j in range(k) if epicentre in blocks[j]]
+        # An event that is not over, or lasted longer than a later one, may have reached the block after it.
+        if before and np.argmax(stop[before]) == len(before) - 1 and stop[before[-1]] < found.time[k]:
+            known += 1
+            assert found.interval[k] == pytest.approx(found.time[k] - found.time[before[-1]], rel=1e-12)
+    assert known > 0.7 * len(found.time)

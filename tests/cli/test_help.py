@@ -28,7 +28,7 @@ def folder(tmp_path_factory):
     given = {"study": "paper", "a": [0.08], "initial": {"plus": {}}, "laws": {"linearized": {}}}
     given |= {"transient": 10, "window": 20, "batches": 2}
     study = run_study(results, given).study
-    write_study_record(results, study.config, study.grid, folder / "paper.yaml", given, "", {})
+    write_study_record(results, study.config, study.parameters, folder / "paper.yaml", given, "", {})
     return folder
 
 
@@ -60,7 +60,7 @@ def test_help_says_every_percent_sign(capsys):
         assert "examples:" in capsys.readouterr().out
 
 
-@pytest.mark.parametrize("command", ["simulate", "exponents", "orbit", "attractors", "basins"])
+@pytest.mark.parametrize("command", ["simulate", "exponents", "orbit", "attractors", "basins", "catalogue"])
 def test_what_is_said_of_a_setting_is_true_without_a_study(command, capsys):
     with pytest.raises(SystemExit, match="0"):
         main([command, "--help"])

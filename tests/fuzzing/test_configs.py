@@ -80,7 +80,7 @@ WORDS = {
 BOXES = [f"{section}.{part}" for section in ("attractors", "chains") for part in ("position", "velocity")]
 BOXES += ["basins.first_position", "basins.last_position"]
 #: What holds names of the user's own.
-NAMED = ("initial", "laws", "solver", "basins.a")
+NAMED = ("grid", "initial", "laws", "solver", "basins.a")
 
 
 def flat(config, prefix=""):
@@ -92,7 +92,7 @@ def flat(config, prefix=""):
     return values
 
 
-KNOWN = set(flat(yaml.safe_load(EVERY_KEY)))
+KNOWN = {*flat(yaml.safe_load(EVERY_KEY)), "grid"}
 
 
 @st.composite
@@ -163,8 +163,8 @@ def test_every_key_is_among_those_that_are_changed():
             elif isinstance(field.range, Keys):
                 yield from missing(node[key], field.range)
 
-    # A chain is a row, a grid or a network from a file.
-    assert list(missing(yaml.safe_load(EVERY_KEY), CONFIG)) == ["grid", "springs"]
+    # A study has a or a grid of parameters; a chain is a row, a grid or a network from a file.
+    assert list(missing(yaml.safe_load(EVERY_KEY), CONFIG)) == ["grid", "grid", "springs"]
 
 
 def check_study(study, written):
@@ -199,7 +199,7 @@ def check_study(study, written):
     assert len(study.laws) * len(study.initial) * len(study.grid) <= 100_000
     assert all(2 <= blocks <= 64 for blocks in values["chains.blocks"])
     assert all(0.0 <= a <= 100.0 for key in ("chains.a", "chains.two_blocks.a") for a in values[key])
-    check_grid(study.grid, written["a"], values["a_digits"])
+    check_grid(study.grid, (written.get("grid") or written)["a"], values["a_digits"])
     check_laws(study, values, given)
     check_chain(study, given)
     check_states(study)
@@ -264,11 +264,16 @@ def check_states(study):
     for name, state in study.config["initial"].items():
         assert re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,31}", name)
         assert set(state) == {"position", "velocity"}
-        lengths |= {len(state["position"]), len(state["velocity"])}
-        for number in (*state["position"], *state["velocity"]):
-            assert type(number) in (int, float)
-            assert -1e6 <= number <= 1e6
-        assert study.config["contact"] == "symmetric" or min(state["velocity"]) >= 0.0
+        # One number is that of all blocks.
+        lists = {key: value if isinstance(value, list) else [value] * study.blocks for key, value in state.items()}
+        lengths |= {len(numbers) for numbers in lists.values()}
+        drawn = [value for value in state.values() if isinstance(value, str)]
+        assert all(value.startswith("random=uniform,low=") for value in drawn)
+        told = [numbers for key, numbers in lists.items() if state[key] not in drawn]
+        assert all(type(number) in (int, float) for numbers in told for number in numbers)
+        position, velocity = study.state(name).numbers(study.blocks)
+        assert max(map(abs, (*position, *velocity))) <= 1e6
+        assert study.config["contact"] == "symmetric" or velocity.min() >= 0.0
     assert lengths == {study.blocks}
     assert 2 <= study.blocks <= 1024
     assert study.config["lyapunov_exponents"] <= 2 * study.blocks
@@ -276,15 +281,16 @@ def check_states(study):
 
 def check_options(study):
     """Require that `bk` takes the options of the first and the last point, as the numbers of the config."""
+    others = {name: next(iter(values)) for name, values in study.parameters.items() if name != "a"}
     for law in study.laws:
         for solver in (None, *study.other_solvers(law)):
             for initial, a in ((study.initial[0], min(study.grid)), (study.initial[-1], max(study.grid))):
-                line = shlex.split(study.command(law, initial, a, solver))
+                line = shlex.split(study.command(law, initial, a, solver, **others))
                 options = PARSER.parse_args([*line[1:], "--out", "x.nc"])
                 state = study.config["initial"][initial]
                 assert (options.a, options.initial) == (study.grid[a], initial)
                 assert simulated_law(options) == study.model(law, study.grid[a]).law
-                assert options.position == tuple(state["position"])
-                assert options.velocity == tuple(state["velocity"])
+                for key, value in state.items():
+                    assert getattr(options, key) == (tuple(value) if isinstance(value, list) else value)
                 for key in ("v", "transient", "window", "batches", "sampling", "contact", "start", "events"):
-                    assert getattr(options, key) == study.config[key], key
+                    assert key in study.parameters or getattr(options, key) == study.config[key], key

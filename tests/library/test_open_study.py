@@ -27,7 +27,13 @@ def make_study(folder):
     (folder / "summary").mkdir()
     write_sealed(folder / SUMMARY, xarray.Dataset({"mean": ("a", [1.0, 2.0])}).to_netcdf, {"v": 0.1})
     write_study_record(
-        folder, small.study.config, small.study.grid, "few.yaml", CONFIG, "--configfile few.yaml", {SUMMARY: {"v": 0.1}}
+        folder,
+        small.study.config,
+        small.study.parameters,
+        "few.yaml",
+        CONFIG,
+        "--configfile few.yaml",
+        {SUMMARY: {"v": 0.1}},
     )
 
 

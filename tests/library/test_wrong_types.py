@@ -16,12 +16,15 @@ from burridge_knopoff import (
     follow,
     law_of,
     limit_cycle,
+    locate_bifurcations,
     simulate,
     synchronized_orbit,
 )
 
 MODEL = Model(Chain(3), law_of("linearized", 0.0865))
 STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
+DROPPING = Model(Chain(2), law_of("carlson_langer", 1.0))
+REST = DROPPING.begin(InitialState("rest", (-0.5, -0.6), (0.0, 0.0)), "tested")
 QUICK = {"transient": 0, "window": 1, "batches": 2}
 SEARCH = SearchSettings(samples=1, fraction_width=0.49, transient=100, window=100, time_limit=200)
 WRONG = (
@@ -42,10 +45,13 @@ WRONG = (
 def correct_calls():
     """Return arguments that each public function takes, by its name."""
     orbit = limit_cycle(MODEL, synchronized_orbit(MODEL).reference)
-    branch = follow(orbit, (0.0864, 0.0866))
+    branch = follow(orbit, (0.0864, 0.0871))
+    (bifurcation,) = locate_bifurcations(branch)
     return {
         "basin_map": {"law": "linearized", "a": 0.08, "initial": "minus", "pixels": 1, "samples": 1},
         "limit_cycle": {"model": MODEL, "state": STATE, "settling": 1000.0},
+        "event_exponents": {"model": DROPPING, "start": REST, "end": 90.0, "begin": 10.0, "count": 1},
+        "event_multipliers": {"model": DROPPING, "start": REST, "end": 10.3},
         "find_attractors": {"law": "linearized", "a": 0.08, "settings": SEARCH, "starts": ["plus"]},
         "find_periodic_orbit": {
             "model": MODEL,
@@ -53,12 +59,29 @@ def correct_calls():
             "return_time": orbit.return_time,
             "symmetry": Symmetry.ASYMMETRIC,
         },
-        "follow": {"orbit": orbit, "interval": (0.0864, 0.0866), "settings": Following()},
+        "fit_slope": {"magnitude": np.linspace(0.0, 1.0, 20), "low": 0.0, "high": 1.0},
+        "follow": {"orbit": orbit, "interval": (0.0864, 0.0866), "settings": Following(), "parameter": "a"},
+        "follow_bifurcation": {
+            "bifurcation": bifurcation,
+            "parameters": ("a", "v"),
+            "interval": (0.0999, 0.1001),
+            "settings": Following(first_step=1e-3, largest_step=1e-2),
+        },
         "label_states": {"model": MODEL, "attractors": [], "position": np.ones((1, 3)), "velocity": np.ones((1, 3))},
         "law_of": {"name": "linearized", "a": 0.08, "description": {}},
         "locate_bifurcations": {"branch": branch},
         "multipliers": {"orbit": orbit},
         "open_study": {"results": "results/nothing"},
+        "record_events": {
+            "model": DROPPING,
+            "start": REST,
+            "end": 9.0,
+            "begin": 0.0,
+            "profiles": False,
+            "loading": "steady",
+            "solver": "series",
+            "step": 0.1,
+        },
         "simulate": {
             "law": "linearized",
             "a": 0.08,
@@ -68,7 +91,15 @@ def correct_calls():
             "v": 0.1,
             **QUICK,
         },
-        "sweep": {"law": "linearized", "a": [0.08], "initial": "minus", "settings": None, "chain": None, **QUICK},
+        "sweep": {
+            "law": "linearized",
+            "a": [0.08],
+            "initial": "minus",
+            "settings": None,
+            "chain": None,
+            "v": [0.1],
+            **QUICK,
+        },
         "synchronized_orbit": {"model": MODEL},
         "transverse_exponent": {"model": MODEL, "state": STATE, "alignment": 10.0, "window": 10.0},
     }

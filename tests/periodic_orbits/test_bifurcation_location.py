@@ -30,10 +30,10 @@ from tests.periodic_orbits.stand_in import stand_in
 def test_the_pair_whose_product_is_1_tells_a_torus_from_a_saddle(values, kind):
     saddle = np.array([2.0, 0.5])
     point = SimpleNamespace(multipliers=SimpleNamespace(keeping=np.array(values), breaking=saddle))
-    assert bifurcations._kind(point, (BifurcationKind.NEIMARK_SACKER, "keeping")) == kind
+    assert bifurcations.kind_at(point, (BifurcationKind.NEIMARK_SACKER, "keeping")) == kind
     # Among the perturbations that part mirror blocks as well as among those that keep them together.
     point = SimpleNamespace(multipliers=SimpleNamespace(keeping=saddle, breaking=np.array(values)))
-    assert bifurcations._kind(point, (BifurcationKind.NEIMARK_SACKER, "breaking")) == kind
+    assert bifurcations.kind_at(point, (BifurcationKind.NEIMARK_SACKER, "breaking")) == kind
 
 
 @pytest.fixture
@@ -251,9 +251,9 @@ def test_a_fold_next_to_a_simpler_orbit_is_where_that_one_branches(monkeypatch, 
     """Orbits that move as one have no simpler ones."""
     orbit, simple = (SimpleNamespace(symmetry=one, period=2.0) for one in (symmetry, Symmetry.SYMMETRIC))
     monkeypatch.setattr(bifurcations, "simplest", lambda orbit, tolerance: simple if away <= tolerance else orbit)
-    assert bifurcations._kind(SimpleNamespace(orbit=orbit), (BifurcationKind.FOLD, "keeping")) == kind
+    assert bifurcations.kind_at(SimpleNamespace(orbit=orbit), (BifurcationKind.FOLD, "keeping")) == kind
     assert (
-        bifurcations._kind(SimpleNamespace(orbit=orbit), (BifurcationKind.PERIOD_DOUBLING, "keeping"))
+        bifurcations.kind_at(SimpleNamespace(orbit=orbit), (BifurcationKind.PERIOD_DOUBLING, "keeping"))
         == BifurcationKind.PERIOD_DOUBLING
     )
 

@@ -118,7 +118,7 @@ def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing():
 def test_what_branches_off_joins_only_where_it_is_near():
     """At the root of a multiplier's function an orbit far from any simpler one is at a fold."""
     (point, *_) = follow(settled(0.1), (0.09999, 0.10001), STEPS)
-    assert bifurcations._kind(point, (BifurcationKind.FOLD, "keeping")) == BifurcationKind.FOLD
+    assert bifurcations.kind_at(point, (BifurcationKind.FOLD, "keeping")) == BifurcationKind.FOLD
 
 
 def test_stable_and_unstable_orbits_meet_where_they_graze(six):

@@ -37,7 +37,7 @@ def study(small_studies, tmp_path_factory):
     results = tmp_path_factory.mktemp("show") / "results" / "paper"
     for name, dataset in small.found.items():
         write_summary(dataset, results / f"summary/{name}.nc")
-    write_study_record(results, small.study.config, small.study.grid, "paper.yaml", {}, "", {})
+    write_study_record(results, small.study.config, small.study.parameters, "paper.yaml", {}, "", {})
     return results
 
 

@@ -118,4 +118,11 @@ BAD_CHANGES = [
     ({"solvers": {"a": []}}, ["solvers.a: []", "at least 1"]),
     ({"solvers": {"a": [0.1, 0.1]}}, ["solvers.a: [0.1, 0.1]", "each value once"]),
     ({"solvers": {"steps": 0.1}}, ["solvers.steps: unknown key", "step"]),
+    ({"catalogue": {"a": [0.0801]}}, ["catalogue.a: 0.0801", "grid"]),
+    ({"catalogue": {"low": 2.0, "high": 1.0}}, ["catalogue.high: 1.0", "more than low"]),
+    ({"catalogue": {"loading": "quasistatic"}}, ["catalogue.loading: 'quasistatic'", "does not drop as slip begins"]),
+    (
+        {"catalogue": {"loading": "quasistatic"}, "laws": {"carlson_langer": {}}, "solver": "rk4"},
+        ["catalogue.loading: 'quasistatic'", "steady with the solver rk4"],
+    ),
 ]

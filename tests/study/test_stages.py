@@ -7,19 +7,20 @@ from burridge_knopoff.study.study import load_study
 
 STATES = {"minus": {}, "plus": {}}
 CONFIG = {"study": "some", "a": [0.05, 0.08], "initial": STATES}
-ALL = ("attractors", "bifurcations", "basins", "phases", "solvers", "two_blocks", "proof", "claims")
+ALL = ("attractors", "bifurcations", "basins", "phases", "solvers", "two_blocks", "catalogue", "proof", "claims")
 
 
 @pytest.mark.parametrize(
     ("config", "missing"),
     [
-        ({}, set()),
-        ({"without": ["solvers", "claims"]}, {"solvers", "claims"}),
-        ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases"}),
-        ({"laws": {"linearized": {}}}, {"two_blocks"}),
-        ({"a": [0.31]}, {"basins", "phases"}),
-        ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof"}),
-        ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"two_blocks", "proof", "phases"}),
+        ({}, {"catalogue"}),
+        ({"catalogue": {}}, set()),
+        ({"without": ["solvers", "claims"]}, {"solvers", "claims", "catalogue"}),
+        ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases", "catalogue"}),
+        ({"laws": {"linearized": {}}}, {"two_blocks", "catalogue"}),
+        ({"a": [0.31]}, {"basins", "phases", "catalogue"}),
+        ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof", "catalogue"}),
+        ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"two_blocks", "proof", "phases", "catalogue"}),
     ],
 )
 def test_the_stages_of_a_study(config, missing):

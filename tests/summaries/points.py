@@ -12,8 +12,9 @@ from burridge_knopoff.summaries.points import Grid
 
 def write_points(grid: Grid, alter: Callable[[Trajectory], Trajectory] = lambda trajectory: trajectory) -> Grid:
     """Run the points of a grid that have settings, write what the alteration makes of them, and return the grid."""
-    for _, (law, initial, a) in grid:
+    for _, (law, initial, *names) in grid:
         if law in grid.settings:
-            trajectory = run(grid.model(law, grid.a[a]), grid.initial[initial], grid.settings[law])
-            write_point(alter(trajectory), grid.path(law, initial, a))
+            values = {key: named[name] for (key, named), name in zip(grid.parameters.items(), names, strict=True)}
+            trajectory = run(grid.model(law, **values), grid.initial[initial], grid.settings[law])
+            write_point(alter(trajectory), grid.path(law, initial, *names))
     return grid

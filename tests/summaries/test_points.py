@@ -38,7 +38,7 @@ def test_a_grid_is_its_points_in_order(grid, tmp_path):
     state = grid.initial["plus"]
     told = {
         "initial": {"plus": {"position": state.position, "velocity": state.velocity}},
-        "a": grid.a,
+        "parameters": grid.parameters,
         "settings": dict.fromkeys(grid.laws, SETTINGS),
         **grid.models,
     }
@@ -46,7 +46,7 @@ def test_a_grid_is_its_points_in_order(grid, tmp_path):
 
 
 def test_points_are_read(grid):
-    read = read_point(grid, *POINT, ["mean_distance", "time", *EVENTS])
+    read = read_point(grid, POINT, ["mean_distance", "time", *EVENTS])
     whole = open_point(grid, *POINT)
     for name, values in read.items():
         assert np.array_equal(values, whole[name].values), name
@@ -59,7 +59,7 @@ def test_points_are_read(grid):
 
 
 @pytest.mark.parametrize(
-    "read", [lambda grid: read_point(grid, *POINT, ["mean_distance"]), lambda grid: open_point(grid, *POINT)]
+    "read", [lambda grid: read_point(grid, POINT, ["mean_distance"]), lambda grid: open_point(grid, *POINT)]
 )
 @pytest.mark.parametrize(
     ("change", "reason"),

@@ -34,7 +34,7 @@ def files(tmp_path, runs):
         folder = tmp_path / "points" if own else tmp_path / "solvers" / solver
         write_point(run, folder / law / "plus" / f"a{name}.nc")
     own = {law: Settings(**settings(solvers[0])) for law, solvers in SOLVERS.items()}
-    grid = Grid(tmp_path / "points", {"plus": PAPER_STATES["plus"]}, A, own, PAPER_MODELS)
+    grid = Grid(tmp_path / "points", {"plus": PAPER_STATES["plus"]}, {"a": A}, own, PAPER_MODELS)
     others = {}
     for solver in ("series", "rk4"):
         known = {law: settings(solver) for law, solvers in SOLVERS.items() if solver in solvers[1:]}

@@ -1,13 +1,15 @@
-"""The example studies of docs/studies.md through the real Snakefile: what they print, and the physics that they show.
+"""The example studies of docs/studies.md and docs/published.md through the real Snakefile.
 
-Only what the pages read is made; figures of studies are tested elsewhere.
+What they print, and the physics that they show. Only what the pages read is made; figures of studies are tested
+elsewhere.
 """
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import simulate
+from burridge_knopoff import Chain, Model, MotionKind, law_of, multipliers, simulate
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from tests.pages import outputs
 from tests.test_tutorial import FROM_FILES
 from tests.workflow.conftest import REPOSITORY, Study
@@ -18,6 +20,8 @@ TARGETS = {
     "five_blocks": ["mean_distance.nc", "chains.nc"],
     "carlson_langer": ["lyapunov.nc"],
     "unequal_blocks": ["lyapunov.nc", "agreement.nc"],
+    "fault": ["catalogue.nc"],
+    "two_parameters": ["grid.nc"],
 }
 
 
@@ -96,3 +100,25 @@ def test_unequal_blocks_are_periodic_or_chaotic(tmp_path, monkeypatch):
     meanings = dict(zip(kind.attrs["flag_values"].tolist(), kind.attrs["flag_meanings"].split(), strict=True))
     found = [[meanings[value] for value in row] for row in kind.sel(law="coulomb").values.tolist()]
     assert found == 2 * [["periodic", "periodic", "chaotic"]]
+
+
+def test_small_and_large_slip_events_of_a_fault(tmp_path, monkeypatch):
+    monkeypatch.chdir(finished_example("fault", tmp_path))
+    check_page("published.md", "Carlson and Langer: small and large events")
+    rate = opened(tmp_path, "catalogue")["magnitude_rate"].isel(law=0).sel(a=1.0)
+    # A gap separates the small events from the large ones, in which all blocks slip sooner or later.
+    gap = rate.sel(magnitude=slice(-2.0, 0.0)).max()
+    assert rate.sel(magnitude=slice(2.0, 5.0)).min() > 3.0 * gap
+
+
+def test_two_blocks_synchronize_only_where_the_synchronized_orbit_is_stable(tmp_path, monkeypatch):
+    monkeypatch.chdir(finished_example("two_parameters", tmp_path))
+    check_page("studies.md", "Two parameters")
+    grid = opened(tmp_path, "grid").sel(law="nonlinear", initial="pair")
+    synchronized = grid["run_kind"] == MotionKind.SYNCHRONIZED
+    for coupling in (1.75, 2.5, 3.25, 4.0):
+        row = synchronized.sel(coupling=coupling)
+        orbits = synchronized_orbits(Model(Chain(2, coupling=coupling), law_of("nonlinear", 0.3)))
+        assert row.any()
+        for a in row["a"].values[row.values]:
+            assert abs(multipliers(orbits.at(a)).transverse) < 1.0

@@ -3,7 +3,7 @@ from burridge_knopoff.figures.description import study_figures
 from burridge_knopoff.study.stages import CHAIN_SUMMARIES
 
 # Includes figures of longer chains, whose own target refuses a chain of fixed length.
-DESCRIPTIONS = study_figures(STUDY, CHAIN_SUMMARIES)
+DESCRIPTIONS = study_figures(STUDY, () if STUDY.is_plane else CHAIN_SUMMARIES)
 SHOWN_RUNS = f"{RESULTS}/points/{POINT}".format(
     law=STUDY.shown_law, a=STUDY.shown_point, initial="{initial}"
 )

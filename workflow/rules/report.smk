@@ -29,7 +29,7 @@ rule report:
     params:
         # The report shows the whole config.
         config=STUDY.config,
-        grid=dict(STUDY.grid),
+        parameters=STUDY.points["parameters"],
         arguments=CONFIG_ARGUMENTS,
         optional=OPTIONAL_RESULTS,
         benchmarks=f"{RESULTS}/benchmarks",

@@ -6,7 +6,7 @@ from snakemake.io import apply_wildcards
 from snakemake.iocontainers import Wildcards
 
 from burridge_knopoff.check.leftovers import study_files
-from burridge_knopoff.provenance.seal import BadFile, canonical, read_seal
+from burridge_knopoff.provenance.seal import BadFile, read_seal
 
 # Params that decide nothing in a file: paths, and arguments of `snakemake`.
 NOT_SEALED = {
@@ -19,7 +19,7 @@ NOT_SEALED = {
     "arguments",
 }
 # Points are described by their commands, which are among the params of a file made from them.
-OF_POINTS = ("points/", "solvers/")
+OF_POINTS = ("points/", "solvers/", "stretches/")
 
 
 def seals(wildcards, output):
@@ -64,18 +64,28 @@ def recorded_seals():
 
 
 def remove_damaged():
-    """Remove damaged texts and pictures, so that the run remakes them; most of them are read by no job."""
+    """Remove damaged texts and pictures, which hardly any job reads, and marks of stretches that lack points.
+
+    The run remakes them.
+    """
+    dry = workflow.output_settings.dryrun
+    then = "would be made again" if dry else "is made again"
     for name in study_files(STUDY):
         path = Path(RESULTS, name)
         if path.suffix != ".nc" and path.is_file():
             try:
                 read_seal(path)
             except BadFile as error:
-                dry = workflow.output_settings.dryrun
-                then = "would be made again" if dry else "is made again"
                 print(f"{path}: {error.reason}: it {then}", file=sys.stderr)
                 if not dry:
                     path.unlink()
+    for path in incomplete(STUDY, Path(RESULTS)):
+        print(
+            f"{path}: a point of it is missing or was changed: it {then}",
+            file=sys.stderr,
+        )
+        if not dry:
+            path.unlink()
 
 
 # Only in the main process, not in jobs.

@@ -5,7 +5,7 @@ from dataclasses import asdict
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.study import solver_points
 
-SOLVER_POINT = f"{RESULTS}/solvers/{{solver}}/{POINT}"
+SOLVER_POINT = f"{RESULTS}/solvers/{{solver}}/{POINT_FILE}"
 SOLVER_POINTS = solver_points(STUDY)
 
 
@@ -14,9 +14,9 @@ use rule simulate as simulate_solver with:
     output:
         SOLVER_POINT,
     log:
-        f"{RESULTS}/logs/simulate_solver/{{solver}}/{{law}}/{{initial}}/a{{a}}.log",
+        f"{RESULTS}/logs/simulate_solver/{{solver}}/{OF_POINT}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/simulate_solver/{{solver}}/{{law}}/{{initial}}/a{{a}}.tsv"
+        f"{RESULTS}/benchmarks/simulate_solver/{{solver}}/{OF_POINT}.tsv"
     wildcard_constraints:
         solver="|".join(SOLVERS),
     group:
@@ -25,9 +25,7 @@ use rule simulate as simulate_solver with:
         mem_mb=150,
         runtime=60,
     params:
-        command=lambda wildcards: STUDY.command(
-            wildcards.law, wildcards.initial, wildcards.a, wildcards.solver
-        ),
+        command=lambda wildcards: STUDY.command(**wildcards),
     message:
         "simulate {wildcards.law} law by {wildcards.solver}, initial state {wildcards.initial}, a = {wildcards.a}"
 
@@ -36,7 +34,7 @@ rule solvers:
     """Compare independent solvers of the equations of motion."""
     input:
         points=[
-            f"{RESULTS}/points/{POINT}".format(**point)
+            f"{RESULTS}/points/{POINT_FILE}".format(**point)
             for point in POINTS
             if point["a"] in STUDY.compared
         ],
@@ -51,7 +49,7 @@ rule solvers:
         group("summaries")
     params:
         folder=lambda wildcards: RESULTS,
-        points={**STUDY.points, "a": STUDY.compared},
+        points={**STUDY.points, "parameters": {"a": STUDY.compared}},
         of_points=POINT_SOURCES,
         others={
             solver: {

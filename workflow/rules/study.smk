@@ -25,7 +25,7 @@ from burridge_knopoff.provenance.files import (
     nearest_folder,
 )
 from burridge_knopoff.provenance.record import check_owner, write_study_record
-from burridge_knopoff.provenance.seal import identity
+from burridge_knopoff.provenance.seal import canonical, identity
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
 from burridge_knopoff.study.params import (
@@ -37,7 +37,8 @@ from burridge_knopoff.study.params import (
     other_length_config,
     proved_config,
 )
-from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.study.paths import POINT, STRETCH, VALUE
+from burridge_knopoff.study.stretches import incomplete, stretches
 from burridge_knopoff.study.study import all_points, load_study, remarks
 from burridge_knopoff.study.yaml_file import read_config, read_yaml
 from snakemake_logger_plugin_study.plan import PLAN
@@ -95,7 +96,7 @@ def record_study():
     """Record in the folder of results what the study is, if there are any or some are to be made."""
     arguments = shlex.join(ARGUMENTS)
     told = (CONFIG_FILE, WRITTEN, arguments, recorded_seals())
-    write_study_record(RESULTS, STUDY.config, STUDY.grid, *told)
+    write_study_record(RESULTS, STUDY.config, STUDY.parameters, *told)
 
 
 PLAN.results, PLAN.workflow, PLAN.study = RESULTS, workflow, STUDY
@@ -109,9 +110,9 @@ shell.prefix(
 
 
 wildcard_constraints:
+    **dict.fromkeys(STUDY.parameters, VALUE),
     law="|".join(STUDY.laws),
     initial="|".join(STUDY.initial),
-    a=r"\d+\.\d+",
 
 
 def prepare_results():

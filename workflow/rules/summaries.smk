@@ -44,9 +44,15 @@ SUMMARIES = {
         "docstring": "Find uniform sliding and the eigenvalues of its perturbations.",
         "of": "models",
     },
+    "grid": {
+        "docstring": "Collect the numbers of all runs over the study's parameters.",
+        "of": "points",
+        "keys": ["lyapunov_exponents", "synchronization_threshold", "motion"],
+    },
 }
-# These summaries, and those of the study's stages.
-MADE = [*SUMMARIES, *STUDY.stage_summaries]
+# Of these and of the stages' summaries, those that the study has.
+MADE = [name for name in SUMMARIES if STUDY.has_summary(name)]
+MADE += STUDY.stage_summaries
 CLAIMS_MADE = (
     multiext(f"{SUMMARY}/claims", ".json", ".csv", ".md")
     if "claims" in STUDY.stages
@@ -80,6 +86,8 @@ rule summary:
 
 
 for name, row in SUMMARIES.items():
+    if name not in MADE:
+        continue
 
     rule:
         name:

@@ -16,4 +16,4 @@ for path in (*snakemake.input.claims, *snakemake.input.figures):
     check_seal(path)
 claims = [Path(path) for path in snakemake.input.claims]
 sources = Sources(claims[0] if claims else None, summaries, figures, Path(params.benchmarks))
-write_report(Study(params.config, params.grid), sources, params.arguments, *next(iter(params.seals.items())))
+write_report(Study(params.config, params.parameters), sources, params.arguments, *next(iter(params.seals.items())))

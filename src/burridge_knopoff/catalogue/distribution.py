@@ -33,6 +33,8 @@ def fit_range(
         count, released = (np.histogram(magnitude, EDGES, weights=weights)[0] for weights in (None, moment))
         between = np.flatnonzero(EDGES[: released.argmax() + 1] >= low)
         high = float(EDGES[between[count[between].argmin()]]) if len(between) else low
+        # A range of one bin is no range of magnitudes.
+        high = high if high - low > WIDTH else low
     return low, high
 
 

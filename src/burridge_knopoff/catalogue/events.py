@@ -8,14 +8,15 @@ import numpy as np
 
 from burridge_knopoff.kernel._core import Catalogue
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.ranges import OneOf
+from burridge_knopoff.model.ranges import Number, OneOf, TrueOrFalse
 from burridge_knopoff.running.runner import STEPPING, Runner, new_observer
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.values import MOST_NUMBERS, real_number, refusal
+from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_number, refusal
 
 #: Most events, and most slips in profiles, that a run keeps.
 MOST_EVENTS = MOST_NUMBERS / 10
+TIMES = Number(-1e15, 1e15)
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,15 +28,25 @@ class SlipEvents:
 
     time : τ of the first start; slip_time : the same on the slip clock, which is another one under quasi-static loading
     duration : slip time from the first start to the last stop
-    epicentre : block that starts first; first_block, last_block : ends of the event along the chain
+    epicentre : block that starts first; first_block, last_block : ends of the event along the chain; over
+        the joint of a ring the first is above the last
     blocks : how many blocks slip; moment : sum of their slips; largest_slip : largest slip of a block
     peak_velocity : highest slip speed of a block
     stress_drop : by how much the slips lower the spring force, mean over the blocks
     energy_released : work of the springs on the blocks, which friction dissipates
-    interval : τ since the last event of which the epicentre was part began; NaN for the first
+    interval : τ since the event began in which the epicentre slipped last; NaN for the first
     slip_block, slip : with profiles, the blocks of all events and how far each slipped; slip_end : where those of an
         event end
     status : how the run ended; final : its state, from which another run continues with the events that have not ended
+
+    >>> from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
+    >>> model = Model(Chain(2, pulling=1), law_of("nonlinear", 0.5), v=0.01)
+    >>> start = model.begin(InitialState("own", (-0.9, -0.8), (0.0, 0.0)), "tested")
+    >>> events = record_events(model, start, 40.0)
+    >>> events.epicentre.tolist(), events.blocks.tolist()
+    ([1, 1, 1, 1, 2], [1, 1, 1, 1, 2])
+    >>> events.magnitude.round(2).tolist()
+    [-3.64, -3.64, -3.64, -3.64, -1.86]
     """
 
     time: np.ndarray = field(repr=False)
@@ -92,7 +103,10 @@ def record_events(
     Raises ValueError, one line, for an unknown solver, a step that is not above 0, map for a model without a closed
     form, more than MOST_EVENTS events, and quasi-static loading of friction that does not drop as slip begins.
     """
-    OneOf((*SOLVERS, "euler")).form(solver, "solver")
+    instance_of(model, Model, "model")
+    end, begin = TIMES.form(end, "end"), TIMES.form(begin, "begin")
+    profiles = TrueOrFalse().form(profiles, "profiles")
+    solver = OneOf((*SOLVERS, "euler")).form(solver, "solver")
     if not real_number(step) > 0.0:
         raise refusal("step", step, "a number above 0")
     stepping = solver in STEPPING

@@ -7,10 +7,10 @@ from typing import Annotated
 
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.ranges import HUGE, Number, OneOf, TrueOrFalse
+from burridge_knopoff.running.loading import LOADINGS
 from burridge_knopoff.running.settings import DURATION, TIME
 from burridge_knopoff.values import refusal
 
-LOADINGS = ("steady", "quasistatic")
 MAGNITUDE = Number(-HUGE, HUGE)
 
 

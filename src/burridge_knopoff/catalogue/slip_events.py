@@ -39,7 +39,9 @@ CATALOGUE_VARIABLES = {
     "peak_velocity": _V(_EVENT, "f8", "highest slip speed of a block"),
     "stress_drop": _V(_EVENT, "f8", "decrease of the spring force, mean over the slipping blocks"),
     "energy_released": _V(_EVENT, "f8", "work of the springs on the blocks, which friction dissipates"),
-    "interval": _V(_EVENT, "f8", "time tau since the last event that contains the epicentre, NaN for the first"),
+    "interval": _V(
+        _EVENT, "f8", "time tau since the event began in which the epicentre slipped last, NaN for the first"
+    ),
 }
 #: With profiles, the slips of all events in the order of the events: a contiguous ragged array.
 PROFILE_VARIABLES = {

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.stats import kstwo
 
-from burridge_knopoff.values import real_array
+from burridge_knopoff.values import real_array, real_number, refusal
 
 #: Fewest events to which a slope is fitted.
 FEWEST = 10
@@ -23,6 +23,11 @@ class Slope:
     low, high : range of the fit; count : events in it
     p_value : probability that a catalogue of this distribution differs from it by as much (Kolmogorov-Smirnov); the
         slope was fitted to the same events, so that a good fit is called good a little too often
+
+    >>> from burridge_knopoff import fit_slope
+    >>> fit = fit_slope([0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 0.9, 1.2, 1.7, 3.0], 0.0)
+    >>> round(fit.b, 2), round(fit.error, 2), fit.count
+    (1.11, 0.35, 10)
     """
 
     b: float
@@ -34,7 +39,9 @@ class Slope:
 
 
 def fit_slope(magnitude: np.ndarray, low: float, high: float = math.inf) -> Slope:
-    """Return the slope of the magnitudes in a range, shape (events,): an exponential distribution cut off at both ends.
+    """Return the slope of the magnitudes in a range: that of an exponential distribution cut off at both ends.
+
+    magnitude : of the events, shape (events,); low, high : ends of the range
 
     Raises ValueError for fewer than FEWEST events in the range, and if they are all of one magnitude.
 
@@ -42,11 +49,15 @@ def fit_slope(magnitude: np.ndarray, low: float, high: float = math.inf) -> Slop
     1131.
 
     >>> import numpy as np
+    >>> from burridge_knopoff import fit_slope
     >>> found = fit_slope(np.random.default_rng(1).exponential(1 / 0.8, 4000), 0.0)
     >>> round(found.b, 1), found.p_value > 0.05
     (0.8, True)
     """
     magnitude = real_array(magnitude, "magnitude")
+    for key, value in (("low", low), ("high", high)):
+        if math.isnan(real_number(value)):
+            raise refusal(key, value, "a number")
     inside = np.sort(magnitude[(magnitude >= low) & (magnitude <= high)]) - low
     if len(inside) < FEWEST:
         raise ValueError(f"magnitude: got {len(inside)} events between {low:g} and {high:g}, expected {FEWEST} or more")

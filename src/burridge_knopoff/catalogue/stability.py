@@ -6,11 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from burridge_knopoff.catalogue.events import MOST_EVENTS
+from burridge_knopoff.catalogue.events import MOST_EVENTS, TIMES
 from burridge_knopoff.kernel._core import Catalogue, Exponents
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.values import instance_of, refusal
 
 #: Batches for the errors of exponents.
 BATCHES = 16
@@ -24,6 +26,13 @@ class EventExponents:
         (count,); −∞ for perturbations that events take away
     events : number of events over which it was taken
     status : how the run ended
+
+    >>> from burridge_knopoff import Chain, InitialState, Model, event_exponents, law_of
+    >>> model = Model(Chain(3, coupling=2), law_of("carlson_langer", 2.0), v=1.0)
+    >>> start = model.begin(InitialState("rest", (-0.5, -0.95, -0.7), 0.0), "tested")
+    >>> found = event_exponents(model, start, 100.0, count=3)
+    >>> found.status.name, found.exponent.shape, float(found.exponent[2])
+    ('COMPLETED', (3,), -inf)
     """
 
     exponent: np.ndarray
@@ -43,15 +52,31 @@ def event_exponents(
 ) -> EventExponents:
     """Return the largest Lyapunov exponents per slip event, between two times of the loading clock.
 
-    start, end, begin, loading : see `record_events`; perturbations start halfway between start and begin, and turn
-        into the growing directions first
+    model, start, end, begin, loading : see `record_events`; perturbations start halfway between start and begin, and
+        turn into the growing directions first
     count : how many exponents
 
     Under quasi-static loading N blocks have N − 1 finite exponents: the state at the start of an event has N positions,
     of which the threshold fixes one.
 
+    Raises ValueError, one line, as `record_events` does, and for more exponents than perturbations.
+
     Reference: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30.
+
+    >>> from burridge_knopoff import Chain, InitialState, Model, event_exponents, law_of
+    >>> chain = Chain(2, coupling=3.5, pulling=1, threshold=(1.0, 2.25))
+    >>> model = Model(chain, law_of("carlson_langer", 0.0, {"sigma": 0.2}), v=1.0)
+    >>> start = model.begin(InitialState("rest", (-0.5, -0.95), 0.0), "tested")
+    >>> found = event_exponents(model, start, 500.0, begin=50.0)
+    >>> bool(found.exponent[0] > 5 * found.error[0] > 0)
+    True
     """
+    instance_of(model, Model, "model")
+    instance_of(start, ChainState, "start")
+    end, begin = TIMES.form(end, "end"), TIMES.form(begin, "begin")
+    count = Whole(1, 2 * model.blocks).form(count, "count")
+    if end <= begin:
+        raise refusal("end", end, f"a time after begin ({begin:g})")
     catalogue = Catalogue(model.blocks, begin, False, MOST_EVENTS)
     early = 0.5 * (start.time + begin)
     exponents = Exponents(model.blocks, count, early, np.linspace(begin, end, BATCHES + 1))
@@ -71,19 +96,31 @@ def event_exponents(
 def event_multipliers(model: Model, start: ChainState, end: float, *, loading: str = "quasistatic") -> np.ndarray:
     """Return the multipliers of the events between two moments of rest, in descending order of size, shape (blocks,).
 
-    start, end : a state in which all blocks stick, and τ of another such moment; for the multipliers of a periodic
-        motion, a period later
+    model, start, end : a state in which all blocks stick, and τ of another such moment; for the multipliers of a
+        periodic motion, a period later
     loading : see `record_events`
 
     They are eigenvalues of what the events make of displacements of the blocks. Under quasi-static loading one of them
-    is 0, as the threshold fixes one displacement. Raises ValueError if the run ends early or a block slips at its end.
+    is 0, as the threshold fixes one displacement. Raises ValueError, one line, as `record_events` does, and if a block
+    slips at the start or at the end.
+
+    >>> from burridge_knopoff import Chain, InitialState, Model, event_multipliers, law_of
+    >>> model = Model(Chain(1, pulling=1), law_of("carlson_langer", 0.0, {"sigma": 0.2}), v=1.0)
+    >>> start = model.begin(InitialState("rest", (-0.8,), 0.0), "tested")
+    >>> event_multipliers(model, start, 0.5).tolist()
+    [0.0]
     """
+    instance_of(model, Model, "model")
+    instance_of(start, ChainState, "start")
+    end = TIMES.form(end, "end")
     blocks = model.blocks
     perturbations = np.vstack([np.eye(blocks), np.zeros((blocks, blocks))])
     runner = Runner(model, perturbations=perturbations, loading=loading, groups=False)
     runner.begin(start)
+    if not start.stuck.all():
+        raise refusal("start", start, "a state in which all blocks stick")
     status = runner.run(end)
     if status != Status.COMPLETED or not runner.state().stuck.all():
-        raise ValueError(f"end: got {end!r}, expected a time at which all blocks stick")
+        raise refusal("end", end, "a time at which all blocks stick")
     values = np.linalg.eigvals(runner.perturbations[:blocks])
     return values[np.argsort(-np.abs(values), kind="stable")]

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from burridge_knopoff.figures.description import figure_descriptions, study_figures
 from burridge_knopoff.provenance.seal import seal_path
-from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.study.paths import STRETCH, VALUE
 from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES, SUMMARIES, TEXTS
+from burridge_knopoff.study.stretches import stretches
 from burridge_knopoff.study.study import Study, all_points, solver_points
 
 #: Patterns of the parts of file names; a file with any other name never counts as leftover.
@@ -17,6 +18,8 @@ _WILDCARDS = {
     "law": r"[a-z]\w*",
     "initial": r"[A-Za-z]\w*",
     "a": r"\d+\.\d+",
+    "values": rf"[A-Za-z]\w*?{VALUE}(?:_[A-Za-z]\w*?{VALUE})*",
+    "stretch": r"\d+",
     "solver": r"\w+",
     "tile": r"(?:0|[1-9]\d*)",
     "blocks": r"[1-9]\d*",
@@ -34,9 +37,13 @@ def leftovers(results: Path, study: Study) -> list[Path]:
     """Return results, logs and benchmarks of points, stages and figures that the study does not have."""
     patterns: list[str] = []
     known: set[str] = set()
-    for files, log, named in (*run_files(study), *_other_files(study)):
+    point = study.point_file.removesuffix(".nc")
+    marks = [{"stretch": stretch} for stretch in stretches(study)]
+    for files, log, named in (*run_files(study), ([STRETCH], "stretch/{stretch}", marks), *_other_files(study)):
         for form in (*files, f"logs/{log}.log", f"benchmarks/{log}.tsv"):
-            patterns.append(form.replace(".", r"\.").format(**_WILDCARDS))
+            # A point of another study may be one of other parameters.
+            general = form.replace(point, "{law}/{initial}/{values}")
+            patterns.append(general.replace(".", r"\.").format(**_WILDCARDS))
             known.update(form.format(**wildcards) for wildcards in named)
     pattern, whole = re.compile("|".join(patterns)), results.resolve()
     names = {path: path.relative_to(results).as_posix() for path in sorted(results.rglob("*"))}
@@ -74,10 +81,11 @@ def unmade(results: Path, study: Study) -> dict[Path, Path]:
 
 def run_files(study: Study) -> list[Named]:
     """Return the point files of all runs, with the wildcards of each as arguments of `Study.command`."""
-    log = POINT.removesuffix(".nc")
+    file = study.point_file
+    log = file.removesuffix(".nc")
     return [
-        ([f"points/{POINT}"], f"simulate/{log}", all_points(study)),
-        ([f"solvers/{{solver}}/{POINT}"], f"simulate_solver/{{solver}}/{log}", solver_points(study)),
+        ([f"points/{file}"], f"simulate/{log}", all_points(study)),
+        ([f"solvers/{{solver}}/{file}"], f"simulate_solver/{{solver}}/{log}", solver_points(study)),
     ]
 
 
@@ -97,12 +105,11 @@ def _other_files(study: Study) -> Iterator[Named]:
         yield [f"{folder}/{{law}}.nc"], f"{_STAGE_OF.get(stage, stage)}/{{law}}", [{"law": law} for law in laws]
     numbers = study.config["chains"]["blocks"] if study.chain_summaries else []
     yield ["chains/blocks{blocks}.nc"], "chains/blocks{blocks}", [{"blocks": str(number)} for number in numbers]
-    absent = study.absent_summaries
-    # Summaries that every study has are identified by their figures.
+    # Summaries that every study over a has are identified by their figures.
     shown = {name for figure in figure_descriptions() if not figure.of_runs for name in figure.inputs}
     for name in sorted(OPTIONAL_SUMMARIES | shown):
         files = [f"summary/{name}.{suffix}" for suffix in ("nc", *TEXTS.get(name, ()))]
-        yield files, _STAGE_OF.get(name, name), [{}] if name not in absent else []
+        yield files, _STAGE_OF.get(name, name), [{}] if study.has_summary(name) else []
     files = [f"summary/claims.{suffix}" for suffix in ("json", "csv", "md")]
     yield files, "claims", [{}] if "claims" in study.stages else []
     # A picture of a single run has the name of its state.

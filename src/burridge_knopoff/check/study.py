@@ -16,6 +16,7 @@ from burridge_knopoff.provenance.seal import BadFile, check_seal
 from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.study.job_log import last_words
 from burridge_knopoff.study.recorded import recorded_study
+from burridge_knopoff.study.stretches import stretches
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.summaries.points import check_run
@@ -127,11 +128,17 @@ def check_study(results: str | Path) -> Check:
 
 def _points(results: Path, study: Study) -> dict[Path, tuple[str, Path]]:
     """Return {point file: (command, log)} of all runs of a study."""
-    return {
+    points = {
         results / file.format(**run): (study.command(**run), results / f"logs/{log}.log".format(**run))
         for (file,), log, runs in run_files(study)
         for run in runs
     }
+    for stretch, runs in stretches(study).items():
+        for run in runs:
+            path = results / "points" / study.point_file.format(**run)
+            command, log = points[path]
+            points[path] = command, log if log.exists() else results / f"logs/stretch/{stretch}.log"
+    return points
 
 
 def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:

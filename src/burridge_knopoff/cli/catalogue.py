@@ -15,10 +15,11 @@ DESCRIPTION = """Record the slip events of one run and fit the slope of their ma
 An event is a set of slips of neighbouring blocks at the same time. Its magnitude is ln M, M the sum of the slips.
 Exit code: 3 if the run hit a limit or diverged; its events until then are written all the same."""
 
-EXAMPLES = """  bk catalogue --law carlson_langer --a 3 --v 0.01 --blocks 50 --coupling 9 --pulling 1 --start tested \\
-    --position random=uniform,low=-1,high=-0.9,seed=1 --velocity 0 --transient 300 --window 2000 --out slips.nc
-  bk catalogue --law linearized --a 0.1 --transient 100 --window 500 --profiles
-"""
+EXAMPLES = (
+    "  bk catalogue --law carlson_langer --a 3 --v 0.01 --coupling 9 --pulling 1 --blocks 50 --start tested "
+    "--position random=uniform,low=-1,high=-0.9,seed=1 --velocity 0 --transient 300 --window 2000 --out slips.nc\n"
+    "  bk catalogue --law linearized --a 0.1 --transient 100 --window 500 --profiles\n"
+)
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

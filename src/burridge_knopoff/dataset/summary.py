@@ -23,11 +23,10 @@ STATE = Variable(("state",), "i4", "number of the sampled initial state", coordi
 
 
 def axes(**values: Sequence[Any]) -> dict[str, Any]:
-    """Return the coordinates of a summary over some of law, initial and a, which are given by these names."""
+    """Return the coordinates of a summary over some of law, initial, a and other parameters, given by these names."""
+    known = {name: AXES.get(name, Variable((name,), "f8", f"parameter {name}", coordinate=True)) for name in values}
     return {
-        name: (name, np.array(values[name], dtype=item.dtype), item.all_attributes())
-        for name, item in AXES.items()
-        if name in values
+        name: (name, np.array(values[name], dtype=item.dtype), item.all_attributes()) for name, item in known.items()
     }
 
 

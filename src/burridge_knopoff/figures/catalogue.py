@@ -17,7 +17,7 @@ Slip events of the catalogues, for each friction law and up to six values of a. 
 of magnitude, the natural logarithm of the moment M. Each broad line is the rate exp(−b ln M) that was fitted by maximum
 likelihood in its range; the legend has the slope b with its standard error, and the probability p that events of such a
 distribution differ from it by as much. Middle: mean number of slipping blocks of the events of a magnitude. Bottom:
-intervals since the last event that contains the epicentre, as shares in logarithmic bins.
+intervals since the event in which the epicentre slipped last, as shares in logarithmic bins.
 """
 
 #: Most values of a that are shown.

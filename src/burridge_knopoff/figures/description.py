@@ -21,7 +21,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES
+from burridge_knopoff.study.stages import OF_PLANE, OPTIONAL_SUMMARIES
 
 if TYPE_CHECKING:
     from burridge_knopoff.study.study import Study
@@ -82,7 +82,9 @@ def study_figures(study: Study, of_chains: Collection[str]) -> list[Description]
     figures = []
     for figure in figure_descriptions():
         there = of_chains if "chains" in figure.inputs else study.stage_summaries
-        missing = set(figure.inputs) & OPTIONAL_SUMMARIES - set(there)
+        missing = set(figure.inputs) & {*OPTIONAL_SUMMARIES, *OF_PLANE} - set(there)
+        if study.is_plane:
+            missing = set(figure.inputs) - set(OF_PLANE)
         if not missing and (not figure.condition or getattr(study, figure.condition)):
             figures.append(figure)
     return figures

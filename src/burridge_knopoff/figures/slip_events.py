@@ -12,9 +12,9 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import MaxNLocator, NullFormatter
 
-from burridge_knopoff.figures.style import PAGE, label_panels, say_nothing, styled
+from burridge_knopoff.figures.style import PAGE, begin_at_zero, label_panels, say_nothing, styled
 
 MAGNITUDE = r"magnitude $\ln M$"
 INTERVAL = r"interval $\Delta\tau$"
@@ -41,11 +41,12 @@ def draw_extent(panel: Axes, run: xarray.Dataset, color: str) -> None:
 
 
 def draw_interval(panel: Axes, run: xarray.Dataset, color: str) -> None:
-    """Draw the share of events by the interval since the last event that contains the epicentre."""
+    """Draw the share of events by the interval since the event in which the epicentre slipped last."""
     count = run["interval_count"]
     share = count.where(count > 0) / max(int(count.sum()), 1)
     panel.loglog(run["interval"], share, color=color, **_MARKS)
-    if run["interval"].values[-1:] > 10.0 * run["interval"].values[:1]:
+    middle = run["interval"].values
+    if len(middle) and middle[-1] > 10.0 * middle[0]:
         # Powers of ten are enough.
         panel.xaxis.set_minor_formatter(NullFormatter())
     panel.set(xlabel=INTERVAL, ylabel="share of events")
@@ -70,6 +71,7 @@ def draw_map(panel: Axes, run: xarray.Dataset, norm: Normalize) -> None:
         return
     panel.add_collection(LineCollection(bars, array=np.array(magnitudes), norm=norm, cmap="viridis_r", linewidth=0.9))
     times = run["shown_time"].values[there]
+    panel.xaxis.set_major_locator(MaxNLocator(integer=True))
     panel.set(xlim=(0.5, blocks + 0.5), xlabel="block", ylabel=r"$\tau$")
     panel.set_ylim(times.min(), max(times.max(), times.min() + 1.0))
 
@@ -79,7 +81,9 @@ def draw_recurrence(panel: Axes, run: xarray.Dataset, color: str) -> None:
     block, mean, spread = (run[name].values for name in ("block", "recurrence", "recurrence_spread"))
     panel.fill_between(block, np.maximum(mean - spread, 0.0), mean + spread, color=color, alpha=0.2, linewidth=0)
     panel.plot(block, mean, color=color, marker="." if len(block) < 40 else "")
-    panel.set(xlabel="block", ylabel=INTERVAL, ylim=(0.0, None))
+    panel.set(xlabel="block", ylabel=INTERVAL)
+    panel.xaxis.set_major_locator(MaxNLocator(integer=True))
+    begin_at_zero(panel)
 
 
 def magnitude_norm(runs: xarray.Dataset) -> Normalize:

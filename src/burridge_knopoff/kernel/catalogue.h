@@ -24,7 +24,7 @@ class Catalogue {
     struct Event {
         Clock start, load;  // slip clock and loading clock of the first start: one clock under steady loading
         int epicentre = 0, slipping = 0;
-        double peak_velocity = 0.0, energy = 0.0;
+        double interval = 0.0, peak_velocity = 0.0, energy = 0.0;
         std::vector<std::pair<int, double>> slips;  // block, and how far it slipped
         // The event that goes on with this one, −1 for none; the events that this one goes on with.
         int merged = -1;
@@ -54,8 +54,8 @@ class Catalogue {
     // from : events that begin earlier are left out; profiles : whether the slip of every block is kept; most : number
     // of events and of slips in profiles at which the table is full
     Catalogue(int blocks, double from, bool profiles, double most)
-        : from(from), profiles(profiles), most(size_t(most)), event_of(blocks, -1), begun(blocks), position(blocks),
-          last_start(blocks, NAN), slip(blocks) {}
+        : from(from), profiles(profiles), most(size_t(most)), event_of(blocks, -1), last_event(blocks, -1),
+          begun(blocks), position(blocks), last_start(blocks, NAN), slip(blocks) {}
 
     // Begin again without events; all blocks that slip now have slipped since before.
     void restart() {
@@ -68,13 +68,14 @@ class Catalogue {
     // Events that have not ended, for a run that goes on.
     struct Open {
         std::vector<Event> events;
-        std::vector<int> event_of;
+        std::vector<int> event_of, last_event;
         std::vector<Clock> begun;
         std::vector<double> position, last_start;
     };
 
     Open open() const {
-        Open made{{}, std::vector<int>(event_of.size(), -1), begun, position, last_start};
+        const std::vector<int> none(event_of.size(), -1);
+        Open made{{}, none, none, begun, position, last_start};
         std::vector<int> known;
         for (size_t i = 0; i < event_of.size(); i++) {
             if (event_of[i] < 0) continue;
@@ -86,6 +87,10 @@ class Catalogue {
             }
             made.event_of[i] = k;
         }
+        for (size_t i = 0; i < event_of.size(); i++) {
+            if (last_event[i] < 0) continue;
+            made.last_event[i] = int(std::find(known.begin(), known.end(), find(last_event[i])) - known.begin());
+        }
         return made;
     }
 
@@ -93,6 +98,7 @@ class Catalogue {
         clear();
         events = open.events;
         event_of = open.event_of;
+        last_event = open.last_event;
         begun = open.begun;
         position = open.position;
         last_start = open.last_start;
@@ -123,6 +129,8 @@ class Catalogue {
             event.start = at;
             event.load = load;
             event.epicentre = i;
+            // The last event of this block may go on elsewhere.
+            event.interval = load.time - (last_event[i] < 0 ? last_start[i] : events[find(last_event[i])].load.time);
             event.peak_velocity = event.energy = event.bound = 0.0;
         }
         events[number].slipping++;
@@ -137,9 +145,10 @@ class Catalogue {
         const int number = find(event_of[i]);
         Event &event = events[number];
         event_of[i] = -1;
+        last_event[i] = number;
         event.slips.emplace_back(i, (x - position[i]) + v * begun[i].until(at));
         if (--event.slipping > 0) return;
-        finish(springs, event, at);
+        finish(springs, number, at);
         for (int k : event.absorbed) release(k);
         release(number);
     }
@@ -155,8 +164,10 @@ class Catalogue {
 
   private:
     std::vector<Event> events;
-    std::vector<int> spare, event_of;  // −1 for none
-    std::vector<int> blocks;           // of the event that ends
+    // Of each block the event in which it slips, and the one in which it slipped last, unless that has ended; −1 for
+    // none.
+    std::vector<int> event_of, last_event;
+    std::vector<int> spare, blocks;  // numbers to be used again; blocks of the event that ends
     std::vector<Clock> begun;
     std::vector<double> position, last_start, slip;
     Polynomial polynomial;
@@ -165,6 +176,7 @@ class Catalogue {
         events.clear();
         spare.clear();
         std::fill(event_of.begin(), event_of.end(), -1);
+        std::fill(last_event.begin(), last_event.end(), -1);
     }
 
     int find(int number) const {
@@ -198,6 +210,7 @@ class Catalogue {
             event.start = other.start;
             event.load = other.load;
             event.epicentre = other.epicentre;
+            event.interval = other.interval;
         }
         event.slipping += other.slipping;
         event.energy += other.energy;
@@ -212,7 +225,17 @@ class Catalogue {
         return number;
     }
 
-    void finish(const Springs &springs, Event &event, const Clock &at) {
+    // Ends of the event that ends, along the chain; over the joint of a ring the first is above the last.
+    std::pair<int, int> ends(const Springs &springs) const {
+        const int count = int(blocks.size());
+        if (springs.ring && blocks.front() == 0 && blocks.back() == springs.blocks - 1)
+            for (int k = 1; k < count; k++)
+                if (blocks[k] > blocks[k - 1] + 1) return {blocks[k], blocks[k - 1]};
+        return {blocks.front(), blocks.back()};
+    }
+
+    void finish(const Springs &springs, int number, const Clock &at) {
+        Event &event = events[number];
         find_peak(event);
         std::sort(event.slips.begin(), event.slips.end());
         blocks.clear();
@@ -220,10 +243,13 @@ class Catalogue {
             if (blocks.empty() || blocks.back() != i) blocks.push_back(i);
             slip[i] += far;
         }
-        const double interval = event.load.time - last_start[event.epicentre];
         double moment = 0.0, largest = 0.0, drop = 0.0;
         for (int i : blocks) {
-            last_start[i] = event.load.time;
+            // Else it has slipped in a later event.
+            if (last_event[i] >= 0 && find(last_event[i]) == number) {
+                last_event[i] = -1;
+                last_start[i] = event.load.time;
+            }
             moment += slip[i];
             largest = std::max(largest, slip[i]);
             // The spring force falls by (K slip)_i.
@@ -235,15 +261,16 @@ class Catalogue {
             table.slip_time.push_back(event.start.time);
             table.duration.push_back(event.start.until(at));
             table.epicentre.push_back(event.epicentre + 1);
-            table.first_block.push_back(blocks.front() + 1);
-            table.last_block.push_back(blocks.back() + 1);
+            const auto [first, last] = ends(springs);
+            table.first_block.push_back(first + 1);
+            table.last_block.push_back(last + 1);
             table.blocks.push_back(int(blocks.size()));
             table.moment.push_back(moment);
             table.largest_slip.push_back(largest);
             table.peak_velocity.push_back(event.peak_velocity);
             table.stress_drop.push_back(drop / double(blocks.size()));
             table.energy_released.push_back(event.energy);
-            table.interval.push_back(interval);
+            table.interval.push_back(event.interval);
             for (int i : blocks) {
                 if (!profiles) break;
                 table.slip_block.push_back(i + 1);

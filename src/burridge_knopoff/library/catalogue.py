@@ -95,7 +95,7 @@ def record_events(
     >>> model = Model(Chain(1, pulling=1), law_of("linearized", 0.1), v=0.01)
     >>> start = model.begin(InitialState("own", (-0.9,), (0.0,)), "tested")
     >>> events = record_events(model, start, 100.0)
-    >>> len(events.time), events.blocks[0]
+    >>> len(events.time), events.blocks[0].item()
     (14, 1)
     """
     found = events.record_events(

@@ -11,10 +11,10 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES, point_about
-from burridge_knopoff.dataset.summary import AXES, axes
+from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.provenance.seal import check_seal
-from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.recorded import recorded_study
+from burridge_knopoff.study.study import all_points
 from burridge_knopoff.values import refusal
 
 # HDF5 is not thread-safe, and xarray's own lock does not cover everything that opening a file reads.
@@ -31,10 +31,10 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
     points : whether to open all point files (some milliseconds each); without them there is no grid either
 
     `tree["summary/<name>"]` is a summary file, `tree["points/<law>/<initial>/a<value>"]` a point file. `tree["grid"]`
-    has all variables with one number a point, over (law, initial, a): NaN, or −1 for whole numbers, where a point is
-    missing. docs/data.md describes all variables; `tree.attrs` is the config with all defaults. Leftover files, such as
-    summaries of a stage that is now left out, are not opened. The files may have been made by other sources than the
-    current ones: `bk check` tells.
+    has all variables with one number a point, over (law, initial, a), or over all parameters of the study's `grid` in
+    place of a: NaN, or −1 for whole numbers, where a point is missing. docs/data.md describes all variables;
+    `tree.attrs` is the config with all defaults. Leftover files, such as summaries of a stage that is now left out, are
+    not opened. The files may have been made by other sources than the current ones: `bk check` tells.
 
     The attributes of the tree are nested, which netCDF cannot hold: `tree.attrs.clear()` before `tree.to_netcdf(…)`.
     Several threads may open studies, one after the other. While one opens, others must not read: HDF5 would crash.
@@ -57,27 +57,25 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
 
 def _tree(results: Path, points: bool) -> xarray.DataTree:
     record, study = recorded_study(results)
-    laws, states, values = study.laws, study.initial, study.grid
+    values = {name: list(values.values()) for name, values in study.parameters.items()}
+    shape = len(study.laws), len(study.initial), *map(len, values.values())
     nodes = {"/": xarray.Dataset(attrs=record["config"])}
     if points:
-        found = {name: np.full((len(laws), len(states), len(values)), _absent(name)) for name in NUMBERS}
-        for i, law in enumerate(laws):
-            for j, initial in enumerate(states):
-                for k, a in enumerate(values):
-                    name = f"points/{POINT.format(law=law, initial=initial, a=a)}"
-                    if (results / name).is_file():
-                        point = nodes[name.removesuffix(".nc")] = _opened(
-                            results / name, point_about(study.command(law, initial, a))
-                        )
-                        for number, everywhere in found.items():
-                            everywhere[i, j, k] = point.variables[number].values
+        found = {name: np.full(shape, _absent(name)) for name in NUMBERS}
+        for index, run in zip(np.ndindex(shape), all_points(study), strict=True):
+            name = f"points/{study.point_file.format(**run)}"
+            if (results / name).is_file():
+                about = point_about(study.command(**run))
+                point = nodes[name.removesuffix(".nc")] = _opened(results / name, about)
+                for number, everywhere in found.items():
+                    everywhere[index] = point.variables[number].values
+        dimensions = ("law", "initial", *study.parameters)
         nodes["grid"] = xarray.Dataset(
-            {name: (tuple(AXES), found[name], POINT_VARIABLES[name].all_attributes()) for name in NUMBERS},
-            axes(law=laws, initial=states, a=list(values.values())),
+            {name: (dimensions, found[name], POINT_VARIABLES[name].all_attributes()) for name in NUMBERS},
+            axes(law=study.laws, initial=study.initial, **values),
         )
-    absent = study.absent_summaries
     for path in sorted(results.glob("summary/[!.]*.nc")):
-        if path.stem not in absent:
+        if study.has_summary(path.stem):
             nodes[f"summary/{path.stem}"] = _opened(path)
     return xarray.DataTree.from_dict(nodes, name=study.name)
 

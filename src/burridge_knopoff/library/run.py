@@ -22,9 +22,8 @@ class Run(Trajectory):
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20)
     >>> run.to_dataset().velocity.dims
     ('trajectory_time', 'block')
-    >>> events = run.catalogue(200)
-    >>> events.begin_time, int(events.blocks.max())
-    (20.0, 3)
+    >>> simulate("linearized", 0.1, transient=100, window=20).catalogue(100)
+    <Catalogue of 17 slip events of 3 blocks, linearized law, τ = 120 to 220, completed>
     """
 
     def plot(self) -> Figure:

@@ -192,7 +192,7 @@ def _root(
     except OrbitError:
         return None
     low, high = known[root - side], known[root + side]
-    kind = _kind(at, key)
+    kind = kind_at(at, key)
     turns = first.tangent[-1] * second.tangent[-1] < 0.0
     # Breaking a symmetry other than the mirror's, such as that of a ring, gives a multiplier +1 that is not a fold.
     if kind is None or (kind == BifurcationKind.FOLD and not turns):
@@ -225,7 +225,7 @@ def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcation]:
     return [Bifurcation(bifurcation.value, bifurcation.error, bifurcation.kind, bifurcation.at, point, None, False)]
 
 
-def _kind(at: BranchOrbit, key: tuple[BifurcationKind, str]) -> BifurcationKind | None:
+def kind_at(at: BranchOrbit, key: tuple[BifurcationKind, str]) -> BifurcationKind | None:
     """Return the kind of bifurcation at the root of a function of multipliers; None for an ordinary saddle."""
     kind, part = key
     if kind == BifurcationKind.NEIMARK_SACKER:

@@ -19,8 +19,9 @@ from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, rate
 from burridge_knopoff.periodic_orbits.grazing_distances import Contacts, contacts
 from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A, ParameterLine
-from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, safe_offset, solve_return
+from burridge_knopoff.periodic_orbits.periodic import ENOUGH, PeriodicOrbit, orbit_of, safe_offset, solve_return
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
 # Length along a branch is mostly length in the parameter: positions, in units of 0.1 v, and times have smaller weights.
 STATE_WEIGHT = 0.01
@@ -142,6 +143,31 @@ def begin_branch(orbit: PeriodicOrbit, upward: bool, line: ParameterLine = ALONG
     return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent, line=line)
 
 
+def solve_ahead(
+    model: Model,
+    reference: ChainState,
+    time: float,
+    symmetry: Symmetry,
+    line: ParameterLine,
+    tangent: np.ndarray,
+    length: float,
+    enough: float = ENOUGH,
+) -> PeriodicOrbit:
+    """Return the orbit at a length along a tangent from a state, its return time and its model.
+
+    enough : residual at which Newton's method ends; 0 iterates to rounding
+
+    Raises OrbitError if none is found.
+    """
+    blocks, base, here = model.blocks, reference.vector(), line.coordinate(model)
+    there = line.model(model, here + length * float(tangent[-1]))
+    guess = base + length * tangent[:-2]
+    start = ChainState(guess[:blocks], guess[blocks:], reference.stuck)
+    constraint = weights(there) * tangent, length
+    after = time + length * float(tangent[-2])
+    return solve_return(there, start, after, symmetry, constraint, (base, time, here), enough, line)
+
+
 def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = None) -> BranchOrbit:
     """Return the orbit at a length along the tangent from a point of a branch.
 
@@ -150,23 +176,8 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     Raises OrbitError if none is found, or if the branch turns sharply on the way.
     """
     orbit, line = point.orbit, point.line
-    here = line.coordinate(orbit.model)
     tangent = point.tangent if tangent is None else tangent
-    blocks = orbit.model.blocks
-    base = orbit.reference.vector()
-    model = line.model(orbit.model, here + length * float(tangent[-1]))
-    guess = base + length * tangent[:-2]
-    start = ChainState(guess[:blocks], guess[blocks:], orbit.reference.stuck)
-    time = orbit.return_time + length * float(tangent[-2])
-    found = solve_return(
-        model,
-        start,
-        time,
-        orbit.symmetry,
-        (weights(model) * tangent, length),
-        (base, orbit.return_time, here),
-        line=line,
-    )
+    found = solve_ahead(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, line, tangent, length)
     model = found.model
     following = tangent_of(found, line)
     cosine = float(following @ (weights(model) * tangent))

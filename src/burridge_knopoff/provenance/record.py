@@ -42,7 +42,7 @@ def git_commit() -> str:
 def write_study_record(
     results: str | Path,
     config: Mapping[str, Any],
-    grid: Mapping[str, float],
+    grid: Mapping[str, Mapping[str, float]],
     config_file: str | Path,
     given: dict[str, Any],
     arguments: str,
@@ -50,7 +50,7 @@ def write_study_record(
 ) -> None:
     """Record a study in its folder of results; a record with the same content stays untouched.
 
-    config, grid : with all defaults, and {name in file names: value of a}
+    config, grid : with all defaults, and {parameter: {name in file names: value}}
     config_file, given : its config as it was given, and the content of that file
     arguments : arguments of `snakemake` besides its targets, such as `--configfile config/mine.yaml`
     files : {name in the folder: expected content, see `provenance.seal`}, without points, which their commands describe
@@ -69,7 +69,7 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     software, git_commit : of the last run
     arguments, config_file : as they were recorded
     given, config : the config as it was given, and with all defaults
-    grid : {name in file names: value of a}
+    grid : {parameter: {name in file names: value}}
     files : {name in the folder: expected content}, without points
 
     Raises ValueError, one line, if there is no record.

@@ -28,28 +28,36 @@ LIBRARIES = (
 
 def opening(study: Study) -> str:
     """Describe the study in a line."""
-    config, laws = study.config, study.laws
+    laws = study.laws
     words = f"{', '.join(laws[:-1])} and {laws[-1]} friction laws" if len(laws) > 1 else f"{laws[0]} friction law"
-    return f"{counted(study.blocks, 'block')}, v = {text(config['v'])}, a = {_grid(config['a'])}, {words}"
+    varied = ", ".join(f"{name} = {values}" for name, values in _parameters(study).items())
+    return f"{counted(study.blocks, 'block')}, {varied}, {words}"
+
+
+def _parameters(study: Study) -> dict[str, str]:
+    """Return v, a and all other parameters that a study varies, with their values in words."""
+    config = study.config
+    lists = config["grid"] or {"a": config["a"]}
+    return {"v": text(config["v"]), **{name: _grid(items) for name, items in lists.items()}}
 
 
 def what_was_run(study: Study) -> list[tuple[str, str]]:
     """Return names and values of the settings that decide the runs."""
     config = study.config
-    values = list(study.grid.values())
     solvers = ", ".join(f"{config['solver'][law]} ({law} law)" for law in study.laws)
     if "rk4" in config["solver"].values():
         solvers += f", step {text(config['step'])}"
     transient, window = config["transient"], config["window"]
-    models = {law: study.model(law, values[0]) for law in study.laws}
+    first = {name: next(iter(values.values())) for name, values in study.parameters.items()}
+    models = {law: study.model(law, **first) for law in study.laws}
+    there = " at the first point" if study.is_plane else ""
     chain = next(iter(models.values())).chain
-    without = [("Left out by the config", ", ".join(study.left_out))] if study.left_out else []
+    without = [("Left out by the config", ", ".join(study.left_out))] if study.left_out and not study.is_plane else []
     return [
         ("Blocks", f"N = {chain.blocks}"),
-        ("Chain", chain_text(chain)),
-        ("Friction laws" if len(models) > 1 else "Friction law", laws_text(models)),
-        ("Friction parameter", f"a = {_grid(config['a'])}: {counted(len(values), 'value')}"),
-        ("Driver velocity", f"v = {text(config['v'])}"),
+        (f"Chain{there}", chain_text(chain)),
+        (f"Friction law{'s' * (len(models) > 1)}{there}", laws_text(models)),
+        *_parameter_rows(study),
         ("Conventions", f"contact {config['contact']}, start {config['start']}"),
         ("Solvers", solvers),
         (
@@ -61,6 +69,17 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
         ("Runs", str(len(all_points(study)))),
         *without,
     ]
+
+
+def _parameter_rows(study: Study) -> list[tuple[str, str]]:
+    """Return a row for each parameter that varies, and one for v."""
+    words = _parameters(study)
+    rows = {
+        name: f"{name} = {words[name]}: {counted(len(values), 'value')}" for name, values in study.parameters.items()
+    }
+    rows.setdefault("v", f"v = {words['v']}")
+    kinds = {"a": "Friction parameter", "v": "Driver velocity"}
+    return [(kinds.get(name, "Parameter"), row) for name, row in rows.items()]
 
 
 def chain_text(chain: Chain) -> str:

@@ -20,7 +20,7 @@ from burridge_knopoff.report.pictures import read_picture
 from burridge_knopoff.report.prose import prose
 from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
 from burridge_knopoff.report.stages import read_stages
-from burridge_knopoff.report.verdicts import SIGNS, read_verdicts
+from burridge_knopoff.report.verdicts import SIGNS, Verdicts, read_verdicts
 from burridge_knopoff.study.formatting import text, with_error
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.agreement import digest
@@ -91,8 +91,6 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     pictures = {
         name: read_picture(path) for name, path in sources.figures.items() if not (left_out and name == OPTIONAL)
     }
-    commands = Commands(study, arguments)
-    shown = charts(study, summaries)
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER / "templates"),
         autoescape=True,
@@ -102,45 +100,62 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     )
     environment.filters.update(number=text, prose=prose)
     environment.globals.update(with_error=with_error)
+    over_a = {} if study.is_plane else _over_a(study, summaries, arguments, left_out, verdicts)
     return environment.get_template("report.html.jinja").render(
         study=study.name,
         blocks=study.blocks,
+        over_a=not study.is_plane,
         opening=overview.opening(study),
-        setting=verdicts.setting,
-        verdicts=verdicts,
-        signs=SIGNS,
         ran=overview.what_was_run(study),
         states=overview.initial_states(study),
         config=overview.config_text(study),
-        never_upward=NEVER_UPWARD,
-        section_words=_section_words(study),
-        charts=shown.packed,
-        legends=shown.legends,
-        data=_data(commands, summaries, shown.dark),
-        laws=list(study.laws),
         mirror_symmetric=study.is_mirror_symmetric,
-        initial=list(study.initial),
         pictures=pictures,
         further=[picture for name, picture in pictures.items() if name not in PLACED],
-        branches=_of(summaries, "attractors", tables.branch_table, []),
-        attractors=_of(summaries, "attractors", lambda attractors: attractors.attrs),
-        sliding=_of(summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False),
-        transitions=tables.transition_table(summaries["orbits"]),
-        maps=_of(summaries, "basins", _map_table, []),
-        agreement=digest(summaries["agreement"]).splitlines(),
-        chains=_of(summaries, "chains", tables.chain_table, []),
-        chains_command=commands.of_study("-c2", "chains"),
-        chains_left_out=left_out,
-        chain_laws=_of(summaries, "chains", lambda chains: chains["law"].values.tolist(), []),
-        chain_settings=_of(summaries, "chains", lambda chains: overview.foreign_settings(chains, study), []),
-        unclear=unclear_runs(commands, summaries["mean_distance"], summaries["agreement"]),
         origins=overview.origins(summaries),
         software=overview.software(),
         stages=read_stages(sources.benchmarks),
         style=_static("style.css"),
-        plotly=_plotly(),
-        scripts=Markup("\n").join(_static(f"{name}.js") for name in SCRIPTS),
+        **over_a,
     )
+
+
+def _over_a(
+    study: Study,
+    summaries: Mapping[str, xarray.Dataset],
+    arguments: Sequence[str],
+    left_out: str,
+    verdicts: Verdicts,
+) -> dict[str, Any]:
+    """Return what only the report of a study over a alone has: its charts, and what its summaries say."""
+    commands = Commands(study, arguments)
+    shown = charts(study, summaries)
+    return {
+        "setting": verdicts.setting,
+        "verdicts": verdicts,
+        "signs": SIGNS,
+        "never_upward": NEVER_UPWARD,
+        "section_words": _section_words(study),
+        "charts": shown.packed,
+        "legends": shown.legends,
+        "data": _data(commands, summaries, shown.dark),
+        "laws": list(study.laws),
+        "initial": list(study.initial),
+        "branches": _of(summaries, "attractors", tables.branch_table, []),
+        "attractors": _of(summaries, "attractors", lambda attractors: attractors.attrs),
+        "sliding": _of(summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False),
+        "transitions": tables.transition_table(summaries["orbits"]),
+        "maps": _of(summaries, "basins", _map_table, []),
+        "agreement": digest(summaries["agreement"]).splitlines(),
+        "chains": _of(summaries, "chains", tables.chain_table, []),
+        "chains_command": commands.of_study("-c2", "chains"),
+        "chains_left_out": left_out,
+        "chain_laws": _of(summaries, "chains", lambda chains: chains["law"].values.tolist(), []),
+        "chain_settings": _of(summaries, "chains", lambda chains: overview.foreign_settings(chains, study), []),
+        "unclear": unclear_runs(commands, summaries["mean_distance"], summaries["agreement"]),
+        "plotly": _plotly(),
+        "scripts": Markup("\n").join(_static(f"{name}.js") for name in SCRIPTS),
+    }
 
 
 def _section_words(study: Study) -> str:

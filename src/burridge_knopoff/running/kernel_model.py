@@ -7,12 +7,9 @@ import numpy as np
 from burridge_knopoff.kernel._core import KernelModel
 from burridge_knopoff.model.model import Model
 
-#: steady: the driver moves at the velocity v | quasistatic: it stands while any block slips
-LOADINGS = ("steady", "quasistatic")
-
 
 def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
-    """Return the chain, friction law and driver of a model for the kernel; loading : one of LOADINGS."""
+    """Return the chain, friction law and driver of a model for the kernel; loading : see `Runner`."""
     chain, law = model.chain, model.law
     operations, constants = law.tape.table
     start, index, strength = chain.neighbours

@@ -9,8 +9,8 @@ import numpy as np
 
 from burridge_knopoff.kernel._core import Catalogue, EventLog, Exponents, Observer, Run, TimeStepping
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.ranges import OneOf
-from burridge_knopoff.running.kernel_model import LOADINGS, kernel_model
+from burridge_knopoff.running.kernel_model import kernel_model
+from burridge_knopoff.running.loading import is_quasistatic
 from burridge_knopoff.running.normal_modes import normal_modes
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
@@ -69,14 +69,7 @@ class Runner:
                 "solver: got 'map', expected series | rk4: map needs a closed form, that is a linear friction law, not "
                 "too steep, in a uniform chain with open ends"
             )
-        quasistatic = OneOf(LOADINGS).form(loading, "loading") == "quasistatic"
-        if quasistatic and float(model.law(0.0)) >= 1.0:
-            raise ValueError(
-                f"loading: got 'quasistatic', expected steady: friction of the law {model.law.name} does not drop as "
-                "slip begins, and a block at its threshold would stay there"
-            )
-        if quasistatic and solver != "series":
-            raise refusal("solver", solver, "series under quasi-static loading")
+        quasistatic = is_quasistatic(loading, model, solver)
         self.model = model
         # These decide the steps: a continued run repeats the steps of the whole run only if they are equal.
         stepping = solver in STEPPING

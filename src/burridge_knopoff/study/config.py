@@ -31,17 +31,22 @@ from burridge_knopoff.values import joined
 
 NUMBER = Number(-HUGE, HUGE)
 A = Number(0.0, 100.0)
-#: The values from, from + step, … to; see `grid.values_of`.
-STEPS = Keys(
-    {
-        "from": Field(A, "first value"),
-        "to": Field(A, "last value"),
-        "step": Field(Number(0.0, 100.0, above=True), "distance between values; it divides the range"),
+
+
+def _values(one: Number, longest: float) -> Several:
+    """Return a list of numbers and of ranges, with the values from, from + step, … to; see `grid.values_of`."""
+    steps = {
+        "from": Field(one, "first value"),
+        "to": Field(one, "last value"),
+        "step": Field(Number(0.0, longest, above=True), "distance between values; it divides the range"),
     }
-)
-VALUES = Several(Either((A, STEPS)), 1)
+    return Several(Either((one, Keys(steps))), 1)
+
+
+VALUES = _values(A, 100.0)
 SOME_VALUES = Several(A, 0, 100, distinct=True)
 
+PARAMETER_NAME = Text("letters, digits and _, a letter first", "[A-Za-z][A-Za-z0-9_]*")
 STUDY_NAME = Text("letters, digits, _ and -, at most 64, a letter or digit first", "[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 
 
@@ -155,8 +160,15 @@ CHAINS = {
 CONFIG = Keys(
     {
         "study": Field(STUDY_NAME, "name of the study and of its folder in results/"),
-        "a": Field(VALUES, "friction parameters, in any order; a range includes both ends, and step divides it"),
-        "a_digits": Field(Whole(1, 15), "decimals of a in file names", 4),
+        "a": Field(
+            VALUES, "friction parameters, in any order; a range includes both ends, and step divides it", FOLLOWS
+        ),
+        "grid": Field(
+            Named(PARAMETER_NAME, _values(NUMBER, HUGE)),
+            "instead of a: values of a and of other parameters, each combined with each; see below",
+            {},
+        ),
+        "a_digits": Field(Whole(1, 15), "decimals of a, and of all parameters of grid, in file names", 4),
         "initial": Field(
             Named(STATE_NAME, Keys(_STATE, "; {} for one of the paper's"), 1),
             "initial states by name, each with position U(0) and velocity U'(0): one number for all blocks, one a "

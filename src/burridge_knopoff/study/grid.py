@@ -1,4 +1,4 @@
-"""Values of a: lists of numbers and ranges, and their names in file names."""
+"""The grid of a study: lists of numbers and ranges for each of its parameters, and their names in file names."""
 
 from __future__ import annotations
 
@@ -7,25 +7,56 @@ from decimal import Decimal
 from itertools import pairwise
 from typing import Any
 
-from burridge_knopoff.values import refusal
+from burridge_knopoff.values import refusal, shown
 
-#: Limit on the values of a list and on the points of a study: planning so many jobs takes Snakemake minutes.
+#: Limit on the values of a list and on the points of a study. Planning so many jobs takes Snakemake minutes; in
+#: stretches, seconds.
 MAXIMUM_POINTS = 100_000
 
+#: Names that a parameter of a grid cannot have, since file names or dimensions have them.
+_TAKEN = ("law", "initial", "solver", "stretch", "exponent")
 
-def grid_of(items: Sequence[Any], digits: int) -> dict[str, float]:
+
+def given_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a config as it is written, with either `a` or `grid`; a `grid` of a alone becomes `a`.
+
+    Raises ValueError, one line, if it has both or neither, or a grid without a.
+    """
+    grid = config.get("grid")
+    if not grid and "a" not in config:
+        raise ValueError("a: missing, expected friction parameters, or a grid of several parameters")
+    if not (grid and isinstance(grid, Mapping)):
+        return config
+    # A complete config has an empty list.
+    if config.get("a", []) != []:
+        raise ValueError(f"a: got {shown(config['a'])} beside grid, expected one of them")
+    if "a" not in grid:
+        raise ValueError("grid.a: missing, expected friction parameters; a single one is enough")
+    for name in _TAKEN:
+        if name in grid:
+            raise refusal("grid", name, "another name of the law's number")
+    others = {key: value for key, value in config.items() if key not in ("a", "grid")}
+    return {**others, "grid": grid} if len(grid) > 1 else {**others, "a": grid["a"]}
+
+
+def parameters_of(config: Mapping[str, Any]) -> dict[str, dict[str, float]]:
+    """Return {parameter: {name: value}} of a config; a alone unless it has a `grid`, whose order is kept."""
+    lists = {name: (f"grid.{name}", items) for name, items in config["grid"].items()} or {"a": ("a", config["a"])}
+    return {name: _named(name, *listed, config["a_digits"]) for name, listed in lists.items()}
+
+
+def _named(parameter: str, place: str, items: Sequence[Any], digits: int) -> dict[str, float]:
     """Return {name: value} in ascending order; every value is the double nearest to its decimal.
 
-    items : the config's `a`; digits : its `a_digits`
     Raises ValueError as `values_of` does, and for values with the same name.
     """
     grid: dict[str, float] = {}
-    for value in values_of(items, "a"):
+    for value in values_of(items, place):
         name = f"{value:.{digits}f}"
         if name in grid:
             raise ValueError(
-                f"a: got {grid[name]!r} and {value!r}, which share the file name a{name}.nc; expected values that "
-                "differ within a_digits decimals"
+                f"{place}: got {grid[name]!r} and {value!r}, which share the file name {parameter}{name}.nc; expected "
+                "values that differ within a_digits decimals"
             )
         grid[name] = value
     return grid

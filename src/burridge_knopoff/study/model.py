@@ -8,6 +8,7 @@ from typing import Any
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.parameters import at
 
 #: Keys of a config that define a model, besides the number of blocks.
 MODEL_KEYS = ("laws", "chain", "v", "contact")
@@ -18,7 +19,11 @@ def models_of(config: Mapping[str, Any], a: float, blocks: int) -> list[Model]:
     return [model_of(config, law, a, blocks) for law in config["laws"]]
 
 
-def model_of(config: Mapping[str, Any], law: str, a: float, blocks: int) -> Model:
-    """Return the model of a study under one of its laws, at one a; raises ValueError if there is none."""
+def model_of(config: Mapping[str, Any], law: str, a: float, blocks: int, **others: float) -> Model:
+    """Return the model of a study under one of its laws, at one a, and at other values of its other parameters.
+
+    Raises ValueError if there is none.
+    """
     chain = Chain(**{**config["chain"], "blocks": blocks})
-    return Model(chain, law_of(law, a, config["laws"][law]), config["v"], config["contact"])
+    model = Model(chain, law_of(law, a, config["laws"][law]), config["v"], config["contact"])
+    return at(model, others) if others else model

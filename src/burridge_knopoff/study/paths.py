@@ -1,4 +1,18 @@
 """Where the point files of a study lie in its results."""
 
-#: Path of a point, in the folder `points`, or `solvers/<solver>` for another solver.
-POINT = "{law}/{initial}/a{a}.nc"
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+
+def point_file(parameters: Iterable[str]) -> str:
+    """Return the path of a point, in the folder `points`, with the name of each parameter's value as a wildcard."""
+    return "{law}/{initial}/" + "_".join(f"{name}{{{name}}}" for name in parameters) + ".nc"
+
+
+#: Path of a point of a study over a alone, in the folder `points`, or `solvers/<solver>` for another solver.
+POINT = point_file(["a"])
+#: Pattern of the name of a value in a file name.
+VALUE = r"-?\d+\.\d+"
+#: Path of the empty file that marks a finished stretch of points, in the results.
+STRETCH = "stretches/{stretch}.done"

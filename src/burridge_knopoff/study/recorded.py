@@ -12,12 +12,12 @@ from burridge_knopoff.model.fields import Keys
 from burridge_knopoff.provenance.record import NAME, read_study_record, study_folder
 from burridge_knopoff.provenance.seal import check_seal
 from burridge_knopoff.study.config import CONFIG
+from burridge_knopoff.study.paths import VALUE
 from burridge_knopoff.study.study import Study, load_study
 from burridge_knopoff.values import joined
 
 #: Keys without a default, which a complete config need not have.
 _OPTIONAL = ("chain.grid", "chain.springs", "catalogue", "catalogue.low", "catalogue.high")
-_RUN = re.compile(r"(?:points|solvers/(?P<solver>\w+))/(?P<law>\w+)/(?P<initial>\w+)/a(?P<a>[\d.]+)\.nc")
 
 
 def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
@@ -31,11 +31,11 @@ def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
         raise ValueError(f"{path}: not a study of this version ({key}); run snakemake again")
     # The form of a complete config is the config itself. A default may however be refused if it is given explicitly.
     asked = {name: value for name, value in record["config"].items() if value != CONFIG.fields[name].default}
-    if isinstance(solvers := asked.get("solvers"), dict):
-        # Left out, the stage has no values of a.
-        asked["solvers"] = {key: value for key, value in solvers.items() if (key, value) != ("a", [])}
+    # A comparison of solvers that is left out has no values of a; a config cannot ask for that.
+    if (solvers := asked.get("solvers", {})).get("a") == []:
+        asked["solvers"] = {key: value for key, value in solvers.items() if key != "a"}
     study = load_study(asked, str(path))
-    if (study.config, study.grid) != (record["config"], record["grid"]):
+    if (study.config, study.parameters) != (record["config"], record["grid"]):
         raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
     return record, study
 
@@ -46,11 +46,22 @@ def check_result(path: Path) -> None:
     Raises BadFile as `check_seal` does.
     """
     about, folder = None, study_folder(path)
-    if folder and (run := _RUN.fullmatch(path.absolute().relative_to(folder).as_posix())):
+    if folder:
         # For a file outside a run of the study, or of another version, the expected content is not known.
         with contextlib.suppress(ValueError, KeyError):
-            about = point_about(recorded_study(folder)[1].command(**run.groupdict()))
+            study = recorded_study(folder)[1]
+            if run := _run_of(study, path.absolute().relative_to(folder).as_posix()):
+                about = point_about(study.command(**run))
     check_seal(path, about, any_sources=True)
+
+
+def _run_of(study: Study, name: str) -> dict[str, str]:
+    """Return the wildcards of the run whose point file has a name; empty if it is none's."""
+    parts = {"law": r"\w+", "initial": r"\w+", **dict.fromkeys(study.parameters, VALUE)}
+    groups = {name: f"(?P<{name}>{pattern})" for name, pattern in parts.items()}
+    file = study.point_file.replace(".nc", r"\.nc").format(**groups)
+    found = re.fullmatch(rf"(?:points|solvers/(?P<solver>\w+))/{file}", name)
+    return found.groupdict() if found else {}
 
 
 def _other_key(config: Any, keys: Keys, place: str = "") -> str:

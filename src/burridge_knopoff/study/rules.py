@@ -5,9 +5,10 @@ Every function raises ValueError, `key: got X, expected Y`, if a rule is broken.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import reduce
+from math import prod
 from operator import getitem
 from typing import Any
 
@@ -17,6 +18,7 @@ from burridge_knopoff.model.chain import BLOCKS, Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.parameters import at
 from burridge_knopoff.model.ranges import OneOf, Range, Several
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.config import SOME_VALUES
@@ -100,8 +102,13 @@ def _by_law(allowed: Range, usual: Mapping[str, Any]) -> Keys:
     return Keys({law: Field(allowed, "", value) for law, value in usual.items()})
 
 
-def check_models(config: Mapping[str, Any], grid: Iterable[float]) -> None:
-    """Check the chain, every law at every a where it is used, its solver, and that every initial state can start."""
+def check_models(
+    config: Mapping[str, Any], grid: Iterable[float], others: Sequence[Mapping[str, float]] = ({},)
+) -> None:
+    """Check the chain, every law at every point where it is used, its solver, and that every initial state can start.
+
+    grid, others : values of a, and of the other parameters, each of which goes with each a
+    """
     chain, laws = Chain(**config["chain"]), config["laws"]
     for name, solver in config["solver"].items():
         tapes = []
@@ -110,9 +117,12 @@ def check_models(config: Mapping[str, Any], grid: Iterable[float]) -> None:
                 law = law_of(name, a, laws[name])
             tapes.append(law.tape)
             model = Model(chain, law, config["v"], config["contact"])
-            if solver == "map" and not model.has_closed_form:
-                others = " | ".join(solver for solver in SOLVERS if solver != "map")
-                raise refusal(f"solver.{name}", "map", f"{others}: no closed form at a = {a:g}, {_reason(model)}")
+            for values in others:
+                with under(f"grid ({name} law, a = {a:g}): " if values else ""):
+                    model = at(model, values) if values else model
+                if solver == "map" and not model.has_closed_form:
+                    known = " | ".join(solver for solver in SOLVERS if solver != "map")
+                    raise refusal(f"solver.{name}", "map", f"{known}: no closed form at a = {a:g}, {_reason(model)}")
         if len(tapes) > 1 and all(tape == tapes[0] for tape in tapes):
             raise refusal(
                 f"laws.{name}.formula",
@@ -196,18 +206,20 @@ def leave_out(config: Mapping[str, Any], stages: Collection[str]) -> None:
         config["basins"]["a"] = {law: [] for law in config["laws"]}
 
 
-def check_size(config: Mapping[str, Any], values: int, blocks: int, without: Collection[str]) -> None:
-    """Check that Snakemake can plan the jobs of a study and that no job holds too many numbers.
-
-    config : with all defaults; values : number of values of a; without : stages that are left out
-    """
+def check_size(config: Mapping[str, Any], parameters: Mapping[str, Collection[str]]) -> None:
+    """Check that Snakemake can plan the points of a study; parameters : the values of each."""
     states, laws = config["initial"], config["laws"]
-    points = len(laws) * len(states) * values
+    points = len(laws) * len(states) * prod(map(len, parameters.values()))
     if points > MAXIMUM_POINTS:
+        values = ", ".join(f"{len(values)} values of {name}" for name, values in parameters.items())
         raise ValueError(
-            f"a: got {points} points ({len(laws)} laws, {len(states)} initial states, {values} values of a), "
-            f"expected at most {MAXIMUM_POINTS}"
+            f"{'grid' if config['grid'] else 'a'}: got {points} points ({len(laws)} laws, {len(states)} initial "
+            f"states, {values}), expected at most {MAXIMUM_POINTS}"
         )
+
+
+def check_jobs(config: Mapping[str, Any], blocks: int, without: Collection[str]) -> None:
+    """Check that no job of a study holds too many numbers; config : with all defaults; without : stages left out."""
     attractors, basins, phases, chains = (config[name] for name in ("attractors", "basins", "phases", "chains"))
     oscillating = len(phases["amplitude"]) * len(phases["phase_difference"]) * phases["samples"]
     kept = len(phases["a"]) * max(len(phases["inner_share"]), blocks - 2)

@@ -13,6 +13,9 @@ OPTIONAL = {
     "claims": "",
 }
 
+#: The summaries of a study over several parameters, which has no others and no stages.
+OF_PLANE = ("grid",)
+
 #: Summaries of a stage, unless it makes one summary of its own name.
 SUMMARIES = {"attractors": ("attractors", "refined", "rotation"), "claims": ()}
 

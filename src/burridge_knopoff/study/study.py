@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -20,12 +21,14 @@ from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.running.command import simulate_command
+from burridge_knopoff.running.loading import is_quasistatic
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.study import rules, stages
 from burridge_knopoff.study.config import CONFIG
-from burridge_knopoff.study.grid import grid_of
+from burridge_knopoff.study.grid import given_grid, parameters_of
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paper import PAPER_A
+from burridge_knopoff.study.paths import point_file
 from burridge_knopoff.study.yaml_file import ConfigError
 from burridge_knopoff.values import refusal
 
@@ -34,10 +37,10 @@ _T = TypeVar("_T")
 
 @dataclass(frozen=True)
 class Study:
-    """A validated study: its config with all defaults, and the grid of a as {name in file names: exact value}."""
+    """A validated study: its config with all defaults, and {parameter: {name in file names: exact value}}."""
 
     config: Mapping[str, Any]
-    grid: Mapping[str, float]
+    parameters: Mapping[str, Mapping[str, float]]
 
     @property
     def name(self) -> str:
@@ -60,6 +63,30 @@ class Study:
         return self.config["chain"]["blocks"]
 
     @property
+    def grid(self) -> Mapping[str, float]:
+        """The values of a, by their names in file names."""
+        return self.parameters["a"]
+
+    @property
+    def is_plane(self) -> bool:
+        """Whether the study varies other parameters besides a."""
+        return len(self.parameters) > 1
+
+    @property
+    def others(self) -> list[dict[str, float]]:
+        """The values of the parameters besides a, at each point of their grid."""
+        names = [name for name in self.parameters if name != "a"]
+        return [
+            dict(zip(names, values, strict=True))
+            for values in product(*(self.parameters[name].values() for name in names))
+        ]
+
+    @property
+    def point_file(self) -> str:
+        """Path of a point in the folder `points`, with wildcards for `all_points`."""
+        return point_file(self.parameters)
+
+    @property
     def shown_point(self) -> str:
         """Name of the value of a in the figures of single runs."""
         shown = self.config["figures"].get("a", PAPER_A)
@@ -80,7 +107,7 @@ class Study:
         points, law = self.points, self.shown_law
         initial = {name: state for name, state in points["initial"].items() if wildcards.get("initial", name) == name}
         only = {key: {law: points[key][law]} for key in ("laws", "settings")}
-        return {**points, **only, "initial": initial, "a": {self.shown_point: self.shown_a}}
+        return {**points, **only, "initial": initial, "parameters": {"a": {self.shown_point: self.shown_a}}}
 
     @property
     def law_descriptions(self) -> dict[str, dict[str, Any]]:
@@ -89,8 +116,9 @@ class Study:
 
     @property
     def chain_description(self) -> dict[str, Any]:
-        """The chain as arguments of `Chain`."""
-        return dict(self.config["chain"])
+        """The chain as arguments of `Chain`; of several, that of the first point."""
+        chain, first = self.config["chain"], self.others[0]
+        return {**chain, **{name: first[name] for name in first if name in chain}}
 
     @property
     def has_several_laws(self) -> bool:
@@ -100,7 +128,7 @@ class Study:
     @property
     def is_mirror_symmetric(self) -> bool:
         """Whether the chain is its own mirror image."""
-        return self.model(self.laws[0], self.shown_a).chain.is_mirror_symmetric
+        return self.model(self.laws[0], self.shown_a, **self.others[0]).chain.is_mirror_symmetric
 
     @property
     def has_synchronized_orbit(self) -> bool:
@@ -114,8 +142,8 @@ class Study:
 
     @property
     def left_out(self) -> tuple[str, ...]:
-        """Stages that the config leaves out, together with the stages that use their results."""
-        without = self.config["without"]
+        """Stages that the config leaves out, together with the stages that use their results; all in a plane."""
+        without = stages.OPTIONAL if self.is_plane else self.config["without"]
         return tuple(stage for stage, needed in stages.OPTIONAL.items() if stage in without or needed in without)
 
     @property
@@ -138,12 +166,13 @@ class Study:
     @property
     def chain_summaries(self) -> tuple[str, ...]:
         """Names of the netCDF summaries of longer chains, whether or not they are requested."""
-        return () if self.single_length_key else stages.CHAIN_SUMMARIES
+        return () if self.single_length_key or self.is_plane else stages.CHAIN_SUMMARIES
 
-    @property
-    def absent_summaries(self) -> set[str]:
-        """Names of the netCDF summaries that this study does not have."""
-        return stages.OPTIONAL_SUMMARIES - {*self.stage_summaries, *self.chain_summaries}
+    def has_summary(self, name: str) -> bool:
+        """Return whether the study has the netCDF summary of a name, or may have it after its target `chains`."""
+        if self.is_plane or name in stages.OF_PLANE:
+            return self.is_plane and name in stages.OF_PLANE
+        return name not in stages.OPTIONAL_SUMMARIES or name in (*self.stage_summaries, *self.chain_summaries)
 
     @property
     def basin_maps(self) -> list[tuple[str, str]]:
@@ -174,9 +203,9 @@ class Study:
             if np.array_equal(position[1:-1], plane[1:-1]) and np.array_equal(velocity, speed)
         }
 
-    def model(self, law: str, a: float) -> Model:
-        """Return the model of the study for one of its laws at one a."""
-        return model_of(self.config, law, a, self.blocks)
+    def model(self, law: str, a: float, **others: float) -> Model:
+        """Return the model of the study for one of its laws at one a, and at values of its other parameters."""
+        return model_of(self.config, law, a, self.blocks, **others)
 
     def other_solvers(self, law: str) -> list[str]:
         """Return the other solvers that can do a law at the compared values, besides the one that makes the points."""
@@ -190,13 +219,15 @@ class Study:
         """The values of a at which solvers are compared, by their names in file names."""
         return {name: value for name, value in self.grid.items() if value in self.config["solvers"]["a"]}
 
-    def value(self, a: str) -> float:
-        """Return a value of a from its name in file names; raises ConfigError if it is not in the grid."""
-        if a not in self.grid:
-            meant = next((name for name, value in self.grid.items() if value == float(a)), "")
-            reason = f"the name of this a is a{meant}" if meant else "a is not in its grid"
-            raise ConfigError(f"a{a}: not a point of study {self.name}: {reason}")
-        return self.grid[a]
+    def value(self, name: str, parameter: str = "a") -> float:
+        """Return a parameter's value from its name in file names; raises ConfigError if it is not in the grid."""
+        grid = self.parameters[parameter]
+        if name not in grid:
+            meant = next((known for known, value in grid.items() if value == float(name)), "")
+            told = f"the name of this {parameter} is {parameter}{meant}"
+            reason = told if meant else f"{parameter} is not in its grid"
+            raise ConfigError(f"{parameter}{name}: not a point of study {self.name}: {reason}")
+        return grid[name]
 
     def settings(self, law: str, solver: str | None = None) -> Settings:
         """Return the settings of the runs with a law.
@@ -221,13 +252,20 @@ class Study:
         """Return an initial state of the study from its name."""
         return InitialState(initial, **self.config["initial"][initial])
 
-    def command(self, law: str, initial: str, a: str, solver: str | None = None) -> str:
-        """Return the `bk simulate` command of a grid point given by its wildcards, without --out.
+    def run_of(
+        self, law: str, initial: str, a: str, solver: str | None = None, **others: str
+    ) -> tuple[Model, InitialState, Settings]:
+        """Return model, initial state and settings of a grid point given by its wildcards.
 
         solver : a solver other than that of the study's points
-        Raises ConfigError if a is not in the grid, or the solver is not one of `other_solvers`.
+        Raises ConfigError if a value is not in the grid, or the solver is not one of `other_solvers`.
         """
-        return simulate_command(self.model(law, self.value(a)), self.state(initial), self.settings(law, solver))
+        values = {parameter: self.value(name, parameter) for parameter, name in {"a": a, **others}.items()}
+        return self.model(law, **values), self.state(initial), self.settings(law, solver)
+
+    def command(self, law: str, initial: str, a: str, solver: str | None = None, **others: str) -> str:
+        """Return the `bk simulate` command of a grid point given by its wildcards, without --out; see `run_of`."""
+        return simulate_command(*self.run_of(law, initial, a, solver, **others))
 
     @property
     def points(self) -> dict[str, Any]:
@@ -235,7 +273,7 @@ class Study:
         return {
             **{key: self.config[key] for key in MODEL_KEYS},
             "initial": {name: dict(state) for name, state in self.config["initial"].items()},
-            "a": dict(self.grid),
+            "parameters": {name: dict(values) for name, values in self.parameters.items()},
             "settings": {law: asdict(self.settings(law)) for law in self.laws},
         }
 
@@ -270,42 +308,48 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     is_new = isinstance(springs, str) and not has_digest(springs)
     if isinstance(chain_keys, Mapping) and is_new:
         config = {**config, "chain": {**chain_keys, "springs": display_path(folder / f"{springs}")}}
+    config = given_grid(config)
     # Use the types of YAML: lists instead of tuples.
     filled = json.loads(json.dumps(CONFIG.form(config, "")))
-    # Keep the ranges of a as the user wrote them; `grid` has the values.
-    filled["a"] = config["a"]
-    grid = grid_of(filled["a"], filled["a_digits"])
-    values = list(grid.values())
-    study = Study(filled, grid)
+    # Keep ranges as the user wrote them; `parameters` has the values.
+    filled.update({"a": [], **{key: config[key] for key in ("a", "grid") if key in config}})
+    study = Study(filled, parameters_of(filled))
+    values = list(study.grid.values())
     if "transient" in config and filled["lyapunov_alignment"] > filled["transient"] and "lyapunov_alignment" in config:
         raise refusal("lyapunov_alignment", filled["lyapunov_alignment"], "at most transient, of which it is a part")
     rules.fill_states(filled)
     rules.fill_blocks(filled)
     rules.fill_chains(filled)
     rules.fill_names(filled)
-    rules.check_models(filled, values)
-    chain = study.model(study.laws[0], values[0]).chain
+    rules.check_size(filled, study.parameters)
+    others = study.others
+    rules.check_models(filled, values, others)
+    chains = [study.model(study.laws[0], values[0], **each).chain for each in others]
+    chain = chains[0]
     if is_new:
         chain.check_springs()
     # Results may be read where the file of springs is not; it was checked when the study ran.
     has_springs = chain.springs is None or is_new
     for law in study.laws if has_springs else ():
-        study.settings(law).check_chain(chain)
+        for each in chains:
+            study.settings(law).check_chain(each)
     # The default is three exponents; a single block has only two.
     filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponents_of(chain)
     with rules.under("basins."):
         _settings_of(BasinSettings, filled["basins"])
     with rules.under("chains."):
         _settings_of(Sample, filled["chains"])
+    rules.fill_values(filled, set(values), study.blocks, study.shown_a)
     rules.fill_catalogue(filled, values)
     with rules.under("catalogue."):
-        _settings_of(CatalogueSettings, filled.get("catalogue", {}))
-    rules.fill_values(filled, set(values), study.blocks, study.shown_a)
+        loading = _settings_of(CatalogueSettings, filled.get("catalogue", {})).loading
+        for law, name in product(study.laws, study.catalogue_a):
+            is_quasistatic(loading, study.model(law, study.grid[name]), filled["solver"][law])
     for law in study.laws if has_springs and "solvers" in study.stages else ():
         for solver in study.other_solvers(law):
             with rules.under("solvers."):
                 study.settings(law, solver).check_chain(chain)
-    rules.check_size(filled, len(grid), study.blocks, study.left_out)
+    rules.check_jobs(filled, study.blocks, study.left_out)
     rules.leave_out(filled, study.left_out)
     return study
 
@@ -317,8 +361,9 @@ def _settings_of(kind: type[_T], config: Mapping[str, Any]) -> _T:
 
 def all_points(study: Study) -> list[dict[str, str]]:
     """Return the wildcards of every point, the arguments of `Study.command`, in the order of the summaries."""
+    names = ("law", "initial", *study.parameters)
     return [
-        {"law": law, "initial": initial, "a": a} for law in study.laws for initial in study.initial for a in study.grid
+        dict(zip(names, point, strict=True)) for point in product(study.laws, study.initial, *study.parameters.values())
     ]
 
 

@@ -89,7 +89,7 @@ def summarize(
     values = {name: np.zeros([sizes[key] for key in item.dimensions], item.dtype) for name, item in VARIABLES.items()}
     for j, initial in enumerate(grid.initial):
         for k, a in enumerate(grid.a):
-            runs = [read_point(grid, law, initial, a, _READ) for law in grid.laws]
+            runs = [read_point(grid, (law, initial, a), _READ) for law in grid.laws]
             for i, run in enumerate(runs):
                 values["mean_distance"][i, j, k] = run["mean_distance"]
                 values["mean_distance_error"][i, j, k] = run["mean_distance_error"]

@@ -38,7 +38,7 @@ def summarize(grid: Grid) -> xarray.Dataset:
     velocity, direction, count, law, initial, a = [], [], [], [], [], []
     names = tuple(grid.initial)
     for _, point in grid:
-        read = read_point(grid, *point, ["crossing_velocity", "crossing_direction"])
+        read = read_point(grid, point, ["crossing_velocity", "crossing_direction"])
         velocity.append(read["crossing_velocity"])
         direction.append(read["crossing_direction"])
         count.append(len(read["crossing_velocity"]))

@@ -55,7 +55,9 @@ VARIABLES = {
 COORDINATES = {
     "magnitude": _V(("magnitude",), "f8", "magnitude, natural logarithm of the moment, at the middle of a bin"),
     "interval": _V(
-        ("interval",), "f8", "time tau since the last event that contains the epicentre, at the middle of a bin"
+        ("interval",),
+        "f8",
+        "time tau since the event began in which the epicentre slipped last, at the middle of a bin",
     ),
     "block": _V(("block",), "i4", "block number, 1 to N along the chain"),
 }

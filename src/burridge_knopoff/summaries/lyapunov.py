@@ -62,7 +62,7 @@ def summarize(
         shape = (*grid.shape, lyapunov_exponents) if "exponent" in item.dimensions else grid.shape
         values[name] = np.zeros(shape, dtype=item.dtype)
     for index, point in grid:
-        read = read_point(grid, *point, [*_COPIED, *SECTION])
+        read = read_point(grid, point, [*_COPIED, *SECTION])
         for name in _COPIED:
             values[name][index] = read[name]
         found = motion_of_run(read, symmetric, settings)

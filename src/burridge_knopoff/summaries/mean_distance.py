@@ -55,7 +55,7 @@ def summarize(grid: Grid, synchronization_threshold: float) -> xarray.Dataset:
     values = {name: np.zeros(grid.shape, dtype=item.dtype) for name, item in VARIABLES.items()}
     values["settling_time"] = np.full((*grid.shape, len(LEVELS)), np.nan)
     for index, point in grid:
-        read = read_point(grid, *point, [*_READ, "time", "distance"])
+        read = read_point(grid, point, [*_READ, "time", "distance"])
         for name in _READ:
             values[name][index] = read[name]
         if read["status"] == Status.COMPLETED:

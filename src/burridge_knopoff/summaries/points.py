@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,7 @@ from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.section import Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
-from burridge_knopoff.study.paths import POINT
+from burridge_knopoff.study.paths import point_file
 
 _EVENT = ("time", "block", "kind")
 
@@ -33,16 +34,16 @@ EVENTS = tuple(f"{part}event_{name}" for part in ("earlier_", "") for name in _E
 class Grid:
     """The points of a study: where they lie and what they hold.
 
-    folder : holds <law>/<initial>/a<name>.nc
+    folder : holds <law>/<initial>/a<name>.nc, with the names of other parameters too if there are any
     initial : {name: initial state}
-    a : {name in file names: value of a}
+    parameters : {parameter: {name in file names: value}}
     settings : {law: settings of its runs}
     models : what decides the models: the config's laws, chain, v and contact
     """
 
     folder: Path
     initial: Mapping[str, InitialState]
-    a: Mapping[str, float]
+    parameters: Mapping[str, Mapping[str, float]]
     settings: Mapping[str, Settings]
     models: Mapping[str, Any]
 
@@ -52,7 +53,7 @@ class Grid:
         return cls(
             Path(folder),
             {name: InitialState(name, **state) for name, state in points["initial"].items()},
-            points["a"],
+            points["parameters"],
             {law: Settings(**settings) for law, settings in points["settings"].items()},
             {key: points[key] for key in MODEL_KEYS},
         )
@@ -60,7 +61,12 @@ class Grid:
     def elsewhere(self, folder: Path, settings: Mapping[str, Mapping[str, Any]]) -> Grid:
         """Return the same points as they were run with other settings, {law: settings}, below another folder."""
         others = {law: Settings(**items) for law, items in settings.items()}
-        return Grid(folder, self.initial, self.a, others, self.models)
+        return Grid(folder, self.initial, self.parameters, others, self.models)
+
+    @property
+    def a(self) -> Mapping[str, float]:
+        """The values of a, by their names in file names."""
+        return self.parameters["a"]
 
     @property
     def laws(self) -> tuple[str, ...]:
@@ -75,48 +81,54 @@ class Grid:
     @property
     def is_mirror_symmetric(self) -> bool:
         """Whether the chain is its own mirror image: only then can its end blocks synchronize."""
-        return self.model(self.laws[0], next(iter(self.a.values()))).chain.is_mirror_symmetric
+        first = {name: next(iter(values.values())) for name, values in self.parameters.items()}
+        return self.model(self.laws[0], **first).chain.is_mirror_symmetric
 
     @property
     def section(self) -> Section:
         """The section of the runs."""
         return next(iter(self.settings.values())).section
 
-    def model(self, law: str, a: float) -> Model:
-        """Return the model of the points under one law at one a."""
-        return model_of(self.models, law, a, self.blocks)
+    def model(self, law: str, a: float, **others: float) -> Model:
+        """Return the model of the points under one law at one a, and at values of the other parameters."""
+        return model_of(self.models, law, a, self.blocks, **others)
 
     @property
-    def shape(self) -> tuple[int, int, int]:
-        """Numbers of laws, initial states and values of a."""
-        return len(self.laws), len(self.initial), len(self.a)
+    def shape(self) -> tuple[int, ...]:
+        """Numbers of laws, initial states and values of each parameter."""
+        return len(self.laws), len(self.initial), *map(len, self.parameters.values())
 
     def axes(self) -> dict[str, Any]:
-        """Return the coordinates of a summary over (law, initial, a)."""
-        return axes(law=self.laws, initial=list(self.initial), a=list(self.a.values()))
+        """Return the coordinates of a summary over (law, initial, a), or the study's parameters in place of a."""
+        values = {name: list(values.values()) for name, values in self.parameters.items()}
+        return axes(law=self.laws, initial=list(self.initial), **values)
 
-    def path(self, law: str, initial: str, a: str) -> Path:
-        """Return the path of a point file."""
-        return self.folder / POINT.format(law=law, initial=initial, a=a)
+    def path(self, law: str, initial: str, *names: str) -> Path:
+        """Return the path of a point file; names : of the values of the parameters."""
+        file = point_file(self.parameters)
+        return self.folder / file.format(law=law, initial=initial, **self._named(names))
 
-    def command(self, law: str, initial: str, a: str) -> str:
+    def command(self, law: str, initial: str, *names: str) -> str:
         """Return the `bk simulate` command that makes a point."""
-        return simulate_command(self.model(law, self.a[a]), self.initial[initial], self.settings[law])
+        values = {name: self.parameters[name][value] for name, value in self._named(names).items()}
+        return simulate_command(self.model(law, **values), self.initial[initial], self.settings[law])
 
-    def __iter__(self) -> Iterator[tuple[tuple[int, int, int], tuple[str, str, str]]]:
-        """Yield (index, (law, initial, a)) in the order law, initial, a."""
-        for i, law in enumerate(self.laws):
-            for j, initial in enumerate(self.initial):
-                for k, a in enumerate(self.a):
-                    yield (i, j, k), (law, initial, a)
+    def _named(self, names: tuple[str, ...]) -> dict[str, str]:
+        return dict(zip(self.parameters, names, strict=True))
+
+    def __iter__(self) -> Iterator[tuple[tuple[int, ...], tuple[str, ...]]]:
+        """Yield (index, (law, initial, names of the values)) in the order law, initial, parameters."""
+        points = product(self.laws, self.initial, *self.parameters.values())
+        return zip(np.ndindex(self.shape), points, strict=True)
 
 
-def read_point(grid: Grid, law: str, initial: str, a: str, names: Sequence[str]) -> dict[str, np.ndarray]:
+def read_point(grid: Grid, point: Sequence[str], names: Sequence[str]) -> dict[str, np.ndarray]:
     """Return the named variables of one point.
 
+    point : law, initial state and names of the values of the parameters
     Raises BadFile, one line, if the file is missing, damaged, or not the one that the study would make now.
     """
-    return read_run(grid.path(law, initial, a), grid.command(law, initial, a), names)
+    return read_run(grid.path(*point), grid.command(*point), names)
 
 
 def read_run(path: Path, command: str, names: Sequence[str]) -> dict[str, np.ndarray]:

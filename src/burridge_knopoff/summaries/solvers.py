@@ -59,7 +59,7 @@ def summarize(grid: Grid, others: Mapping[str, Grid], step: float) -> xarray.Dat
         reference: dict[str, np.ndarray] = {}
         known = {solver: runs for solver, runs in others.items() if law in runs.settings}
         for solver, runs in {grid.settings[law].solver: grid, **known}.items():
-            run = read_point(runs, law, initial, a, _READ)
+            run = read_point(runs, (law, initial, a), _READ)
             reference = reference or run
             index = (i, SOLVERS.index(solver), j, k)
             for name in _COPIED:

@@ -68,7 +68,7 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
     sizes = dict(zip(_POINT, grid.shape, strict=True), block=blocks)
     values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
     for index, point in grid:
-        read = read_point(grid, *point, _READ)
+        read = read_point(grid, point, _READ)
         if read["status"] != Status.COMPLETED:
             continue
         time, block, kind = all_events(read)

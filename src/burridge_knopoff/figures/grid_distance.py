@@ -1,0 +1,38 @@
+"""The mean distance ⟨J⟩ over the parameters of a study."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.over_parameters import draw_panels
+from burridge_knopoff.figures.style import begin_at_zero, styled
+
+TITLE = "⟨J⟩ over the parameters"
+CATEGORY = "Synchronization"
+INPUTS = ("grid",)
+CAPTION = """\
+The time average ⟨J⟩ of the phase-space distance between the end blocks over the parameters of the study, for each law
+and initial state. A curve over one parameter has bars of three standard errors. White: the run did not complete.
+"""
+
+
+@styled
+def draw(grid: xarray.Dataset) -> Figure:
+    """Draw ⟨J⟩ as a map over two parameters, in panels for each value of further ones, or as a curve over one."""
+    highest = np.nanmax(grid["mean_distance"].values, initial=0.0)
+    figure, panels, drawn = draw_panels(
+        grid, r"$\langle J\rangle$", _curve, lambda one: one["mean_distance"].values, vmin=0.0, vmax=highest or 1.0
+    )
+    if drawn is None:
+        begin_at_zero(panels[0])
+    else:
+        figure.colorbar(drawn, ax=panels, label=r"$\langle J\rangle$")
+    return figure
+
+
+def _curve(panel: Axes, values: np.ndarray, one: xarray.Dataset) -> None:
+    error = 3.0 * one["mean_distance_error"].values
+    panel.errorbar(values, one["mean_distance"].values, error, fmt="o-", color="black", markersize=1.8, linewidth=0.5)

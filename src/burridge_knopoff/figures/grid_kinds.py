@@ -1,0 +1,49 @@
+"""The kind of motion over the parameters of a study."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.colors import to_rgb
+from matplotlib.figure import Figure
+from matplotlib.patches import Patch
+
+from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.figures.over_parameters import draw_panels
+from burridge_knopoff.figures.style import cells, legend_below, styled
+from burridge_knopoff.motion.kind import MotionKind
+
+TITLE = "Kinds of motion over the parameters"
+CATEGORY = "Synchronization"
+INPUTS = ("grid",)
+CAPTION = """\
+The kind of motion of each run over the parameters of the study, for each law and initial state, from the Lyapunov
+exponents and the section points of the run. White: undetermined, or the run did not complete.
+"""
+
+
+@styled
+def draw(grid: xarray.Dataset) -> Figure:
+    """Draw the kinds as a map over two parameters, in panels for each value of further ones, or as a strip over one."""
+    figure, _, _ = draw_panels(grid, "", _strip, _colors)
+    legend_below(
+        figure,
+        [
+            Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words)
+            for kind in np.unique(grid["run_kind"].values).tolist()
+        ],
+    )
+    return figure
+
+
+def _colors(one: xarray.Dataset) -> np.ndarray:
+    """Return the colour of each kind, of the shape of the kinds and 3."""
+    kinds = one["run_kind"].values
+    colors = np.array([to_rgb(KIND_COLORS[kind]) for kind in kinds.ravel().tolist()])
+    return colors.reshape(*kinds.shape, 3)
+
+
+def _strip(panel: Axes, values: np.ndarray, one: xarray.Dataset) -> None:
+    panel.pcolormesh(cells(values), [0.0, 1.0], _colors(one)[None], rasterized=True)
+    panel.set_yticks([])

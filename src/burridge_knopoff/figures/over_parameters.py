@@ -1,0 +1,75 @@
+"""Panels of a study over several parameters: a map over two of them, or a curve over one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from itertools import product
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.collections import QuadMesh
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.style import ACROSS, cells, label_panels, new_figure, page_width, show_all
+
+#: Most values of each further parameter that have panels.
+MOST = 6
+
+
+def draw_panels(
+    grid: xarray.Dataset,
+    label: str,
+    curve: Callable[[Axes, np.ndarray, xarray.Dataset], object],
+    colors: Callable[[xarray.Dataset], np.ndarray],
+    **look: Any,
+) -> tuple[Figure, list[Axes], QuadMesh | None]:
+    """Draw a panel for each law, initial state and value of further parameters; return figure, panels and the last map.
+
+    The first two parameters with several values are the axes of a map; a single one is the axis of a curve. Of further
+    parameters at most MOST values are shown, which are evenly spaced in the list of all.
+
+    label : of the vertical axis of a curve
+    curve : draws one panel, from the values of the parameter and the Dataset over it
+    colors : values or colours of a map, of a Dataset over two parameters, shape (second, first, …)
+    look : arguments of `pcolormesh`
+    """
+    parameters = [f"{name}" for name in grid["mean_distance"].dims if name not in ("law", "initial")]
+    varied = [name for name in parameters if grid.sizes[name] > 1] or parameters[:1]
+    shown = list(_parts(grid, [name for name in parameters if name not in varied[:2]]))
+    across = min(len(shown), ACROSS)
+    down = -(-len(shown) // across)
+    figure, panels = new_figure(page_width(max(across, 2)), 0.6 + 2.5 * down, down, across, share_columns=False)
+    for panel in panels[len(shown) :]:
+        panel.remove()
+    panels, drawn = panels[: len(shown)], None
+    first = grid[varied[0]].values
+    for number, (panel, (_, one)) in enumerate(zip(panels, shown, strict=True)):
+        panel.set_xlabel(f"${_symbol(varied[0])}$")
+        if len(varied) > 1:
+            edges = [cells(grid[name].values) for name in varied[:2]]
+            drawn = panel.pcolormesh(*edges, colors(one.transpose(varied[1], varied[0], ...)), rasterized=True, **look)
+            panel.set_xlim(edges[0][0], edges[0][-1])
+        else:
+            show_all(panel, first)
+            curve(panel, first, one)
+        if number % across == 0:
+            panel.set_ylabel(f"${_symbol(varied[1])}$" if len(varied) > 1 else label)
+    label_panels(panels, [title for title, _ in shown])
+    return figure, panels, drawn
+
+
+def _parts(grid: xarray.Dataset, further: list[str]) -> Iterator[tuple[str, xarray.Dataset]]:
+    """Yield the title and the part of the Dataset of each panel."""
+    chosen = [np.unique(np.linspace(0, grid.sizes[name] - 1, MOST).round().astype(int)) for name in further]
+    for law, initial in product(grid["law"].values, grid["initial"].values):
+        for places in product(*chosen):
+            one = grid.sel(law=law, initial=initial).isel(dict(zip(further, places, strict=True)))
+            values = [f"${_symbol(name)} = {one[name].item():g}$" for name in further if grid.sizes[name] > 1]
+            yield ", ".join([f"{law} law, {initial}", *values]), one
+
+
+def _symbol(name: str) -> str:
+    """Return the name of a parameter for mathematical text: a word upright, a letter slanted."""
+    return name if len(name) == 1 else r"\mathrm{" + name.replace("_", r"\_") + "}"

@@ -1,0 +1,168 @@
+"""Curves of bifurcations in the plane of two parameters.
+
+Each step predicts the next point of the curve by the secant through the last two, and searches along the line
+perpendicular to it in the plane. Thus the curve may turn back in either parameter, and orbits may exist on one side of
+it only, as at a fold.
+
+Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 10.3.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from burridge_knopoff.model.model import ChainState
+from burridge_knopoff.model.parameters import at, value_of
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.bifurcation_plane import BifurcationPlane, CurvePoint
+from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
+from burridge_knopoff.periodic_orbits.border_collision import SHORTER
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
+from burridge_knopoff.periodic_orbits.following import FASTER, Following
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.pseudo_arclength import tangent_of
+from burridge_knopoff.values import instance_of, real_number, refusal
+
+#: Steps along a curve, in the units of `follow`.
+STEPS = Following(first_step=1e-3, largest_step=2e-2, least_step=1e-7)
+
+# Cosine of the largest angle between two steps of a curve, which sharper turns make shorter, down to this length.
+STRAIGHT = 0.98
+CORNER = 1e-5
+
+
+@dataclass(frozen=True, eq=False)
+class BifurcationCurve:
+    """A curve of bifurcations in the plane of two parameters.
+
+    kind : of all bifurcations on it; parameters : names of both parameters
+    values, errors : of both parameters, in order along the curve, shape (n, 2)
+    orbits : the orbit at each point
+
+    >>> from burridge_knopoff import Chain, Model, follow, follow_bifurcation, law_of, locate_bifurcations
+    >>> from burridge_knopoff import synchronized_orbit
+    >>> branch = follow(synchronized_orbit(Model(Chain(3), law_of("linearized", 0.0865))), (0.086, 0.0875))
+    >>> (pitchfork,) = locate_bifurcations(branch)
+    >>> curve = follow_bifurcation(pitchfork, ("a", "v"), (0.099, 0.101))
+    >>> curve.kind.name, curve.values.shape == curve.errors.shape == (len(curve.orbits), 2)
+    ('PITCHFORK', True)
+    """
+
+    kind: BifurcationKind
+    parameters: tuple[str, str]
+    values: np.ndarray
+    errors: np.ndarray
+    orbits: Sequence[PeriodicOrbit]
+
+    def __repr__(self) -> str:
+        return f"<BifurcationCurve: {self.kind.name.lower()}, {len(self.values)} points over {self.parameters}>"
+
+
+def follow_bifurcation(
+    bifurcation: Bifurcation,
+    parameters: tuple[str, str] = ("a", "v"),
+    interval: tuple[float, float] = (-math.inf, math.inf),
+    settings: Following = STEPS,
+) -> BifurcationCurve:
+    """Return the curve of a bifurcation in the plane of two parameters, followed both ways from it.
+
+    bifurcation : as `locate_bifurcations` yields it, found along any parameter
+    parameters : names of two parameters, as `Model.at` takes them
+    interval : (low, high) of the second parameter, at which the curve ends; by default it ends where it is lost
+    settings : lengths of steps in the plane, and the maximum number of points each way; `Following` gives their unit
+
+    The curve also ends where the bifurcation becomes another one, for example a grazing where the orbit grazes twice.
+    Its ends may lie one step beyond the interval. `errors` are half the widths of brackets perpendicular to the curve,
+    at a grazing the distance left.
+
+    Raises OrbitError if the bifurcation is not found again where it was, and ValueError, one line, for a wrong
+    argument.
+
+    Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 10.3;
+    docs/bifurcations.md says how it is applied where orbits graze.
+
+    >>> from burridge_knopoff import Chain, Model, follow, follow_bifurcation, law_of, locate_bifurcations
+    >>> from burridge_knopoff import synchronized_orbit
+    >>> branch = follow(synchronized_orbit(Model(Chain(3), law_of("linearized", 0.0865))), (0.086, 0.0875))
+    >>> (pitchfork,) = locate_bifurcations(branch)
+    >>> curve = follow_bifurcation(pitchfork, ("a", "threshold"), (0.8, 1.2))
+    >>> a, threshold = curve.values.T
+    >>> bool(abs(a * threshold - 0.086972904666).max() < 1e-12)
+    True
+    """
+    instance_of(bifurcation, Bifurcation, "bifurcation")
+    instance_of(settings, Following, "settings")
+    names = tuple(parameters) if isinstance(parameters, list | tuple) else ()
+    if len(names) != 2 or not all(isinstance(name, str) for name in names) or names[0] == names[1]:
+        raise refusal("parameters", parameters, "the names of two parameters")
+    try:
+        low, high = (real_number(value) for value in interval)
+    except (TypeError, ValueError):
+        low = high = math.nan
+    if not low <= high:
+        raise refusal("interval", interval, "(low, high) with low ≤ high")
+    plane = BifurcationPlane(bifurcation, names)
+    orbit = bifurcation.at.orbit
+    first = plane.point(
+        orbit, np.array([0.0, 1.0]), orbit.model, orbit.reference, orbit.return_time, settings.first_step
+    )
+    ways = [list(_way(plane, first, side, settings, (low, high))) for side in (-1.0, 1.0)]
+    points = [*ways[0][::-1], first, *ways[1]]
+    values = np.array([[value_of(point.orbit.model, name) for name in names] for point in points])
+    errors = np.array([point.errors for point in points])
+    return BifurcationCurve(bifurcation.kind, names, values, errors, [point.orbit for point in points])
+
+
+def _way(
+    plane: BifurcationPlane, first: CurvePoint, side: float, settings: Following, interval: tuple[float, float]
+) -> Iterator[CurvePoint]:
+    """Yield the points after the first one, in the direction in which the second parameter grows or falls."""
+    direction, length = np.array([0.0, side]), settings.first_step
+    before, here, count = None, first, 1
+    while count < settings.most_orbits and length >= settings.least_step:
+        if not interval[0] <= value_of(here.orbit.model, plane.names[1]) <= interval[1]:
+            return
+        try:
+            following = _step(plane, before, here, direction, length)
+        except OrbitError:
+            length *= SHORTER
+            continue
+        change = plane.place(following.orbit.model) - plane.place(here.orbit.model)
+        turned = change / np.linalg.norm(change)
+        # The first direction is a guess. A curve has a corner where the orbit grazes on the way.
+        if before is not None and length > CORNER and turned @ direction < STRAIGHT:
+            length *= SHORTER
+            continue
+        yield following
+        before, here, direction = here.orbit, following, turned
+        length, count = min(FASTER * length, settings.largest_step), count + 1
+
+
+def _step(
+    plane: BifurcationPlane, before: PeriodicOrbit | None, here: CurvePoint, direction: np.ndarray, length: float
+) -> CurvePoint:
+    """Return the next point of the curve after two others; raises OrbitError if there is none at this length."""
+    orbit, place = here.orbit, plane.place(here.orbit.model)
+    values = (place + length * direction) * plane.units
+    try:
+        model = at(orbit.model, dict(zip(plane.names, map(float, values), strict=True)))
+    except ValueError as error:
+        raise OrbitError(str(error)) from None
+    vector, time, blocks = orbit.reference.vector(), orbit.return_time, model.blocks
+    if before is not None:
+        share = length / float(np.linalg.norm(place - plane.place(before.model)))
+        last = flow(before.model, before.reference, here.offset)[0].state()
+        vector = vector + share * (vector - last.vector())
+        time += share * (time - before.return_time)
+    elif plane.kind != BifurcationKind.FOLD:
+        # There the orbit changes in proportion to the parameters; at a fold it does not.
+        tangent = tangent_of(orbit, plane.line(orbit.model, np.array([-direction[1], direction[0]])))
+        vector = vector + length / tangent[-1] * tangent[:-2]
+        time += length / float(tangent[-1]) * float(tangent[-2])
+    stuck = orbit.reference.stuck
+    guess = ChainState(vector[:blocks], np.where(stuck, 0.0, vector[blocks:]), stuck)
+    return plane.point(orbit, direction, model, guess, time, length)

@@ -1,0 +1,174 @@
+"""The place of a bifurcation on a line in the plane of two parameters.
+
+The orbit is on a branch there, with the coordinate along the line as another unknown, and the bifurcation is a root
+along this branch. A grazing is approached from the side of the orbits with the stops of the first one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.parameters import value_of
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.bifurcations import ROUNDING, SIDES, Bifurcation, kind_at
+from burridge_knopoff.periodic_orbits.border_collision import CAUTIOUS, REACHED, SHORTER
+from burridge_knopoff.periodic_orbits.floquet import critical_values
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
+from burridge_knopoff.periodic_orbits.following import FASTER
+from burridge_knopoff.periodic_orbits.grazing_distances import contacts
+from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, safe_offset
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, line_of, solve_ahead, tangent_of, weights
+
+# First step of the search for a root along a branch, the change at which it ends, and the most iterations.
+PROBE = 1e-6
+CONVERGED = 1e-12
+ITERATIONS = 40
+
+# A root is searched for within so many lengths of the step; the return time may change by this fraction.
+FARTHEST = 10.0
+CHANGE = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class CurvePoint:
+    """A point of the curve; `offset` is the time by which the reference was moved on along the orbit."""
+
+    orbit: PeriodicOrbit
+    errors: np.ndarray
+    offset: float
+
+
+class BifurcationPlane:
+    """The plane of two parameters, and the function that vanishes at one kind of bifurcation of an orbit.
+
+    Places in the plane are in the units of `line_of` at the bifurcation.
+    """
+
+    def __init__(self, bifurcation: Bifurcation, names: tuple[str, str]) -> None:
+        orbit = bifurcation.at.orbit
+        self.kind, self.names = bifurcation.kind, names
+        self.units = np.array([line_of(orbit, name).rates[0] for name in names])
+        self.symmetry, self.stops = orbit.symmetry, orbit.stop_counts
+        if self.kind == BifurcationKind.GRAZING:
+            self.contact = int(bifurcation.at.contacts.values().argmin())
+        else:
+            values = {key: abs(value) for key, value in critical_values(orbit).items() if key[0] == self.kind}
+            self.key = min(values, key=values.__getitem__)
+
+    def place(self, model: Model) -> np.ndarray:
+        """Return the place of a model in the plane."""
+        return np.array([value_of(model, name) for name in self.names]) / self.units
+
+    def line(self, model: Model, direction: np.ndarray) -> ParameterLine:
+        """Return the line through a model perpendicular to a direction of the plane."""
+        rates = np.array([direction[1], -direction[0]]) * self.units
+        order = (0, 1) if abs(direction[1]) >= abs(direction[0]) else (1, 0)
+        names = tuple(self.names[k] for k in order)
+        return ParameterLine(
+            names, tuple(value_of(model, name) for name in names), tuple(float(rates[k]) for k in order)
+        )
+
+    def point(
+        self, near: PeriodicOrbit, direction: np.ndarray, model: Model, guess: ChainState, time: float, length: float
+    ) -> CurvePoint:
+        """Return the point of the curve on the line through a model perpendicular to a direction.
+
+        near : an orbit near by; guess, time : of the orbit; length : of the step
+
+        Raises OrbitError if there is none within some steps.
+        """
+        line = self.line(model, direction)
+        tangent = tangent_of(near, self.line(near.model, direction))
+
+        def orbit_at(distance: float) -> PeriodicOrbit:
+            found = solve_ahead(model, guess, time, self.symmetry, line, tangent, distance, enough=0.0)
+            if abs(found.return_time - time) > CHANGE * time or not any(found.stop_counts):
+                raise OrbitError(f"{line.place(model)}: no orbit found near the guess")
+            return found
+
+        longest = FARTHEST * max(length, PROBE)
+        if self.kind == BifurcationKind.GRAZING:
+            found, errors = self._grazing(_first_with(self.stops, orbit_at, longest), line)
+        else:
+            found, errors = self._root(orbit_at(0.0), line, longest)
+            if kind_at(BranchOrbit(found, tangent, line=line), self.key) != self.kind:
+                raise OrbitError(f"{line.place(found.model)}: the bifurcation becomes another one")
+        offset = safe_offset(found)
+        if offset:
+            state = flow(found.model, found.reference, offset)[0].state()
+            found = orbit_of(found.model, state, found.return_time, self.symmetry)
+        return CurvePoint(found, np.maximum(errors * self.units, ROUNDING), offset)
+
+    def _root(self, orbit: PeriodicOrbit, line: ParameterLine, longest: float) -> tuple[PeriodicOrbit, np.ndarray]:
+        """Return the orbit at which the function of the multipliers vanishes, and half the widths of its bracket."""
+        tangent = tangent_of(orbit, line)
+
+        def orbit_at(distance: float) -> PeriodicOrbit:
+            if abs(distance) > longest:
+                raise OrbitError(f"{line.place(orbit.model)}: no bifurcation found near the guess")
+            start = orbit.model, orbit.reference, orbit.return_time
+            return solve_ahead(*start, self.symmetry, line, tangent, distance, enough=0.0)
+
+        def value(distance: float) -> float:
+            return critical_values(orbit_at(distance))[self.key]
+
+        before, here = 0.0, PROBE
+        values = value(before), value(here)
+        for _ in range(ITERATIONS):
+            if values[0] == values[1] or abs(here - before) < CONVERGED:
+                break
+            before, here = here, here - values[1] * (here - before) / (values[1] - values[0])
+            values = values[1], value(here)
+        for side in SIDES:
+            low, high = orbit_at(here - side), orbit_at(here + side)
+            if critical_values(low)[self.key] * critical_values(high)[self.key] < 0.0:
+                return orbit_at(here), 0.5 * np.abs(self.place(high.model) - self.place(low.model))
+        raise OrbitError(f"{self.kind.name.lower()}: no root found near the guess")
+
+    def _grazing(self, orbit: PeriodicOrbit, line: ParameterLine) -> tuple[PeriodicOrbit, np.ndarray]:
+        """Return an orbit next to the one that grazes, on the side of its own stops, and what is left in the plane."""
+        tangent, length = tangent_of(orbit, line), PROBE
+        distance = self._distance(orbit)
+        for _ in range(ITERATIONS):
+            try:
+                found = solve_ahead(
+                    orbit.model, orbit.reference, orbit.return_time, self.symmetry, line, tangent, length
+                )
+                if found.stop_counts != self.stops:
+                    raise OrbitError(f"stops: got {found.stop_counts}, expected {self.stops}")
+            except OrbitError:
+                length *= SHORTER
+                continue
+            left = self._distance(found)
+            if left == distance:
+                break
+            ahead = length * left / (distance - left)
+            if abs(ahead) < REACHED:
+                return found, np.abs(self.place(found.model) - self.place(orbit.model)) * abs(ahead / length)
+            following = tangent_of(found, line)
+            tangent = following if following @ (weights(found.model) * tangent) > 0.0 else -following
+            orbit, distance, length = found, left, CAUTIOUS * ahead
+        raise OrbitError(f"{line.place(orbit.model)}: no grazing found near the guess")
+
+    def _distance(self, orbit: PeriodicOrbit) -> float:
+        return float(contacts(orbit).values()[self.contact])
+
+
+def _first_with(stops: tuple[int, ...], orbit_at: Callable[[float], PeriodicOrbit], longest: float) -> PeriodicOrbit:
+    """Return the orbit with these stops at the least distance tried, on either side."""
+    distance = 0.0
+    while distance < longest:
+        for side in (1.0, -1.0):
+            try:
+                orbit = orbit_at(side * distance)
+            except OrbitError:
+                continue
+            if orbit.stop_counts == stops:
+                return orbit
+        distance = max(FASTER * distance, PROBE)
+    raise OrbitError(f"stops: got others, expected {stops}")

@@ -1,0 +1,26 @@
+"""How the driver loads a chain."""
+
+from __future__ import annotations
+
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.ranges import OneOf
+
+#: steady: the driver moves at the velocity v | quasistatic: it stands while any block slips
+LOADINGS = ("steady", "quasistatic")
+
+
+def is_quasistatic(loading: str, model: Model, solver: str) -> bool:
+    """Return whether loading is quasi-static.
+
+    Raises ValueError, one line, if it is neither of LOADINGS, or if model or solver do not allow it.
+    """
+    if OneOf(LOADINGS).form(loading, "loading") == "steady":
+        return False
+    if float(model.law(0.0)) >= 1.0:
+        raise ValueError(
+            f"loading: got 'quasistatic', expected steady: friction of the law {model.law.name} does not drop as slip "
+            "begins, and a block at its threshold would stay there"
+        )
+    if solver != "series":
+        raise ValueError(f"loading: got 'quasistatic', expected steady with the solver {solver}; series does both")
+    return True

@@ -1,0 +1,55 @@
+"""The range of a fit in catalogues made of known parts, and the recurrence of blocks by brute force."""
+
+import numpy as np
+
+from burridge_knopoff.catalogue.distribution import fit_range, recurrence
+from burridge_knopoff.catalogue.slope import fit_slope
+from tests.catalogue.test_slope import drawn
+
+
+def parts():
+    """Return magnitudes and blocks of events of one block, of a power law, and of large events beyond a gap."""
+    single = np.random.default_rng(1).normal(-6.2, 0.05, 5000)
+    several = drawn(0.7, -5.0, 1.0, 3000, 2)
+    large = np.random.default_rng(3).normal(4.2, 0.3, 200)
+    blocks = np.concatenate([np.ones(5000, dtype=int), np.full(3000, 4), np.full(200, 50)])
+    return np.concatenate([single, several, large]), blocks
+
+
+def test_the_range_lies_between_single_blocks_and_the_gap():
+    magnitude, blocks = parts()
+    low, high = fit_range(magnitude, np.exp(magnitude), blocks)
+    assert (low, high) == (-5.0, 1.0)
+    fit = fit_slope(magnitude, low, high)
+    assert abs(fit.b - 0.7) < 3.0 * fit.error
+    assert fit.p_value > 0.05
+
+
+def test_ends_that_are_given_are_kept():
+    magnitude, blocks = parts()
+    moment = np.exp(magnitude)
+    assert fit_range(magnitude, moment, blocks, low=-4.3) == (-4.3, 1.0)
+    assert fit_range(magnitude, moment, blocks, high=0.2) == (-5.0, 0.2)
+    assert fit_range(magnitude, moment, blocks, -4.3, 0.2) == (-4.3, 0.2)
+
+
+def test_there_is_no_range_without_events_of_several_blocks():
+    assert np.isnan(fit_range(np.zeros(0), np.zeros(0), np.zeros(0))).all()
+    assert np.isnan(fit_range(np.zeros(9), np.ones(9), np.ones(9))).all()
+
+
+def test_recurrence():
+    generator = np.random.default_rng(1)
+    time = np.sort(generator.uniform(0.0, 100.0, 60))
+    # In a ring, an event over the joint has its first block above its last.
+    first, last = generator.integers(1, 7, (2, 60))
+    count, mean, spread = recurrence(time, first, last, 8)
+    for block in range(1, 9):
+        inside = (first <= block) & (block <= last) | (first > last) & ((block >= first) | (block <= last))
+        gaps = np.diff(time[inside])
+        assert count[block - 1] == inside.sum()
+        np.testing.assert_allclose(mean[block - 1], gaps.mean())
+        np.testing.assert_allclose(spread[block - 1], gaps.std(), atol=1e-6)
+    count, mean, spread = recurrence(time[:1], np.array([2]), np.array([3]), 3)
+    assert count.tolist() == [0, 1, 1]
+    assert np.isnan([mean, spread]).all()

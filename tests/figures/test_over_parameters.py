@@ -1,0 +1,81 @@
+"""Figures over several parameters: curves over one, maps over two, panels for the values of a third."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from matplotlib.colors import to_rgb
+
+from burridge_knopoff.figures import grid_distance, grid_exponents, grid_kinds
+from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.figures.over_parameters import MOST
+from burridge_knopoff.figures.style import write_figure
+
+
+def summary(**parameters):
+    """Return a summary of numbers that are all different."""
+    axes = ("law", "initial", *parameters)
+    shape = (1, 2, *map(len, parameters.values()))
+    numbers = np.arange(np.prod(shape), dtype=float).reshape(shape)
+    values = {
+        "mean_distance": (axes, numbers),
+        "mean_distance_error": (axes, 0.1 * numbers),
+        "run_kind": (axes, (numbers % 4 - 1).astype("i1")),
+        "lyapunov_exponent": ((*axes, "exponent"), np.stack([numbers - 5.0, numbers - 9.0], axis=-1)),
+        "lyapunov_error": ((*axes, "exponent"), np.stack([numbers, numbers], axis=-1)),
+    }
+    return xr.Dataset(values, {"law": ["drop"], "initial": ["minus", "plus"], **parameters})
+
+
+A, SIGMA, V = [0.1, 0.2, 0.4], [0.0, 0.5], np.linspace(1.0, 2.0, 9)
+
+
+def maps(figure):
+    return [panel.collections[0] for panel in figure.axes if panel.get_title(loc="left")]
+
+
+def test_a_map_has_the_first_parameter_to_the_right_and_the_second_upward(tmp_path):
+    found = summary(a=A, sigma=SIGMA)
+    for figure, name in (
+        (grid_distance.draw(found), "mean_distance"),
+        (grid_exponents.draw(found), "lyapunov_exponent"),
+    ):
+        write_figure(figure, tmp_path / f"{name}.png")
+        numbers = found[name] if name == "mean_distance" else found[name].isel(exponent=0)
+        for drawn, initial in zip(maps(figure), ("minus", "plus"), strict=True):
+            expected = numbers.sel(law="drop", initial=initial).transpose("sigma", "a").values
+            assert np.array_equal(drawn.get_array(), expected)
+        assert [panel.get_xlabel() for panel in figure.axes[:2]] == ["$a$"] * 2
+        assert figure.axes[0].get_ylabel() == r"$\mathrm{sigma}$"
+
+
+def test_kinds_have_their_colours():
+    found = summary(a=A, sigma=SIGMA)
+    drawn = maps(grid_kinds.draw(found))[1].get_array()
+    for i, a in enumerate(A):
+        for j, sigma in enumerate(SIGMA):
+            kind = found["run_kind"].sel(law="drop", initial="plus", a=a, sigma=sigma).item()
+            assert tuple(drawn[j, i]) == pytest.approx(to_rgb(KIND_COLORS[kind]))
+
+
+def test_a_third_parameter_has_a_panel_for_each_of_a_few_values():
+    titles = [drawn.axes.get_title(loc="left") for drawn in maps(grid_distance.draw(summary(a=A, sigma=SIGMA, v=V)))]
+    assert len(titles) == 2 * MOST
+    assert titles[0].endswith("drop law, minus, $v = 1$")
+    assert titles[-1].endswith("drop law, plus, $v = 2$")
+
+
+def test_a_single_parameter_that_varies_has_a_curve(tmp_path):
+    found = summary(a=[0.1], v=V)
+    for module in (grid_distance, grid_kinds, grid_exponents):
+        write_figure(module.draw(found), tmp_path / "curve.png")
+    panel = grid_distance.draw(found).axes[1]
+    line = panel.get_lines()[0]
+    assert np.array_equal(line.get_xdata(), V)
+    assert np.array_equal(line.get_ydata(), found["mean_distance"].sel(initial="plus").values.ravel())
+    assert panel.get_xlabel() == "$v$"
+
+
+def test_exponents_that_were_not_computed_are_said_to_be_none(tmp_path):
+    figure = grid_exponents.draw(summary(a=A, sigma=SIGMA).isel(exponent=slice(0)))
+    write_figure(figure, tmp_path / "none.png")
+    assert [text.get_text() for text in figure.axes[0].texts] == ["no exponents were computed"]

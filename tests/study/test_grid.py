@@ -1,0 +1,128 @@
+"""Grids of several parameters: their points, file names and models, and one line for each that is wrong."""
+
+from itertools import chain, pairwise
+
+import pytest
+
+from burridge_knopoff.check.leftovers import leftovers
+from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.study.points import make_points
+from burridge_knopoff.study.recorded import recorded_study
+from burridge_knopoff.study.stretches import MOST, stretches
+from burridge_knopoff.study.study import Study, all_points, load_study
+from burridge_knopoff.study.yaml_file import ConfigError
+from tests.refused import refused
+
+PAIR = {"pair": {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}}
+GRID = {"v": [0.1, 0.05], "a": [0.2], "coupling": [{"from": 0.5, "to": 2, "step": 0.5}]}
+
+
+def load(**changes):
+    config = {"study": "plane", "initial": PAIR, "grid": GRID, **changes}
+    return load_study({key: value for key, value in config.items() if value is not None}, "plane.yaml")
+
+
+def test_points_are_named_in_the_order_of_the_config_and_hold_their_parameters():
+    study = load()
+    points = all_points(study)
+    names = [study.point_file.format(**point) for point in points]
+    assert names[:2] == [f"linearized/pair/v0.0500_a0.2000_coupling{value}.nc" for value in ("0.5000", "1.0000")]
+    assert len({*names}) == len(names) == 2 * 2 * 4
+    for point in points:
+        model, _, _ = study.run_of(**point)
+        found = {"law": model.law.name, "v": model.v, "a": model.a, "coupling": model.chain.coupling}
+        assert found == {name: point["law"] if name == "law" else float(point[name]) for name in found}
+    command = study.command(**points[0])
+    assert all(words in command for words in ("--a 0.2", "--v 0.05", "--coupling 0.5"))
+
+
+def test_a_grid_of_a_alone_is_a():
+    alone, usual = load(grid={"a": [0.1, 0.2]}), load(grid=None, a=[0.1, 0.2])
+    assert (alone.config, alone.parameters, alone.stages) == (usual.config, usual.parameters, usual.stages)
+    assert not alone.is_plane
+
+
+def test_a_number_of_a_law_is_a_parameter():
+    study = load(laws={"drop": {"law": "carlson_langer"}}, grid={"a": [2], "sigma": [0.01, 0.05]})
+    assert [study.run_of(**point)[0].law.numbers["sigma"] for point in all_points(study)] == [0.01, 0.05]
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"a": [0.1]}, ["a: got [0.1] beside grid, expected one of them"]),
+        ({"grid": None}, ["a: missing", "grid"]),
+        ({"grid": {"v": [0.1, 0.2]}}, ["grid.a: missing"]),
+        ({"grid": {"a": [0.1], "speed": [1]}}, ["speed", "a | v | coupling"]),
+        ({"grid": {"a": [0.1], "sigma": [0.1, 0.2]}}, ["linearized", "sigma"]),
+        ({"grid": {"a": [0.1], "v": [0.1, 0.100001]}}, ["grid.v: got 0.1 and 0.100001", "v0.1000.nc", "a_digits"]),
+        ({"grid": {"a": [0.1], "v": [0.1, 0.1]}}, ["grid.v: got 0.1 twice"]),
+        ({"grid": {"a": [0.1], "v": []}}, ["grid.v: got []", "at least 1"]),
+        ({"grid": {"a": [0.1], "v": [0.1, 0]}}, ["v: got 0.0, expected a number between"]),
+        ({"grid": {"a": [-1], "v": [0.1]}}, ["a: got -1"]),
+        ({"grid": {"a": [0.1], "initial": [0.1]}}, ["grid: got 'initial'"]),
+        ({"grid": {"a": [0.1], "coupling": [1, 2]}, "chain": {"coupling": [1.5]}}, ["coupling: got"]),
+        (
+            {"grid": {"a": [{"from": 0, "to": 1, "step": 0.001}], "v": [{"from": 1, "to": 2, "step": 0.01}]}},
+            ["grid: got 202202 points", "1001 values of a, 101 values of v", "at most 100000"],
+        ),
+        (
+            {"solver": "map", "laws": {"linearized": {}}, "grid": {"a": [0.1, 9], "coupling": [1]}},
+            ["solver.linearized"],
+        ),
+    ],
+)
+def test_a_wrong_grid_gets_one_line(changes, words):
+    with refused("plane.yaml: ", *words, error=ConfigError):
+        load(**changes)
+
+
+@pytest.mark.parametrize("values", [3, 40, 1500, 24_000])
+def test_stretches_are_all_points_in_order(values):
+    study = load(grid={"a": [0.2], "v": [{"from": 0.001, "to": values / 1000, "step": 0.001}]})
+    parts = stretches(study)
+    assert list(chain(*parts.values())) == all_points(study)
+    assert sorted(parts) == list(parts)
+    sizes = [len(part) for part in parts.values()]
+    assert max(sizes) <= MOST
+    assert all(size == sizes[0] >= last for size, last in pairwise(sizes))
+    assert not stretches(load(grid=None, a=[0.1, 0.2]))
+
+
+def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_path):
+    small = load(grid={"a": [0.2], "v": [0.1, 0.2]})
+    results = tmp_path / "results" / "plane"
+    results.mkdir(parents=True)
+    write_study_record(results, small.config, small.parameters, "plane.yaml", {}, "", {})
+    assert recorded_study(results)[1] == small
+    files = {
+        "points/linearized/pair/a0.2000_v0.1000.nc": False,
+        "points/linearized/pair/a0.2000_v0.3000.nc": True,
+        "points/linearized/pair/a0.2000.nc": True,
+        "points/linearized/pair/a0.2000_coupling-0.5000_v0.1000.nc": True,
+        "points/linearized/pair/notes.nc": False,
+        "logs/simulate/linearized/pair/a0.2000_v0.3000.log": True,
+        "stretches/0000.done": False,
+        "stretches/0001.done": True,
+        "logs/stretch/0001.log": True,
+        "summary/grid.nc": False,
+        "summary/mean_distance.nc": True,
+        "figures/grid_kinds.png": False,
+        "figures/mean_distance.png": True,
+    }
+    for name in files:
+        (results / name).parent.mkdir(parents=True, exist_ok=True)
+        (results / name).touch()
+    found = {path.relative_to(results).as_posix() for path in leftovers(results, small)}
+    assert found == {name for name, left in files.items() if left}
+
+
+def test_a_point_that_fails_is_named_with_its_command_and_the_others_are_made(tmp_path):
+    """At a = 9 there is no closed form, which a checked config would be refused for."""
+    run = {"transient": 10, "window": 10, "batches": 2, "solver": "map", "laws": {"linearized": {}}}
+    checked = load(grid={"a": [0.1], "v": [0.1, 0.2]}, **run)
+    study = Study(checked.config, {"a": {"9.0000": 9.0, "0.1000": 0.1}, "v": checked.parameters["v"]})
+    with refused("a9.0000_v0.1000.nc: ", "bk simulate", "--a 9.0", "1 more point", error=RuntimeError):
+        make_points(study, all_points(study), tmp_path)
+    assert {path.name for path in tmp_path.rglob("*") if path.is_file()} == {"a0.1000_v0.1000.nc", "a0.1000_v0.2000.nc"}
+    assert make_points(study, [point for point in all_points(study) if point["a"] == "0.1000"], tmp_path) == 0

@@ -1,0 +1,70 @@
+"""The summary over several parameters, against what the equations of motion say of v and a."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import MotionKind, simulate
+from burridge_knopoff.laws import law_of
+from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.summaries.grid import summarize
+from burridge_knopoff.summaries.points import Grid
+from tests.grids import PAPER_MODELS
+from tests.summaries.points import write_points
+
+RUN = {"transient": 2000.0, "window": 2000.0, "batches": 4}
+PAIR = InitialState("pair", (-0.9, -1.1), (0.1, 0.1))
+TOLD = {"lyapunov_exponents": 3, "synchronization_threshold": 1e-6, "motion": {}}
+
+
+def summary(folder, law, state=PAIR, **parameters):
+    named = {name: {f"{value:.4f}": value for value in values} for name, values in parameters.items()}
+    models = {**PAPER_MODELS, "laws": {law: {}}, "chain": {**PAPER_MODELS["chain"], "blocks": state.blocks}}
+    grid = Grid(folder, {state.name: state}, named, {law: Settings(**RUN)}, models)
+    return summarize(write_points(grid), **TOLD).squeeze(("law", "initial"))
+
+
+def per_velocity(found):
+    """Return <J> in units of v."""
+    return (found["mean_distance"] / found["v"]).values
+
+
+def test_each_point_is_the_run_of_its_parameters(tmp_path):
+    found = summary(tmp_path, "nonlinear", coupling=[0.5, 2.0], a=[0.1, 0.4])
+    assert found["lyapunov_exponent"].dims == ("coupling", "a", "exponent")
+    for coupling in (0.5, 2.0):
+        for a in (0.1, 0.4):
+            own = simulate("nonlinear", a, PAIR, chain=Chain(2, coupling=coupling), **RUN)
+            here = found.sel(a=a, coupling=coupling)
+            assert here["mean_distance"].item() == own.mean_distance
+            assert np.array_equal(here["lyapunov_exponent"], own.lyapunov_exponent)
+
+
+def test_v_is_a_scale_of_the_linearized_law(tmp_path):
+    """Positions from uniform sliding, and velocities, in units of v: nothing else is in the equations of motion."""
+    found = {}
+    for v in (0.05, 0.1, 0.2):
+        offset = Model(Chain(2), law_of("linearized", 0.1), v).chain.sliding_offset(1.0)
+        state = InitialState("pair", tuple(offset + v * np.array([1.0, -1.5])), (1.2 * v, 0.7 * v))
+        found[v] = summary(tmp_path / f"{v}", "linearized", state, a=[0.05, 0.3], v=[v]).squeeze("v")
+    for v in (0.05, 0.2):
+        # From a single step on rounding differs, which chaos would amplify.
+        regular = found[0.1]["run_kind"].values != MotionKind.CHAOTIC
+        assert regular.any()
+        assert per_velocity(found[v])[regular] == pytest.approx(per_velocity(found[0.1])[regular], rel=1e-9)
+        assert (found[v]["run_kind"] == found[0.1]["run_kind"]).all()
+
+
+def test_the_nonlinear_law_has_two_products_of_its_parameters(tmp_path):
+    """In units of v the friction f/(1 + au) leaves fa and av in the equations of motion, f the threshold."""
+    usual = summary(tmp_path / "usual", "nonlinear", a=[0.1, 0.4], v=[0.1, 0.2], threshold=[1.0])
+    half = InitialState("pair", (-0.45, -0.55), (0.05, 0.05))
+    other = summary(tmp_path / "other", "nonlinear", half, a=[0.2, 0.8], v=[0.05, 0.1], threshold=[0.5])
+    assert (other["run_kind"].values == usual["run_kind"].values).all()
+    regular = usual["run_kind"].values != MotionKind.CHAOTIC
+    assert regular.any()
+    assert per_velocity(other)[regular] == pytest.approx(per_velocity(usual)[regular], rel=1e-9)
+    # Unlike under the linearized law, v is more than a scale.
+    assert per_velocity(usual)[0, 0] != pytest.approx(per_velocity(usual)[0, 1], rel=1e-3)
