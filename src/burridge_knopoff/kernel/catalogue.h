@@ -54,68 +54,72 @@ class Catalogue {
     // from : events that begin earlier are left out; profiles : whether the slip of every block is kept; most : number
     // of events and of slips in profiles at which the table is full
     Catalogue(int blocks, double from, bool profiles, double most)
-        : from(from), profiles(profiles), most(size_t(most)), event_of(blocks, -1), last_event(blocks, -1),
-          begun(blocks), position(blocks), last_start(blocks, NAN), slip(blocks) {}
+        : from(from), profiles(profiles), most(size_t(most)), of_block(blocks), slip(blocks) {}
 
     // Begin again without events; all blocks that slip now have slipped since before.
     void restart() {
         table = {};
         full = false;
-        clear();
-        std::fill(last_start.begin(), last_start.end(), NAN);
+        events.clear();
+        spare.clear();
+        std::fill(of_block.begin(), of_block.end(), Block{});
     }
+
+    // What is known of a block.
+    struct Block {
+        // The event in which it slips, and the one in which it slipped last, unless that has ended; −1 for none.
+        int event = -1, last_event = -1;
+        // Time and position at its start, and time at the start of the last event that has ended.
+        Clock begun;
+        double position = 0.0, last_start = NAN;
+    };
 
     // Events that have not ended, for a run that goes on.
     struct Open {
         std::vector<Event> events;
-        std::vector<int> event_of, last_event;
-        std::vector<Clock> begun;
-        std::vector<double> position, last_start;
+        std::vector<Block> of_block;
     };
 
     Open open() const {
-        const std::vector<int> none(event_of.size(), -1);
-        Open made{{}, none, none, begun, position, last_start};
+        Open made{{}, of_block};
         std::vector<int> known;
-        for (size_t i = 0; i < event_of.size(); i++) {
-            if (event_of[i] < 0) continue;
-            const int event = find(event_of[i]), k = int(std::find(known.begin(), known.end(), event) - known.begin());
+        for (Block &block : made.of_block) {
+            if (block.event < 0) continue;
+            const int event = find(block.event), k = int(std::find(known.begin(), known.end(), event) - known.begin());
             if (k == int(known.size())) {
                 known.push_back(event);
                 made.events.push_back(events[event]);
                 made.events.back().absorbed.clear();
             }
-            made.event_of[i] = k;
+            block.event = k;
         }
-        for (size_t i = 0; i < event_of.size(); i++) {
-            if (last_event[i] < 0) continue;
-            made.last_event[i] = int(std::find(known.begin(), known.end(), find(last_event[i])) - known.begin());
+        for (Block &block : made.of_block) {
+            if (block.last_event < 0) continue;
+            block.last_event = int(std::find(known.begin(), known.end(), find(block.last_event)) - known.begin());
         }
         return made;
     }
 
     void resume(const Open &open) {
-        clear();
+        spare.clear();
         events = open.events;
-        event_of = open.event_of;
-        last_event = open.last_event;
-        begun = open.begun;
-        position = open.position;
-        last_start = open.last_start;
+        of_block = open.of_block;
     }
 
     // The event of a slipping block; nullptr if it sticks, or slips since before the catalogue began.
     Event *of(int i) {
-        if (event_of[i] < 0) return nullptr;
-        event_of[i] = find(event_of[i]);
-        return &events[event_of[i]];
+        int &event = of_block[i].event;
+        if (event < 0) return nullptr;
+        event = find(event);
+        return &events[event];
     }
 
     // Block i starts at position x.
     void start(const Springs &springs, int i, const Clock &at, const Clock &load, double x) {
+        Block &block = of_block[i];
         int number = -1;
         for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) {
-            const int beside = event_of[springs.neighbour[p]];
+            const int beside = of_block[springs.neighbour[p]].event;
             if (beside >= 0) number = number < 0 ? find(beside) : joined(number, find(beside));
         }
         if (number < 0) {
@@ -130,23 +134,25 @@ class Catalogue {
             event.load = load;
             event.epicentre = i;
             // The last event of this block may go on elsewhere.
-            event.interval = load.time - (last_event[i] < 0 ? last_start[i] : events[find(last_event[i])].load.time);
+            event.interval =
+                load.time - (block.last_event < 0 ? block.last_start : events[find(block.last_event)].load.time);
             event.peak_velocity = event.energy = event.bound = 0.0;
         }
         events[number].slipping++;
-        event_of[i] = number;
-        begun[i] = at;
-        position[i] = x;
+        block.event = number;
+        block.begun = at;
+        block.position = x;
     }
 
     // Block i stops at position x.
     void stop(const Springs &springs, double v, int i, const Clock &at, double x) {
-        if (event_of[i] < 0) return;
-        const int number = find(event_of[i]);
+        Block &block = of_block[i];
+        if (block.event < 0) return;
+        const int number = find(block.event);
         Event &event = events[number];
-        event_of[i] = -1;
-        last_event[i] = number;
-        event.slips.emplace_back(i, (x - position[i]) + v * begun[i].until(at));
+        block.event = -1;
+        block.last_event = number;
+        event.slips.emplace_back(i, (x - block.position) + v * block.begun.until(at));
         if (--event.slipping > 0) return;
         finish(springs, number, at);
         for (int k : event.absorbed) release(k);
@@ -164,20 +170,10 @@ class Catalogue {
 
   private:
     std::vector<Event> events;
-    // Of each block the event in which it slips, and the one in which it slipped last, unless that has ended; −1 for
-    // none.
-    std::vector<int> event_of, last_event;
+    std::vector<Block> of_block;
     std::vector<int> spare, blocks;  // numbers to be used again; blocks of the event that ends
-    std::vector<Clock> begun;
-    std::vector<double> position, last_start, slip;
+    std::vector<double> slip;        // of its blocks, 0 for others
     Polynomial polynomial;
-
-    void clear() {
-        events.clear();
-        spare.clear();
-        std::fill(event_of.begin(), event_of.end(), -1);
-        std::fill(last_event.begin(), last_event.end(), -1);
-    }
 
     int find(int number) const {
         while (events[number].merged >= 0) number = events[number].merged;
@@ -246,9 +242,10 @@ class Catalogue {
         double moment = 0.0, largest = 0.0, drop = 0.0;
         for (int i : blocks) {
             // Else it has slipped in a later event.
-            if (last_event[i] >= 0 && find(last_event[i]) == number) {
-                last_event[i] = -1;
-                last_start[i] = event.load.time;
+            Block &block = of_block[i];
+            if (block.last_event >= 0 && find(block.last_event) == number) {
+                block.last_event = -1;
+                block.last_start = event.load.time;
             }
             moment += slip[i];
             largest = std::max(largest, slip[i]);
