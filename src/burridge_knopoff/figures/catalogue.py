@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.slip_events import draw_extent, draw_interval, draw_rate, slope_words
-from burridge_knopoff.figures.style import color, label_panels, new_figure, page_width, styled
+from burridge_knopoff.figures.style import color, evenly_spaced, label_panels, new_figure, page_width, styled
 
 TITLE = "Slip events"
 CATEGORY = "Slip events"
@@ -27,8 +26,7 @@ MOST = 6
 @styled
 def draw(catalogue: xarray.Dataset) -> Figure:
     """Draw rates, extents and intervals, a column for each law, a colour for each a."""
-    laws, count = catalogue["law"].values, catalogue.sizes["a"]
-    chosen = np.unique(np.linspace(0, count - 1, min(MOST, count)).round().astype(int))
+    laws, chosen = catalogue["law"].values, evenly_spaced(catalogue.sizes["a"], MOST)
     figure, panels = new_figure(page_width(len(laws)), 7.5, rows=3, columns=len(laws), share_columns=False)
     for column, law in enumerate(laws):
         rate, extent, interval = panels[column :: len(laws)]

@@ -12,7 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import ACROSS, cells, label_panels, new_figure, page_width, show_all
+from burridge_knopoff.figures.style import ACROSS, cells, evenly_spaced, label_panels, new_figure, page_width, show_all
 
 #: Most values of each further parameter that have panels.
 MOST = 6
@@ -62,7 +62,7 @@ def draw_panels(
 
 def _parts(grid: xarray.Dataset, further: list[str]) -> Iterator[tuple[str, xarray.Dataset]]:
     """Yield the title and the part of the Dataset of each panel."""
-    chosen = [np.unique(np.linspace(0, grid.sizes[name] - 1, MOST).round().astype(int)) for name in further]
+    chosen = [evenly_spaced(grid.sizes[name], MOST) for name in further]
     for law, initial in product(grid["law"].values, grid["initial"].values):
         for places in product(*chosen):
             one = grid.sel(law=law, initial=initial).isel(dict(zip(further, places, strict=True)))

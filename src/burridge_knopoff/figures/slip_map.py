@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.slip_events import add_magnitudes, draw_map, draw_recurrence, magnitude_norm
-from burridge_knopoff.figures.style import ACROSS, label_panels, page_width, styled
+from burridge_knopoff.figures.style import ACROSS, evenly_spaced, label_panels, page_width, styled
 
 TITLE = "Slips in space and time"
 CATEGORY = "Slip events"
@@ -23,8 +22,7 @@ Below, the mean time between events that contain a block, with its standard devi
 @styled
 def draw(catalogue: xarray.Dataset, shown_law: str) -> Figure:
     """Draw the maps of slips of the last events, and the recurrence of each block, a column for each a."""
-    count = catalogue.sizes["a"]
-    chosen = np.unique(np.linspace(0, count - 1, min(ACROSS, count)).round().astype(int))
+    chosen = evenly_spaced(catalogue.sizes["a"], ACROSS)
     runs = catalogue.sel(law=shown_law).isel(a=chosen)
     figure = Figure(figsize=(page_width(len(chosen)), 5.8), layout="constrained")
     panels = list(figure.subplots(2, len(chosen), sharex="col", squeeze=False, height_ratios=(3, 1)).flat)

@@ -194,6 +194,11 @@ def _wrapped(title: str, letters: int) -> str:
     return "\n".join(lines)
 
 
+def evenly_spaced(count: int, most: int) -> np.ndarray:
+    """Return the places of at most so many of `count` items, evenly spaced, with the first and the last."""
+    return np.unique(np.linspace(0, count - 1, min(most, count)).round().astype(int))
+
+
 def cells(values: np.ndarray) -> np.ndarray:
     """Return the edges of the cells of ascending values, shape (n + 1,): a cell is what lies nearest to its value.
 

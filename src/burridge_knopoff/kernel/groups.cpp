@@ -51,12 +51,13 @@ int Run::run_groups() {
                                             : begins[next.number];
         if (loading == 0.0 && at.until(end) < 0.0) {
             remember();
-            for (auto &group : groups)
-                if (catalogue && group->alive && group->planned)
-                    group->record(*catalogue, polynomial, group->observed, group->start.until(end), false);
             observe_all({end, 0.0});
-            for (auto &group : groups)
-                if (group->alive && group->planned) group->observed = group->start.until(end);
+            for (auto &group : groups) {
+                if (!group->alive || !group->planned) continue;
+                const double to = group->start.until(end);
+                if (catalogue) group->record(*catalogue, polynomial, group->observed, to, false);
+                group->observed = to;
+            }
             marked.side = observer.side;
             return COMPLETED;
         }

@@ -373,7 +373,7 @@ NB_MODULE(_core, m) {
         .def_rw("end", &Run::end)
         .def_ro("steps", &Run::steps)
         .def_ro("local", &Run::local)
-        .def_prop_ro("clock", [](const Run &run) { return (run.loading > 0.0 ? run.load : run.now).time; })
+        .def_prop_ro("clock", [](const Run &run) { return run.loading_clock(run.now).time; })
         .def_prop_ro("slip_clock", [](const Run &run) { return run.now.time; });
 
     nb::class_<StepMark>(m, "StepMark", "What repeats the last step of a run that ended.");

@@ -139,8 +139,7 @@ void Run::change(Group &group, int lane, const Clock &at) {
     if (exponents.tangent.vectors > 0) exponents.tangent.change(group.state, i);
     const int kind = group.state.slip.lane(lane) == 0.0;
     group.state.transition(lane / LANES, from_bits(1 << lane % LANES));
-    if (catalogue && kind)
-        catalogue->start(model.springs, i, at, loading > 0.0 ? load : at, group.state.position.lane(lane));
+    if (catalogue && kind) catalogue->start(model.springs, i, at, loading_clock(at), group.state.position.lane(lane));
     if (catalogue && !kind) catalogue->stop(model.springs, model.v, i, at, group.state.position.lane(lane));
     log.add(i, kind, at.time, [&](double *row) {
         double direction;
@@ -255,7 +254,7 @@ int Run::run_whole() {
         if (completed) remember();
         if (observing) observe(group, length);
         if (exponents.tangent.vectors > 0) {
-            exponents.begin_within(group.state, loading > 0.0 ? load.time : group.start.time, length);
+            exponents.begin_within(group.state, loading_clock(group.start).time, length);
             if (exponents.running) follow(group, length);
         }
         now = group.start.after(length);
@@ -280,7 +279,7 @@ int Run::run_whole() {
         }
         // At events, so that all solvers look after them at the same times.
         if (exponents.running && (due || since_event >= LONGEST_FOLLOW))
-            exponents.follow(group.state, loading > 0.0 ? load.time : now.time, completed);
+            exponents.follow(group.state, loading_clock(now).time, completed);
         if (completed) return COMPLETED;
         if (halting && group.state.slip.lane(halting_block) == 0.0) return HALTED;
     }
@@ -288,7 +287,7 @@ int Run::run_whole() {
 
 // Let the driver, which stands while blocks slip, go on until a block starts; false if the run ends before.
 bool Run::load_next(Group &group) {
-    const Layout &layout = group.layout;
+    const Blocks &layout = group.layout;
     Vectors left(layout.columns);
     double least = NEVER;
     for (int c = 0; c < layout.columns; c++) {

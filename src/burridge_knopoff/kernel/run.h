@@ -146,6 +146,9 @@ class Run {
         return local ? run_groups() : run_whole();
     }
 
+    // The loading clock, at a time of the slip clock: under steady loading both are one.
+    const Clock &loading_clock(const Clock &at) const { return loading > 0.0 ? load : at; }
+
     // Positions, velocities and slip directions now, or at the end of a run that has completed.
     void state(double *position, double *speed, double *direction) {
         for (int i = 0; i < blocks; i++) state_of(i, position[i], speed[i], direction[i]);

@@ -79,15 +79,14 @@ struct Springs {
 // What the two ways to lay blocks into vectors have in common: constants of the blocks, one vector for each column.
 struct Layout {
     int columns = 0;
-    Vectors diagonal, driving, threshold, sliding_force, inverse_mass;
+    Vectors diagonal, threshold, sliding_force, inverse_mass;
     // What stuck neighbours that do not take part add to ds_i/dτ, see Blocks::outside.
     Vectors drift;
     std::vector<mask> present;
 
     void widen(int count) {
         columns = count;
-        for (Vectors *row : {&diagonal, &driving, &threshold, &sliding_force, &inverse_mass, &drift})
-            row->reserve(count);
+        for (Vectors *row : {&diagonal, &threshold, &sliding_force, &inverse_mass, &drift}) row->reserve(count);
         if (int(present.size()) < count) present.resize(count);
     }
 };
@@ -99,7 +98,7 @@ struct Blocks : Layout {
     static constexpr int ORDER = 22;
     std::vector<int> member;  // the blocks that take part, in the order of the lanes
     bool row = true, closed = false;
-    Vectors left, right;
+    Vectors driving, left, right;
     // In a network: springs and lanes of the neighbours, `degree` rows of columns · LANES.
     int degree = 0;
     std::vector<int> lane_of_neighbour;
@@ -111,6 +110,7 @@ struct Blocks : Layout {
     void lay(const Springs &springs, Place &&place) {
         const int n = int(member.size());
         widen((n + LANES - 1) / LANES);
+        driving.reserve(columns);
         row = springs.row;
         closed = springs.ring && n == springs.blocks;
         for (int c = 0; c < columns; c++) {

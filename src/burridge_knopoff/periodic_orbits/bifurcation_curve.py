@@ -16,16 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState
-from burridge_knopoff.model.parameters import at, value_of
+from burridge_knopoff.model.parameters import value_of
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcation_plane import BifurcationPlane, CurvePoint
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
 from burridge_knopoff.periodic_orbits.border_collision import SHORTER
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
-from burridge_knopoff.periodic_orbits.following import FASTER, Following
+from burridge_knopoff.periodic_orbits.following import FASTER, Following, ends_of
+from burridge_knopoff.periodic_orbits.parameter_line import model_at
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import tangent_of
-from burridge_knopoff.values import instance_of, real_number, refusal
+from burridge_knopoff.values import instance_of, refusal
 
 #: Steps along a curve, in the units of `follow`.
 STEPS = Following(first_step=1e-3, largest_step=2e-2, least_step=1e-7)
@@ -99,18 +100,13 @@ def follow_bifurcation(
     names = tuple(parameters) if isinstance(parameters, list | tuple) else ()
     if len(names) != 2 or not all(isinstance(name, str) for name in names) or names[0] == names[1]:
         raise refusal("parameters", parameters, "the names of two parameters")
-    try:
-        low, high = (real_number(value) for value in interval)
-    except (TypeError, ValueError):
-        low = high = math.nan
-    if not low <= high:
-        raise refusal("interval", interval, "(low, high) with low ≤ high")
+    ends = ends_of(interval)
     plane = BifurcationPlane(bifurcation, names)
     orbit = bifurcation.at.orbit
     first = plane.point(
         orbit, np.array([0.0, 1.0]), orbit.model, orbit.reference, orbit.return_time, settings.first_step
     )
-    ways = [list(_way(plane, first, side, settings, (low, high))) for side in (-1.0, 1.0)]
+    ways = [list(_way(plane, first, side, settings, ends)) for side in (-1.0, 1.0)]
     points = [*ways[0][::-1], first, *ways[1]]
     values = np.array([[value_of(point.orbit.model, name) for name in names] for point in points])
     errors = np.array([point.errors for point in points])
@@ -147,11 +143,7 @@ def _step(
 ) -> CurvePoint:
     """Return the next point of the curve after two others; raises OrbitError if there is none at this length."""
     orbit, place = here.orbit, plane.place(here.orbit.model)
-    values = (place + length * direction) * plane.units
-    try:
-        model = at(orbit.model, dict(zip(plane.names, map(float, values), strict=True)))
-    except ValueError as error:
-        raise OrbitError(str(error)) from None
+    model = model_at(orbit.model, plane.names, (place + length * direction) * plane.units)
     vector, time, blocks = orbit.reference.vector(), orbit.return_time, model.blocks
     if before is not None:
         share = length / float(np.linalg.norm(place - plane.place(before.model)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import Any
 
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.border_collision import come_to_corner, smooth_step, turn_corner
@@ -84,12 +85,7 @@ def follow(
     >>> round(branch[-1].value, 3) <= 0.9, branch[-1].orbit.a
     (True, 0.0865)
     """
-    try:
-        low, high = (real_number(value) for value in interval)
-    except (TypeError, ValueError):
-        low = high = math.nan
-    if not low <= high:
-        raise refusal("interval", interval, "(low, high) with low ≤ high")
+    low, high = ends_of(interval)
     instance_of(orbit, PeriodicOrbit, "orbit")
     instance_of(settings, Following, "settings")
     line = line_of(orbit, parameter)
@@ -123,6 +119,17 @@ def follow(
         elif length < settings.least_step:
             break
     return points
+
+
+def ends_of(interval: Any) -> tuple[float, float]:
+    """Return the ends of an interval; raises ValueError, one line, if it has none."""
+    try:
+        low, high = (real_number(value) for value in interval)
+    except (TypeError, ValueError):
+        low = high = math.nan
+    if not low <= high:
+        raise refusal("interval", interval, "(low, high) with low ≤ high")
+    return low, high
 
 
 def _passed(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:

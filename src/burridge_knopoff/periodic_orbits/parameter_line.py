@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import at, value_of
 from burridge_knopoff.periodic_orbits.flow import OrbitError
+
+
+def model_at(model: Model, names: Sequence[str], values: Iterable[float]) -> Model:
+    """Return a model at other values of some parameters; raises OrbitError if there is none."""
+    try:
+        return at(model, dict(zip(names, map(float, values), strict=True)))
+    except ValueError as error:
+        raise OrbitError(str(error)) from None
 
 
 @dataclass(frozen=True)
@@ -38,10 +47,7 @@ class ParameterLine:
     def model(self, model: Model, coordinate: float) -> Model:
         """Return a model at another coordinate; raises OrbitError if there is none."""
         values = [origin + rate * float(coordinate) for origin, rate in zip(self.origins, self.rates, strict=True)]
-        try:
-            return at(model, dict(zip(self.names, values, strict=True)))
-        except ValueError as error:
-            raise OrbitError(str(error)) from None
+        return model_at(model, self.names, values)
 
     def place(self, model: Model) -> str:
         """Return the values of the parameters of a model for a message."""
