@@ -21,8 +21,9 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import sampled_states
 from burridge_knopoff.motion.settings import MotionSettings
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.params import catalogue_run
-from burridge_knopoff.study.study import Study, load_study
+from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries import (
     agreement,
     all_laws,

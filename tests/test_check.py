@@ -21,9 +21,9 @@ from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.provenance.seal import BadFile, canonical, identity, write_sealed_text
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.study.recorded import recorded_study
-from burridge_knopoff.study.study import load_study
 from burridge_knopoff.study.yaml_file import read_yaml
 from burridge_knopoff.summaries import mean_distance, points
 from burridge_knopoff.summaries.points import Grid

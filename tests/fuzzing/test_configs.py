@@ -19,7 +19,7 @@ from burridge_knopoff.cli import build_parser
 from burridge_knopoff.cli.options import simulated_law
 from burridge_knopoff.model.fields import Keys
 from burridge_knopoff.study.config import CONFIG
-from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from tests.fuzzing import check_refusal, examples
 

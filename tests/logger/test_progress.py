@@ -16,7 +16,7 @@ from snakemake_interface_logger_plugins.common import LogEvent
 
 import snakemake_logger_plugin_study as plugin
 from burridge_knopoff.study.job_log import SILENT
-from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.load import load_study
 from snakemake_logger_plugin_study.display import Lines, about, beginning, cost, elapsed, progress
 from snakemake_logger_plugin_study.plan import Plan
 from snakemake_logger_plugin_study.refusal import checked_cores, reworded

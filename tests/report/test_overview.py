@@ -4,8 +4,8 @@ import pytest
 
 from burridge_knopoff.motion.chain_synchronization import Sample, Watch
 from burridge_knopoff.report.overview import foreign_settings
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.model import model_of
-from burridge_knopoff.study.study import load_study
 from burridge_knopoff.summaries.chains import chain_dataset, merge
 
 CONFIG = {

@@ -10,7 +10,7 @@ import pytest
 
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources, render
-from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.load import load_study
 from tests.report.conftest import CLAIMS
 from tests.report.test_page import Page
 from tests.small_study import SMALL, STUDIES

@@ -12,7 +12,7 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_config
 from tests.flows import carry, check_events, listed, wave
 from tests.refused import refused

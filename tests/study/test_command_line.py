@@ -5,7 +5,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from burridge_knopoff.study.command_line import config_entries, of_command_line
-from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_config
 from tests.fuzzing import examples
 from tests.refused import refused

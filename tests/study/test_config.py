@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.provenance.difference import difference
-from burridge_knopoff.study.study import all_points, load_study
+from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.study import all_points
 from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
 from tests.bad_configs import BAD_FILES
 from tests.fuzzing.test_configs import RANGE_OF

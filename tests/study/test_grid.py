@@ -6,10 +6,11 @@ import pytest
 
 from burridge_knopoff.check.leftovers import leftovers
 from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.points import make_points
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.stretches import MOST, stretches
-from burridge_knopoff.study.study import Study, all_points, load_study
+from burridge_knopoff.study.study import Study, all_points
 from burridge_knopoff.study.yaml_file import ConfigError
 from tests.refused import refused
 

@@ -8,7 +8,7 @@ import pytest
 from burridge_knopoff.cli import build_parser
 from burridge_knopoff.cli.options import join_signed, model_of, state_of
 from burridge_knopoff.model.springs import read_edges
-from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.load import load_study
 from tests.refused import refused
 
 UNIFORM = {"random": "uniform", "low": 0.5, "high": 1.5, "seed": 1}

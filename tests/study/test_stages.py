@@ -3,7 +3,7 @@
 import pytest
 
 from burridge_knopoff.figures.description import study_figures
-from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.load import load_study
 
 STATES = {"minus": {}, "plus": {}}
 CONFIG = {"study": "some", "a": [0.05, 0.08], "initial": STATES}

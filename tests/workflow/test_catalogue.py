@@ -10,7 +10,7 @@ from matplotlib.image import imread
 from burridge_knopoff.catalogue.events import record_events
 from burridge_knopoff.catalogue.slope import fit_slope
 from burridge_knopoff.cli import main
-from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_yaml
 from tests.workflow.conftest import Study
 

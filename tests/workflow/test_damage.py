@@ -17,7 +17,7 @@ from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.seal import BadFile, read_sealed, write_sealed
 from burridge_knopoff.show.result import open_result
-from burridge_knopoff.study.study import load_study
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.summaries import agreement, bifurcation_diagram, lyapunov, mean_distance, solvers, stick_slip
 from burridge_knopoff.summaries.points import Grid, open_point
 from tests.workflow.conftest import TINY, copied

@@ -14,8 +14,9 @@ from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.recorded import recorded_study
-from burridge_knopoff.study.study import Study, load_study
+from burridge_knopoff.study.study import Study
 
 GRID = [0.05, 0.08, 0.2, 0.22]
 NAMES = ["0.0500", "0.0800", "0.2000", "0.2200"]

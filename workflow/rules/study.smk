@@ -39,7 +39,8 @@ from burridge_knopoff.study.params import (
 )
 from burridge_knopoff.study.paths import POINT, STRETCH, VALUE
 from burridge_knopoff.study.stretches import incomplete, stretches
-from burridge_knopoff.study.study import all_points, load_study, remarks
+from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.study import all_points, remarks
 from burridge_knopoff.study.yaml_file import read_config, read_yaml
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import refused_call, refused_cluster

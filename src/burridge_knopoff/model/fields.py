@@ -99,6 +99,11 @@ def fields_of(kind: type) -> Mapping[str, Field]:
     return _KNOWN[kind]
 
 
+def settings_from(kind: type[_T], config: Mapping[str, Any]) -> _T:
+    """Return settings of a class from the keys of the same names in a config."""
+    return kind(**{name: config[name] for name in fields_of(kind) if name in config})
+
+
 def check_fields(settings: Any, place: str = "") -> None:
     """Convert the settings of a new dataclass to their form: 3 becomes 3.0, a list becomes a tuple.
 

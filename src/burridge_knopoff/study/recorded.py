@@ -12,8 +12,9 @@ from burridge_knopoff.model.fields import Keys
 from burridge_knopoff.provenance.record import NAME, read_study_record, study_folder
 from burridge_knopoff.provenance.seal import check_seal
 from burridge_knopoff.study.config import CONFIG
+from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.paths import VALUE
-from burridge_knopoff.study.study import Study, load_study
+from burridge_knopoff.study.study import Study
 from burridge_knopoff.values import joined
 
 #: Keys without a default, which a complete config need not have.

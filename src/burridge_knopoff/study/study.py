@@ -2,37 +2,24 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from itertools import product
-from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.basins.settings import BasinSettings
-from burridge_knopoff.catalogue.settings import CatalogueSettings
-from burridge_knopoff.model.fields import fields_of
+from burridge_knopoff.model.fields import settings_from
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.springs import has_digest
-from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.proof.scope import is_covered
-from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.running.command import simulate_command
-from burridge_knopoff.running.loading import is_quasistatic
 from burridge_knopoff.running.settings import SOLVERS, Settings
-from burridge_knopoff.study import rules, stages
-from burridge_knopoff.study.config import CONFIG
-from burridge_knopoff.study.grid import given_grid, parameters_of
+from burridge_knopoff.study import stages
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paper import PAPER_A
 from burridge_knopoff.study.paths import point_file
 from burridge_knopoff.study.yaml_file import ConfigError
-from burridge_knopoff.values import refusal
-
-_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
@@ -246,7 +233,7 @@ class Study:
         if config["solver"] != "rk4":
             # The other solvers have no step: a change of it must not rerun their points.
             del config["step"]
-        return _settings_of(Settings, config)
+        return settings_from(Settings, config)
 
     def state(self, initial: str) -> InitialState:
         """Return an initial state of the study from its name."""
@@ -276,87 +263,6 @@ class Study:
             "parameters": {name: dict(values) for name, values in self.parameters.items()},
             "settings": {law: asdict(self.settings(law)) for law in self.laws},
         }
-
-
-def load_study(config: Mapping[str, Any], file: str, written: Mapping[str, Any] | None = None) -> Study:
-    """Complete a config with its defaults, and check it against its ranges and the rules between its keys.
-
-    file : name of the config file, for messages
-    written : content of the file if the command line changes it; errors that this content lacks are blamed on --config
-    Raises ConfigError, one line: file, key, value, expected values.
-    """
-    folder = Path(file).parent
-    try:
-        return _study(config, folder)
-    except ValueError as error:
-        place = file if written in (None, config) or _fault(written, folder) == str(error) else "--config"
-        raise ConfigError(f"{place}: {error}") from error
-
-
-def _fault(config: Mapping[str, Any], folder: Path) -> str:
-    try:
-        _study(config, folder)
-    except ValueError as error:
-        return str(error)
-    return ""
-
-
-def _study(config: Mapping[str, Any], folder: Path) -> Study:
-    chain_keys = config.get("chain")
-    springs = chain_keys.get("springs") if isinstance(chain_keys, Mapping) else None
-    # The config of a record names the file of springs with the digest of its content.
-    is_new = isinstance(springs, str) and not has_digest(springs)
-    if isinstance(chain_keys, Mapping) and is_new:
-        config = {**config, "chain": {**chain_keys, "springs": display_path(folder / f"{springs}")}}
-    config = given_grid(config)
-    # Use the types of YAML: lists instead of tuples.
-    filled = json.loads(json.dumps(CONFIG.form(config, "")))
-    # Keep ranges as the user wrote them; `parameters` has the values.
-    filled.update({"a": [], **{key: config[key] for key in ("a", "grid") if key in config}})
-    study = Study(filled, parameters_of(filled))
-    values = list(study.grid.values())
-    if "transient" in config and filled["lyapunov_alignment"] > filled["transient"] and "lyapunov_alignment" in config:
-        raise refusal("lyapunov_alignment", filled["lyapunov_alignment"], "at most transient, of which it is a part")
-    rules.fill_states(filled)
-    rules.fill_blocks(filled)
-    rules.fill_chains(filled)
-    rules.fill_names(filled)
-    rules.check_size(filled, study.parameters)
-    others = study.others
-    rules.check_models(filled, values, others)
-    chains = [study.model(study.laws[0], values[0], **each).chain for each in others]
-    chain = chains[0]
-    if is_new:
-        chain.check_springs()
-    # Results may be read where the file of springs is not; it was checked when the study ran.
-    has_springs = chain.springs is None or is_new
-    for law in study.laws if has_springs else ():
-        for each in chains:
-            study.settings(law).check_chain(each)
-    # The default is three exponents; a single block has only two.
-    filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponents_of(chain)
-    with rules.under("basins."):
-        _settings_of(BasinSettings, filled["basins"])
-    with rules.under("chains."):
-        _settings_of(Sample, filled["chains"])
-    rules.fill_values(filled, set(values), study.blocks, study.shown_a)
-    rules.fill_catalogue(filled, values)
-    with rules.under("catalogue."):
-        loading = _settings_of(CatalogueSettings, filled.get("catalogue", {})).loading
-        for law, name in product(study.laws, study.catalogue_a):
-            is_quasistatic(loading, study.model(law, study.grid[name]), filled["solver"][law])
-    for law in study.laws if has_springs and "solvers" in study.stages else ():
-        for solver in study.other_solvers(law):
-            with rules.under("solvers."):
-                study.settings(law, solver).check_chain(chain)
-    rules.check_jobs(filled, study.blocks, study.left_out)
-    rules.leave_out(filled, study.left_out)
-    return study
-
-
-def _settings_of(kind: type[_T], config: Mapping[str, Any]) -> _T:
-    """Return settings of a class from the keys of the same names in a config."""
-    return kind(**{name: config[name] for name in fields_of(kind) if name in config})
 
 
 def all_points(study: Study) -> list[dict[str, str]]:
