@@ -46,14 +46,14 @@ def event_exponents(
     start: ChainState,
     end: float,
     *,
-    begin: float = 0.0,
+    begin: float | None = None,
     count: int = 1,
     loading: str = "quasistatic",
 ) -> EventExponents:
     """Return the largest Lyapunov exponents per slip event, between two times of the loading clock.
 
-    model, start, end, begin, loading : see `record_events`; perturbations start halfway between start and begin, and
-        turn into the growing directions first
+    model, start, end, begin, loading : see `record_events`; perturbations start halfway between start and begin, by
+        default the same time, and turn into the growing directions first
     count : how many exponents
 
     Under quasi-static loading N blocks have N − 1 finite exponents: the state at the start of an event has N positions,
@@ -73,8 +73,10 @@ def event_exponents(
     """
     instance_of(model, Model, "model")
     instance_of(start, ChainState, "start")
-    end, begin = TIMES.form(end, "end"), TIMES.form(begin, "begin")
+    end, begin = TIMES.form(end, "end"), TIMES.form(start.time if begin is None else begin, "begin")
     count = Whole(1, 2 * model.blocks).form(count, "count")
+    if begin < start.time:
+        raise refusal("begin", begin, f"a time not before the start ({start.time:g})")
     if end <= begin:
         raise refusal("end", end, f"a time after begin ({begin:g})")
     catalogue = Catalogue(model.blocks, begin, False, MOST_EVENTS)
@@ -101,8 +103,8 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     loading : see `record_events`
 
     They are eigenvalues of what the events make of displacements of the blocks. Under quasi-static loading one of them
-    is 0, as the threshold fixes one displacement. Raises ValueError, one line, as `record_events` does, and if a block
-    slips at the start or at the end.
+    is 0, as the threshold fixes one displacement. Raises ValueError, one line, as `record_events` does, if a block slips
+    at the start or at the end, and if perturbations overflow on the way.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, event_multipliers, law_of
     >>> model = Model(Chain(1, pulling=1), law_of("carlson_langer", 0.0, {"sigma": 0.2}), v=1.0)
@@ -122,5 +124,8 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     status = runner.run(end)
     if status != Status.COMPLETED or not runner.state().stuck.all():
         raise refusal("end", end, "a time at which all blocks stick")
-    values = np.linalg.eigvals(runner.perturbations[:blocks])
+    product = runner.perturbations[:blocks]
+    if not np.isfinite(product).all():
+        raise refusal("end", end, "a time before perturbations overflow")
+    values = np.linalg.eigvals(product)
     return values[np.argsort(-np.abs(values), kind="stable")]

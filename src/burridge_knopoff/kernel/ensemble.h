@@ -133,7 +133,7 @@ class Ensemble {
 
     // Let block i stop or start now, and count the event.
     void change(int i, mask where) {
-        const mask fresh = where & (unit_start + 1.0 <= clock);
+        const mask fresh = where & (unit_start + model.springs.unit <= clock);
         state.transition(i, where);
         for (int lane = 0; out->kept && lane < LANES; lane++) {
             if (!where[lane] || count[lane] >= out->kept) continue;

@@ -24,8 +24,9 @@ class Exponents {
     Tangent tangent;
     bool running = false;
     int alive = 0, most_stuck = 0;
-    // Least time between two orthonormalisations, about that between two events: in a chain of three blocks a stop
-    // shortens a vector to 1e-4 of what the others leave of it at worst, in long chains to 1e-11.
+    // Least time between two orthonormalisations, in a chain as slow as the paper's about that between two events: in a
+    // chain of three blocks a stop shortens a vector to 1e-4 of what the others leave of it at worst, in long chains to
+    // 1e-11.
     double interval = 1.0;
     std::vector<double> growth, duration;
 

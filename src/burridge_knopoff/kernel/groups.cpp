@@ -12,14 +12,14 @@ void Run::wait(int i) {
     const double left = (springs.threshold[i] - waiting_force(i, since[i])) / rate;
     begins[i] = rate > 0.0 ? (steady ? since : loaded)[i].after(left > 0.0 ? left : 0.0) : Clock{NEVER, 0.0};
     version[i]++;
-    if (rate > 0.0) starts().push({begins[i].time, i, false, version[i]});
+    if (rate > 0.0) starts().push({begins[i], i, false, version[i]});
 }
 
 // Plan a group's next piece and put its end into the queue; false where there is no motion.
 bool Run::schedule(Group &group) {
     if (!plan(group)) return false;
     group.version++;
-    queue.push({group.start.after(group.length).time, group.number, true, group.version});
+    queue.push({group.start.after(group.length), group.number, true, group.version});
     if (observing) section_change += section_range(group);
     return true;
 }
@@ -33,39 +33,34 @@ int Run::run_groups() {
     for (;;) {
         drop_void(queue);
         if (const int reason = blocked(0)) return reason;
-        if (loading > 0.0 && queue.empty()) {
-            drop_void(waiting);
-            const Clock at = waiting.empty() ? Clock{NEVER, 0.0} : begins[waiting.top().number];
+        // Under quasi-static loading the driver goes on when nothing slips.
+        const bool moving = loading == 0.0 || !queue.empty();
+        if (!moving) drop_void(waiting);
+        Queue &coming = moving ? queue : waiting;
+        const Clock at = coming.empty() ? Clock{NEVER, 0.0} : coming.top().at;
+        if (!moving) {
             if (at.until(end) < 0.0) {
                 load = {end, 0.0};
                 remember();
                 return COMPLETED;
             }
             load = at;
-            if (!start_waiting()) return DIVERGED;
-            continue;
-        }
-        const Next next = queue.empty() ? Next{NEVER, 0, false, 0} : queue.top();
-        const Clock at = next.time == NEVER ? Clock{NEVER, 0.0}
-                         : next.is_group    ? groups[next.number]->start.after(groups[next.number]->length)
-                                            : begins[next.number];
-        if (loading == 0.0 && at.until(end) < 0.0) {
+        } else if (loading == 0.0 && at.until(end) < 0.0) {
             remember();
-            observe_all({end, 0.0});
+            observe_all({end, 0.0}, at.time < NEVER ? at : Clock{end, 0.0});
             for (auto &group : groups) {
                 if (!group->alive || !group->planned) continue;
                 const double to = group->start.until(end);
                 if (catalogue) group->record(*catalogue, polynomial, group->observed, to, false);
                 group->observed = to;
             }
-            marked.side = observer.side;
             return COMPLETED;
         }
-        queue.pop();
+        take_next(coming);
         const bool halting = halting_block >= 0 && group_of[halting_block] >= 0 &&
                              groups[group_of[halting_block]]->state.slip.lane(lane_of[halting_block]) != 0.0;
-        observe_all(at);
-        if (!process(next)) return DIVERGED;
+        if (moving) observe_all(at, at);
+        if (!process()) return DIVERGED;
         if (halting && direction_of(halting_block) == 0.0) return HALTED;
     }
 }
@@ -80,44 +75,70 @@ void Run::drop_void(Queue &queue) {
     }
 }
 
-// Let the blocks start that the loading clock has come to. Mirror images start at the same bit of it, and together.
-bool Run::start_waiting() {
-    const Springs &springs = model.springs;
-    std::vector<int> starting, members;
+// Take all from a queue that comes at the instant of the first: mirror images have the same bit of it.
+void Run::take_next(Queue &queue) {
+    const Clock at = queue.top().at;
+    ending.clear();
+    starting.clear();
     do {
-        starting.push_back(waiting.top().number);
-        waiting.pop();
-        drop_void(waiting);
-    } while (!waiting.empty() && begins[waiting.top().number].until(load) == 0.0);
-    for (int i : starting) {
-        gather(i, members);
-        for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) gather(springs.neighbour[p], members);
-    }
-    Group *group = &collect(members);
-    for (int i : starting) change(*group, lane_of[i], now);
-    for (group = complete(group); !log.accumulating && settle(*group, now);) group = complete(group);
-    return part(*group);
+        (queue.top().is_group ? ending : starting).push_back(queue.top().number);
+        queue.pop();
+        drop_void(queue);
+    } while (!queue.empty() && queue.top().at.until(at) == 0.0);
 }
 
-// Carry out what comes next, now.
-bool Run::process(const Next &next) {
-    Group *group;
-    if (next.is_group) {
-        group = groups[next.number].get();
-        end_piece(*group, group->length);
-        if (!group->event) return schedule(*group);
-        carry_out(*group, now);
-    } else {
-        const int i = next.number;
-        std::vector<int> members;
-        const Springs &springs = model.springs;
-        gather(i, members);
-        for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) gather(springs.neighbour[p], members);
-        group = &collect(members);
-        change(*group, lane_of[i], now);
+// Carry out what comes next, now: who changes is decided before anyone does, as in a chain that moves as a whole, so
+// that no order of blocks or groups is preferred.
+bool Run::process() {
+    const Springs &springs = model.springs;
+    std::vector<int> changing = starting, members;
+    int events = int(starting.size());
+    Group *group = nullptr;
+    for (int number : ending) {
+        Group &own = *groups[number];
+        end_piece(own, own.length);
+        if (!own.event) continue;
+        events++;
+        group = &own;
+        find_due(own);
+        for (int k = 0; k < own.size(); k++)
+            if (due[k / LANES] >> k % LANES & 1) changing.push_back(own.layout.member[k]);
     }
-    for (group = complete(group); !log.accumulating && settle(*group, now);) group = complete(group);
-    return part(*group);
+    bool moves = true;
+    if (events > 0) {
+        if (events > 1 || !group) {
+            for (int i : changing) {
+                gather(i, members);
+                for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) gather(springs.neighbour[p], members);
+            }
+            group = &collect(members);
+        }
+        std::sort(changing.begin(), changing.end());
+        for (int i : changing) change(*group, lane_of[i], now);
+        for (group = complete(group); !log.accumulating && settle(*group, now);) group = complete(group);
+        moves = part(*group);
+    }
+    for (int number : ending)
+        if (groups[number]->alive && !groups[number]->planned) moves &= schedule(*groups[number]);
+    return moves;
+}
+
+// Go on in groups where the run before moved as a whole, or the other way round.
+void Run::regroup() {
+    std::vector<int> all(blocks);
+    for (int i = 0; i < blocks; i++) all[i] = i;
+    for (auto &group : groups) {
+        if (!group->alive) continue;
+        const double length = group->start.until(now);
+        blind |= !group->plan(0, 0, 0);
+        group->advance(length);
+        if (catalogue) group->record(*catalogue, polynomial, 0.0, length, true);
+        for (int k = 0; k < group->size(); k++)
+            group->state.position.lane(k) -= loading * loaded[group->layout.member[k]].until(load);
+        retire(*group);
+    }
+    Group &group = collect(all);
+    if (local) blind |= !part(group);
 }
 
 // Add a block to the members of a group to be, with all of the group that it is in now.
@@ -261,8 +282,8 @@ void Run::observe_distance(const Clock &at) {
     distance_from = at;
 }
 
-// Observe everything that is not of one group up to a time before which nothing changes.
-void Run::observe_all(Clock at) {
+// Observe everything that is not of one group up to a time. reach : the time before which nothing changes
+void Run::observe_all(const Clock &at, const Clock &reach) {
     if (!observing) {
         now = observed = at;
         return;
@@ -297,7 +318,7 @@ void Run::observe_all(Clock at) {
             }
         observe_distance(at);
     }
-    if (at.until(window) < 0.0) observe_section(at);
+    if (at.until(window) < 0.0) observe_section(at, reach);
     observed = at;
 }
 
@@ -341,10 +362,11 @@ double Run::section_range(const Group &group) {
     return 2.0 * most;
 }
 
-// Record crossings of W up to a time before which nothing changes. While W is farther from 0 than it can have gone
-// since it was known, there is none.
-void Run::observe_section(const Clock &at) {
-    const Clock from = observed.until(observer.transient()) > 0.0 ? Clock{observer.transient(), 0.0} : observed;
+// Record crossings of W up to a time. While W is farther from 0 than it can have gone since it was known, there is
+// none. reach : the time before which nothing changes
+void Run::observe_section(const Clock &at, const Clock &reach) {
+    const bool begins = observer.side == 0 && observed.until(observer.transient()) > 0.0;
+    const Clock from = begins ? Clock{observer.transient(), 0.0} : observed;
     const double length = from.until(at), drift = (last - first) * model.v;
     if (observer.side != 0 && std::fabs(section_at) > section_change + drift * section_from.until(at)) return;
     section_at = section_value(from);
@@ -368,7 +390,7 @@ void Run::observe_section(const Clock &at) {
         for (int k = 1; k <= Blocks::ORDER; k++) terms[k] += polynomial.coefficient[k];
     }
     polynomial.load(terms, 1, Blocks::ORDER);
-    observer.cross(polynomial, EventSearch<Blocks>::UNCERTAIN, from, 0.0, length, [&](double t) {
+    observer.cross(polynomial, EventSearch<Blocks>::UNCERTAIN, from, 0.0, length, from.until(reach), [&](double t) {
         double rate = 0.0;
         for (int k = Blocks::ORDER; k > 0; k--) rate = rate * t + k * terms[k];
         return rate;

@@ -84,10 +84,14 @@ struct Observer {
     // Record where W changes its sign between two times of a piece, with W' and the direction.
     //
     // The side on which W lies is remembered from piece to piece, so that rounding at a seam can neither hide a
-    // crossing nor make one. w : W as a polynomial; crossing : when it changes its sign by `to`, if EventSearch has
-    // told rate(t) : W' = Σ (U_i' − v)
+    // crossing nor make one.
+    //
+    // w : W as a polynomial
+    // crossing : when it changes its sign by `to`, if EventSearch has found that
+    // reach : end of the piece: sign changes are searched up to there, so that the end of a run moves none by a bit
+    // rate(t) : W' = Σ (U_i' − v)
     template <class Rate>
-    void cross(Polynomial &w, double crossing, const Clock &start, double from, double to, Rate &&rate) {
+    void cross(Polynomial &w, double crossing, const Clock &start, double from, double to, double reach, Rate &&rate) {
         const double until_window = start.until(transient());
         if (side != 0 && crossing != EventSearch<Blocks>::UNCERTAIN) {
             if (crossing >= from && crossing >= 0.0) turn(crossing, start, rate);
@@ -108,9 +112,9 @@ struct Observer {
         }
         while (begins < to) {
             if (side < 0) w.negate();
-            const double t = w.first_root(to - begins);
+            const double t = w.first_root(reach - begins);
             if (side < 0) w.negate();
-            if (t < 0.0) return;
+            if (t < 0.0 || begins + t > to) return;
             begins += t;
             // The root is divided out, and with it what rounding leaves of W there. If the sign after it is the one
             // before it, W has touched 0 within rounding and not crossed.
@@ -166,25 +170,25 @@ struct Observer {
 //
 // `earlier` has rows (time | block, kind) for events before `states_from`; `events` has rows (time | block, kind, x_1 …
 // x_N, U_1' … U_N') for those from `states_from` on. `stops_only` keeps of all these only the stops from `states_from`
-// on. More than `rate_limit` events in one time unit count as an accumulation.
+// on. More than `rate_limit` events in one time unit of the chain count as an accumulation.
 struct EventLog {
     const double states_from;
     const bool keep, stops_only;
     const long long rate_limit;
     Record earlier, events;
     long long count = 0, unit_count = 0;
-    double unit_start = 0.0;
+    double unit = 1.0, unit_start = 0.0;
     bool accumulating = false;
 
     EventLog(int blocks, double states_from, bool keep, long long rate_limit, bool stops_only, double most_numbers)
         : states_from(states_from), keep(keep), stops_only(stops_only), rate_limit(rate_limit),
           earlier(2, most_numbers), events(2 + 2 * blocks, most_numbers) {}
 
-    void restart() {
+    void restart(double time) {
         earlier.clear();
         events.clear();
         count = unit_count = 0;
-        unit_start = 0.0;
+        unit_start = time;
         accumulating = false;
     }
     bool full() const { return earlier.full || events.full; }
@@ -193,7 +197,7 @@ struct EventLog {
     template <class States>
     void add(int block, int kind, double clock, States &&states) {
         count++;
-        if (clock >= unit_start + 1.0) {
+        if (clock >= unit_start + unit) {
             unit_start = clock;
             unit_count = 0;
         }

@@ -7,7 +7,7 @@ void Run::restart(double time) {
     observer.begin = time;
     steps = 0;
     since_event = 0.0;
-    log.restart();
+    log.restart(time);
     if (catalogue) catalogue->restart();
     queue = waiting = {};
     spare.clear();
@@ -20,6 +20,57 @@ void Run::restart(double time) {
     observed = distance_from = section_from = now;
     section_at = section_change = 0.0;
     waiting_seen[TRANSIENT] = waiting_seen[WINDOW] = blind = false;
+}
+
+void Run::resume(const Mark &mark, double time) {
+    for (int i = 0; i < blocks; i++) {
+        const double *row = row_of(mark, i);
+        x[i] = row[0];
+        u[i] = row[1];
+        acceleration[i] = row[2];
+        age[i] = row[3];
+        slip[i] = row[4];
+        touching[i] = row[5];
+        since[i] = {row[6], row[7]};
+        loaded[i] = {row[10], row[11]};
+    }
+    restart(time);
+    if (loading > 0.0) {
+        now = mark.now;
+        load = mark.load;
+    }
+    since_event = mark.since_event;
+    if (catalogue && mark.catalogue) catalogue->resume(*mark.catalogue);
+    // A section that is observed from now on is crossed from the side that the run was on.
+    if (observer.transient() <= time) observer.side = mark.side;
+    settled = true;
+    std::vector<std::vector<int>> members;
+    for (int i = 0; i < blocks; i++) {
+        if (mark.group[i] < 0) {
+            begins[i] = {row_of(mark, i)[8], row_of(mark, i)[9]};
+            if (local && begins[i].time < NEVER) starts().push({begins[i], i, false, version[i]});
+            continue;
+        }
+        if (mark.group[i] >= int(members.size())) members.resize(mark.group[i] + 1);
+        members[mark.group[i]].push_back(i);
+    }
+    for (auto &own : members) {
+        if (own.empty()) continue;
+        Group &group = build(own, since[own[0]]);
+        // To the bit, whatever has become of the blocks around it since.
+        for (int k = 0; k < group.size(); k++) {
+            const double *row = row_of(mark, group.layout.member[k]);
+            group.layout.sliding_force.lane(k) = row[8];
+            group.layout.drift.lane(k) = row[9];
+        }
+        if (local && mark.local) blind |= !schedule(group);
+        if (modes) start_modes(group, mark);
+    }
+    marked = mark;
+    if (local != mark.local)
+        regroup();
+    else if (local)
+        observed = mark.now;
 }
 
 // Carry out what is due when a run begins.
@@ -168,11 +219,10 @@ bool Run::settle(Group &group, const Clock &at) {
     return changing;
 }
 
-// Carry out the event that ends a group's piece.
-void Run::carry_out(Group &group, const Clock &at) {
+// Find the blocks that have the event that ends a group's piece.
+void Run::find_due(Group &group) {
     due.assign(group.layout.columns, 0);
     for (int c = 0; c < group.layout.columns; c++) due[c] = bits(group.search.due(group.series, c));
-    change_due(group, at);
 }
 
 // Keep the pieces that the end of a run cuts off.
@@ -184,6 +234,7 @@ void Run::remember() {
     marked.since_event = since_event;
     if (catalogue) marked.catalogue = catalogue->open();
     marked.side = observer.side;
+    marked.local = local;
     if (modes) {
         marked.origin = modes->origin;
         marked.origin_velocity = modes->origin_velocity;
@@ -269,7 +320,8 @@ int Run::run_whole() {
         if (event) {
             halting = halting_block >= 0 && group.state.slip.lane(halting_block) != 0.0;
             advance(group, length);
-            carry_out(group, now);
+            find_due(group);
+            change_due(group, now);
             while (!log.accumulating && settle(group, now)) {}
             since_event = 0.0;
             if (modes) modes->start(group.state);
@@ -278,7 +330,7 @@ int Run::run_whole() {
             advance(group, length);
         }
         // At events, so that all solvers look after them at the same times.
-        if (exponents.running && (due || since_event >= LONGEST_FOLLOW))
+        if (exponents.running && (due || since_event >= LONGEST_FOLLOW * model.springs.unit))
             exponents.follow(group.state, loading_clock(now).time, completed);
         if (completed) return COMPLETED;
         if (halting && group.state.slip.lane(halting_block) == 0.0) return HALTED;
@@ -354,7 +406,7 @@ void Run::observe(Group &group, double to) {
         if (observer.side == 0 || crossing != EventSearch<Blocks>::NONE) {
             if (observer.side == 0 || crossing == EventSearch<Blocks>::UNCERTAIN)
                 group.load_sum(polynomial, first, last);
-            observer.cross(polynomial, crossing, start, from, to,
+            observer.cross(polynomial, crossing, start, from, to, group.length,
                            [&](double t) { return group.sum_rate(first, last, t); });
         }
     }
@@ -375,11 +427,13 @@ void Run::follow(Group &group, double length) {
     // However long a slow driver takes, nothing changes while all blocks stick.
     if (exponents.stuck(group.state) == blocks) return;
     const int parts = exponents.tangent.load(group.state, group.series, length);
+    // The loading clock, on which the batches are, stands while blocks slip under quasi-static loading.
+    const double part = loading > 0.0 ? 0.0 : length / parts;
     for (int k = 1; k <= parts; k++) {
         exponents.tangent.follow(group.layout);
         if (k == parts) break;
         exponents.tangent.move_on();
-        exponents.follow(group.state, group.start.time + k * (length / parts), false);
+        exponents.follow(group.state, loading_clock(group.start).time + k * part, false);
     }
 }
 

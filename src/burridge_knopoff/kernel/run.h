@@ -31,6 +31,8 @@ struct Mark {
     std::optional<Catalogue::Open> catalogue;
     double since_event = 0.0;
     int side = 0;
+    // Whether the chain moved in groups.
+    bool local = false;
 };
 
 class Run {
@@ -39,7 +41,8 @@ class Run {
 
     // Number of blocks from which on groups are faster than one.
     static constexpr int MANY = 24;
-    // Longest time over which perturbations are followed at once: without events, too, they have to be kept apart.
+    // Longest time, in units of the chain, over which perturbations are followed at once: without events, too, they
+    // have to be kept apart.
     static constexpr double LONGEST_FOLLOW = 4.0;
 
     const Model &model;
@@ -72,7 +75,8 @@ class Run {
           last(observer.section ? observer.section : model.springs.blocks), x(blocks), u(blocks), acceleration(blocks),
           age(blocks), slip(blocks), touching(blocks), since(blocks), loaded(blocks), group_of(blocks, -1),
           lane_of(blocks, -1), version(blocks), begins(blocks) {
-        if (loading > 0.0) exponents.interval = 0.0;
+        log.unit = model.springs.unit;
+        exponents.interval = loading > 0.0 ? 0.0 : model.springs.unit;
     }
 
     Run(const Run &) = delete;
@@ -91,53 +95,8 @@ class Run {
         settled = false;
     }
 
-    // Go on at a time from the mark of a run that ended then.
-    void resume(const Mark &mark, double time) {
-        for (int i = 0; i < blocks; i++) {
-            const double *row = row_of(mark, i);
-            x[i] = row[0];
-            u[i] = row[1];
-            acceleration[i] = row[2];
-            age[i] = row[3];
-            slip[i] = row[4];
-            touching[i] = row[5];
-            since[i] = {row[6], row[7]};
-            loaded[i] = {row[10], row[11]};
-        }
-        restart(time);
-        if (loading > 0.0) {
-            now = mark.now;
-            load = mark.load;
-        }
-        since_event = mark.since_event;
-        if (catalogue && mark.catalogue) catalogue->resume(*mark.catalogue);
-        // A section that is observed from now on is crossed from the side that the run was on.
-        if (observer.transient() <= time) observer.side = mark.side;
-        settled = true;
-        std::vector<std::vector<int>> members;
-        for (int i = 0; i < blocks; i++) {
-            if (mark.group[i] < 0) {
-                begins[i] = {row_of(mark, i)[8], row_of(mark, i)[9]};
-                if (begins[i].time < NEVER) starts().push({begins[i].time, i, false, version[i]});
-                continue;
-            }
-            if (mark.group[i] >= int(members.size())) members.resize(mark.group[i] + 1);
-            members[mark.group[i]].push_back(i);
-        }
-        for (auto &own : members) {
-            if (own.empty()) continue;
-            Group &group = build(own, since[own[0]]);
-            // To the bit, whatever has become of the blocks around it since.
-            for (int k = 0; k < group.size(); k++) {
-                const double *row = row_of(mark, group.layout.member[k]);
-                group.layout.sliding_force.lane(k) = row[8];
-                group.layout.drift.lane(k) = row[9];
-            }
-            if (local) blind |= !schedule(group);
-            if (modes) start_modes(group, mark);
-        }
-        marked = mark;
-    }
+    // Go on at a time from the mark of a run that ended then, in groups or as a whole, whichever that was.
+    void resume(const Mark &mark, double time);
 
     const Mark &mark() const { return marked; }
 
@@ -170,16 +129,16 @@ class Run {
     std::vector<uint64_t> version;
     std::vector<std::unique_ptr<Group>> groups;
     std::vector<int> spare, due;
+    // What comes next at one instant: groups whose pieces end, and blocks without a group that start.
+    std::vector<int> ending, starting;
 
     // What comes next: the start of a block without a group, or the end of a group's piece.
     struct Next {
-        double time;
+        Clock at;
         int number;
         bool is_group;
         uint64_t version;
-        bool operator>(const Next &other) const {
-            return time > other.time || (time == other.time && number > other.number);
-        }
+        bool operator>(const Next &other) const { return other.at.until(at) > 0.0; }
     };
     // What the slip clock comes to next, and what the loading clock does.
     using Queue = std::priority_queue<Next, std::vector<Next>, std::greater<Next>>;
@@ -198,7 +157,7 @@ class Run {
     bool plan(Group &group);
     void change(Group &group, int lane, const Clock &at);
     bool settle(Group &group, const Clock &at);
-    void carry_out(Group &group, const Clock &at);
+    void find_due(Group &group);
     void change_due(Group &group, const Clock &at);
     void remember();
     void start_modes(Group &group, const Mark &mark);
@@ -214,18 +173,19 @@ class Run {
     // Many groups, in groups.cpp.
     int run_groups();
     void drop_void(Queue &queue);
-    bool start_waiting();
+    void take_next(Queue &queue);
+    bool process();
     void wait(int i);
     bool schedule(Group &group);
-    bool process(const Next &next);
+    void regroup();
     void gather(int i, std::vector<int> &members);
     Group &collect(std::vector<int> &members);
     Group *complete(Group *group);
     bool part(Group &group);
     void end_piece(Group &group, double to);
-    void observe_all(Clock at);
+    void observe_all(const Clock &at, const Clock &reach);
     void observe_distance(const Clock &at);
-    void observe_section(const Clock &at);
+    void observe_section(const Clock &at, const Clock &reach);
     double waiting_force(int i, const Clock &at) const;
     double section_value(const Clock &at);
     Polynomial motion_of(int i, bool speed, const Clock &at);

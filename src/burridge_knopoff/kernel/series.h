@@ -120,7 +120,7 @@ struct Series {
             state.velocity[c] = select(moved, value(velocity, c, t), state.velocity[c]);
             state.touching[c] = select(moved & (t > zero), zero, state.touching[c]);
             state.age[c] = select(moved & (slipping[c] > zero), state.age[c] + t, state.age[c]);
-            const mask young = moved & (state.age[c] < YOUNG);
+            const mask young = moved & (state.age[c] < model.young());
             if (!any(young)) continue;
             vec slope{};
             for (int k = ORDER; k > 0; k--) slope = slope * t + double(k) * u(k)[c];
@@ -175,7 +175,7 @@ struct Series {
                 pressed[c] = -(signed_threshold[c] * (scale * law.row(2, c)[0]));
             }
             vec acceleration = slipping[c] * (s * layout.inverse_mass[c]) - signed_threshold[c] * friction;
-            const mask young = (slip != vec{}) & ((state.touching[c] > 0.0) | (state.age[c] < YOUNG));
+            const mask young = (slip != vec{}) & ((state.touching[c] > 0.0) | (state.age[c] < model.young()));
             if (any(young)) acceleration = select(young, state.slip_acceleration(c, s), acceleration);
             u(1)[c] = acceleration;
             g(0)[c] = slip * u(0)[c] + stuck[c] * (layout.threshold[c] - s);

@@ -27,6 +27,9 @@ struct Springs {
     // Bound on the angular frequencies of slipping blocks: the root of that of Collatz and Wielandt on the eigenvalues
     // of M⁻¹K. Any positive vector gives one, and a few steps of the power method tighten it.
     double fastest;
+    // The chain's own unit of time: 1 where it is as slow as the paper's, else shorter as the chain is faster. A power
+    // of 2, so that a chain in other units moves the same to the bit.
+    double unit;
     // Largest threshold per mass.
     double firmest;
     // Largest number of neighbours.
@@ -64,6 +67,7 @@ struct Springs {
             for (int i = 0; i < blocks; i++) vector[i] = product[i] / largest;
         }
         fastest = std::sqrt(largest);
+        unit = std::ldexp(1.0, 1 - std::max(1, std::ilogb(fastest)));
         firmest = 0.0;
         for (int i = 0; i < blocks; i++) firmest = std::max(firmest, threshold[i] / mass[i]);
     }
@@ -152,16 +156,19 @@ struct Blocks : Layout {
         }
     }
 
-    // Let stuck blocks that do not take part pull on those that do; `place` as in `lay`, x their positions.
+    // Let stuck blocks that do not take part pull on those that do; `place` as in `lay`, x their positions. Their pulls
+    // are added first, as in `pull`.
     template <class Place, class Position>
     void outside(const Springs &springs, Place &&place, double v, Position &&x) {
         for (int k = 0; k < int(member.size()); k++) {
             const int i = member[k];
+            double pulls = 0.0;
             for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) {
                 if (place(springs.neighbour[p]) >= 0) continue;
-                sliding_force.lane(k) += springs.strength[p] * x(springs.neighbour[p]);
+                pulls += springs.strength[p] * x(springs.neighbour[p]);
                 drift.lane(k) -= springs.strength[p] * v;
             }
+            sliding_force.lane(k) += pulls;
         }
     }
 

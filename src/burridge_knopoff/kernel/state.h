@@ -10,12 +10,13 @@
 
 namespace bk {
 
-// Times closer than this are one instant, whatever the springs: the clock does not resolve them. Blocks whose motion is
-// the same to the bit change together, however far from their threshold rounding leaves them.
+// Times closer than this, in units of the chain, are one instant: the clock does not resolve them. Blocks whose motion
+// is the same to the bit change together, however far from their threshold rounding leaves them.
 constexpr double COINCIDENCE = 1e-14;
 
-// A block that has slipped for less than this keeps the acceleration that was carried along since its start, which
-// began at exactly 0: 1 − s recomputed from positions would be rounding (1e-16), and its sign could stop the block.
+// A block that has slipped for less than this, in units of the chain, keeps the acceleration that was carried along
+// since its start, which began at exactly 0: 1 − s recomputed from positions would be rounding (1e-16), and its sign
+// could stop the block.
 constexpr double YOUNG = 1e-6;
 constexpr double LONG = 1e300;
 
@@ -30,6 +31,8 @@ struct Model {
     bool symmetric;  // whether a block that is pulled below −θ_i slips backward
 
     bool drops() const { return law.at_rest < 1.0; }
+    double coincidence() const { return COINCIDENCE * springs.unit; }
+    double young() const { return YOUNG * springs.unit; }
 };
 
 // Positions x_i, velocities U_i', slip directions (0 stuck, 1 forward, −1 backward) and what the next event depends on.
@@ -81,28 +84,29 @@ struct State {
     BK_INLINE vec slip_acceleration(int c, vec force) const {
         const vec own = slip[c] * velocity[c];
         vec made = (force - slip[c] * (layout.threshold[c] * friction(own))) * layout.inverse_mass[c];
-        made = select(age[c] < YOUNG, acceleration[c], made);
+        made = select(age[c] < model.young(), acceleration[c], made);
         return select((touching[c] > 0.0), slip[c] * start_acceleration(c), made);
     }
 
     // Where blocks change at this very instant: they are past their threshold, or within COINCIDENCE of it.
     mask pending(const vec *relative, int c) const {
+        const double coincidence = model.coincidence();
         const vec zero{}, s = force(c);
         const mask touches = touching[c] > 0.0, stuck = slip[c] == zero;
         const vec rate = force_rate(relative, c);
         vec gap = slip[c] * velocity[c];
         mask stopping = gap < zero;
-        const mask close = (gap <= COINCIDENCE) & ~stuck & ~stopping & ~touches & layout.present[c];
-        if (any(close)) stopping |= close & (gap < -COINCIDENCE * (slip[c] * slip_acceleration(c, s)));
+        const mask close = (gap <= coincidence) & ~stuck & ~stopping & ~touches & layout.present[c];
+        if (any(close)) stopping |= close & (gap < -coincidence * (slip[c] * slip_acceleration(c, s)));
         // At a start with Φ(0) < 1 the block has an acceleration, whatever the rate of the force.
         stopping &= ~touches;
         if (!model.drops()) stopping |= touches & (slip[c] * rate < zero);
-        const vec near = COINCIDENCE * layout.diagonal[c];
+        const vec near = coincidence * layout.diagonal[c];
         gap = layout.threshold[c] - s;
-        mask starting = (gap < zero) | ((gap <= near) & (gap < COINCIDENCE * rate));
+        mask starting = (gap < zero) | ((gap <= near) & (gap < coincidence * rate));
         if (model.symmetric) {
             gap = layout.threshold[c] + s;
-            starting |= (gap < zero) | ((gap <= near) & (gap < -COINCIDENCE * rate));
+            starting |= (gap < zero) | ((gap <= near) & (gap < -coincidence * rate));
         }
         return ((stopping & ~stuck) | (starting & stuck & ~touches)) & layout.present[c];
     }

@@ -32,6 +32,7 @@ class TimeStepping {
     TimeStepping(const Model &model, EventLog &log, Observer &observer, double step, bool euler)
         : model(model), log(log), observer(observer), step(step), euler(euler), n(model.springs.blocks),
           state(model, layout), old_x(n), old_u(n) {
+        log.unit = model.springs.unit;
         for (auto *table : {&speed, &acceleration}) table->assign(4, std::vector<double>(n));
         for (auto *table : {&x, &u}) table->assign(4, std::vector<double>(n));
         for (int i = 0; i < n; i++) layout.member.push_back(i);
@@ -45,12 +46,12 @@ class TimeStepping {
     void begin(const double *position, const double *velocity, const bool *stuck, double time) {
         for (int i = 0; i < n; i++) state.place(i, position[i], velocity[i], stuck[i]);
         clock = time;
-        earlier_steps = (long long)(time / step);
+        earlier_steps = (long long)std::floor(time / step);
         while ((earlier_steps + 1) * step <= time) earlier_steps++;
         steps = 0;
         settled = false;
         observer.begin = time;
-        log.restart();
+        log.restart(time);
         if (catalogue) catalogue->restart();
     }
 
@@ -221,7 +222,7 @@ class TimeStepping {
                 polynomial.coefficient[k] = 0.0;
                 for (int i = 0; i < n; i++) polynomial.coefficient[k] += observer.in_section(i) ? x[k][i] : 0.0;
             }
-            observer.cross(polynomial, EventSearch<Blocks>::UNCERTAIN, start, 0.0, h, [&](double t) {
+            observer.cross(polynomial, EventSearch<Blocks>::UNCERTAIN, start, 0.0, h, h, [&](double t) {
                 double total = 0.0;
                 for (int i = 0; i < n; i++) total += observer.in_section(i) ? at(u, i, t) - model.v : 0.0;
                 return total;

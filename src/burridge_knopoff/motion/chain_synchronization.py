@@ -89,7 +89,7 @@ def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate
     """
     model = runner.model
     _check_mirror(model)
-    runner.begin(start)
+    runner.begin(start, 0.0)
     history: list[np.ndarray] = []
     for check in range(1, int(watch.time_limit / INTERVAL) + 1):
         if runner.run(check * INTERVAL) != Status.COMPLETED:

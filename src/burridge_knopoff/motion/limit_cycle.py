@@ -53,7 +53,7 @@ def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: 
     """
     settling, window = DURATION.form(settling, "settling"), DURATION.form(window, "window")
     runner = Runner(model, keep_events=True, events_from=settling)
-    runner.begin(state)
+    runner.begin(state, 0.0)
     if runner.run(settling + window) != Status.COMPLETED:
         raise OrbitError(f"a = {model.a!r}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
     times, values = runner.log.events.times(), runner.log.events.values()

@@ -80,7 +80,7 @@ def state_of(state: np.ndarray) -> ChainState:
 def visit(model: Model, start: ChainState, transient: float, window: float) -> Returns | None:
     """Follow a trajectory and return where it returns to; None if it does not complete or hardly ever stops."""
     runner = Runner(model, events_from=transient, keep_events=True, stops_only=True)
-    runner.begin(start)
+    runner.begin(start, 0.0)
     if runner.run(transient + window) != Status.COMPLETED:
         return None
     stops = runner.log.events.values()

@@ -82,7 +82,7 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     time, spacing = np.linspace(0.0, until, math.ceil(until / longest) + 1, retstep=True)
     observer = new_observer(model, 2 * [until + longest], trajectory_time=time, section_only=True)
     runner = Runner(model, observer=observer)
-    runner.begin(orbit.reference)
+    runner.begin(orbit.reference, 0.0)
     runner.run(until + longest)
     results = observer.results()
     position, velocity = results["position"], results["velocity"]

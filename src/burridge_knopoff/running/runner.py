@@ -105,14 +105,19 @@ class Runner:
         if perturbations is not None:
             self.carry(perturbations)
 
-    def begin(self, at: ChainState) -> None:
-        """Start from an instant, at its time; raises ValueError if its number of blocks is not the model's."""
+    def begin(self, at: ChainState, clock: float | None = None) -> None:
+        """Start from an instant.
+
+        clock : the time τ at which the run starts; that of the instant, whose last step is then repeated, by default
+
+        Raises ValueError if the number of blocks is not the model's.
+        """
         blocks = self.model.blocks
         if not isinstance(at, ChainState) or {np.shape(x) for x in (at.position, at.velocity, at.stuck)} != {(blocks,)}:
             raise refusal("state", at, f"a ChainState of {blocks} blocks")
         position, velocity = (np.asarray(x, dtype=float) for x in (at.position, at.velocity))
-        self.kernel.begin(position, velocity, np.asarray(at.stuck, dtype=bool), at.time)
-        if at.last_step is not None and at.last_step[0] == self.solver:
+        self.kernel.begin(position, velocity, np.asarray(at.stuck, dtype=bool), at.time if clock is None else clock)
+        if clock is None and at.last_step is not None and at.last_step[0] == self.solver:
             self.kernel.resume(at.last_step[1], at.time)
 
     def final(self) -> ChainState:
@@ -151,8 +156,8 @@ class Runner:
         return status
 
     def after(self, at: ChainState, time: float) -> ChainState | None:
-        """Return the state a given time after an instant, or None if the run fails."""
-        self.begin(at)
+        """Return the state a given time after an instant, or None if the run fails; the clock starts at 0."""
+        self.begin(at, 0.0)
         return self.state() if self.run(time) == Status.COMPLETED else None
 
     def state(self) -> ChainState:
