@@ -380,7 +380,7 @@ class EventSearch {
 
     // Load the g of one block, for a stuck one to the threshold ahead (side 1) or behind (−1).
     void load(const Series<L> &series, const State<L> &state, size_t place, int side) {
-        polynomial.load(&series.gap.at()[0][0] + place, width * LANES, ORDER, 1.0);
+        polynomial.load(&series.gap.lane(place), width * LANES, ORDER, 1.0);
         if (side > 0) return;
         // What was divided out of the gap ahead has to be put back first.
         const int times = int(zeros.lane(place));

@@ -83,7 +83,7 @@ struct Group {
     void load_sum(Polynomial &w, int begin, int end) const {
         w.degree = Blocks::ORDER;
         for (int k = 0; k <= Blocks::ORDER; k++) {
-            const double *x = &series.position.at(size_t(k) * series.columns)[0][0];
+            const double *x = &series.position.lane(size_t(k) * series.columns * LANES);
             double total = 0.0;
             for (int i = begin; i < end; i++) total += x[i];
             w.coefficient[k] = total;
@@ -104,7 +104,7 @@ struct Group {
     Polynomial &load(Polynomial &polynomial, int lane) {
         const int c = lane / LANES, width = series.columns * LANES;
         if (state.slip.lane(lane) != 0.0) {
-            polynomial.load(&series.velocity.at()[0][0] + lane, width, Blocks::ORDER, state.slip.lane(lane));
+            polynomial.load(&series.velocity.lane(lane), width, Blocks::ORDER, state.slip.lane(lane));
             return polynomial;
         }
         polynomial.degree = Blocks::ORDER;
@@ -194,7 +194,7 @@ struct Group {
     void load_section(int begin, int end, int extra) {
         const int n = size();
         for (int k = 0; k <= Blocks::ORDER; k++) {
-            const double *x = &series.x(k)[0][0];
+            const double *x = &series.position.lane(size_t(k) * series.columns * LANES);
             double total = 0.0;
             for (int i = begin; i < end; i++) total += x[i];
             vec *g = series.g(k);

@@ -390,7 +390,7 @@ void Run::observe(Group &group, double to) {
     const bool in_window = to > start.until(observer.transient());
     if (observer.wants_distance(start, to)) {
         Distance &d = observer.distance;
-        const double *position = &group.series.x(0)[0][0], *speed = &group.series.u(0)[0][0];
+        const double *position = &group.series.position.lane(0), *speed = &group.series.velocity.lane(0);
         const size_t stride = size_t(group.series.columns) * LANES;
         for (int k = 0; k <= Blocks::ORDER; k++) {
             d.position[k] = position[k * stride + blocks - 1] - position[k * stride];

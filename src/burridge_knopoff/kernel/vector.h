@@ -155,8 +155,9 @@ class Vectors {
     BK_INLINE const vec &operator[](size_t k) const { return storage[k].v; }
     BK_INLINE vec *at(size_t k = 0) { return &storage[0].v + k; }
     BK_INLINE const vec *at(size_t k = 0) const { return &storage[0].v + k; }
+    // A lane of the whole array. Rows of lanes are read from here: a vector's element has no address in every compiler.
     BK_INLINE double &lane(size_t k) { return reinterpret_cast<double *>(storage.data())[k]; }
-    BK_INLINE double lane(size_t k) const { return reinterpret_cast<const double *>(storage.data())[k]; }
+    BK_INLINE const double &lane(size_t k) const { return reinterpret_cast<const double *>(storage.data())[k]; }
     size_t size() const { return storage.size(); }
     // Make room for as many; what was there is lost.
     void reserve(size_t count) {
