@@ -28,8 +28,8 @@ struct Group {
     int section = -1;  // lane of W in g
     int side = 0;      // the observer's side at the start of the piece
     uint64_t version = 0;
-    int number = 0;
-    bool alive = false;  // whether it has blocks
+    int number = 0, first = 0;  // its own number, and that of its first block
+    bool alive = false;         // whether it has blocks
 
     explicit Group(const Model &model, Polynomial &polynomial)
         : state(model, layout), series(model, layout), search(polynomial) {}

@@ -382,9 +382,14 @@ void Run::observe_section(const Clock &at, const Clock &reach) {
     double terms[Blocks::ORDER + 1] = {section_at};
     for (int i = first; i < last; i++)
         if (group_of[i] < 0) terms[1] -= model.v;
-    for (auto &group : groups) {
+    // In the order of their blocks: numbers of groups depend on where a run began.
+    std::vector<Group *> parts;
+    for (auto &group : groups)
+        if (group->alive && group->planned) parts.push_back(group.get());
+    std::sort(parts.begin(), parts.end(), [](const Group *a, const Group *b) { return a->first < b->first; });
+    for (Group *group : parts) {
         int begin, stop;
-        if (!group->alive || !group->planned || !section_lanes(*group, begin, stop)) continue;
+        if (!section_lanes(*group, begin, stop)) continue;
         group->load_sum(polynomial, begin, stop);
         polynomial.shift(group->start.until(from));
         for (int k = 1; k <= Blocks::ORDER; k++) terms[k] += polynomial.coefficient[k];

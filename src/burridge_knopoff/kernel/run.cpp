@@ -133,6 +133,7 @@ Group &Run::build(std::vector<int> members, const Clock &at) {
         std::rotate(members.begin(), members.begin() + gap + 1, members.end());
     }
     group.number = number;
+    group.first = members[0];
     group.alive = true;
     group.layout.member = members;
     group.start = at;

@@ -33,6 +33,17 @@ DEFAULT_EXPONENTS = 3
 LONGEST_STEP = 0.25
 
 
+def check_step(step: float, longest: float, duration: float, chain: Chain) -> None:
+    """Raise ValueError if a fixed step is too long for a chain, or makes too many steps in a time.
+
+    longest : step times the highest frequency of the chain
+    """
+    if step > (longest := longest / chain.highest_frequency):
+        raise refusal("step", step, f"at most {longest:.3g} in this chain: longer steps miss events")
+    if duration * chain.blocks > MOST_STEPS * step:
+        raise refusal("step", step, f"at most {MOST_STEPS / chain.blocks:.3g} steps in the whole run")
+
+
 @settings
 @dataclass(frozen=True)
 class Settings:
@@ -100,10 +111,8 @@ class Settings:
             allowed = f"at most {MOST_NUMBERS / (2.0 * blocks):.3g} with {blocks} blocks"
             raise refusal("lyapunov_exponents", self.lyapunov_exponents, allowed)
         self.section.check_chain(chain)
-        if self.solver == "rk4" and self.step > (longest := LONGEST_STEP / chain.highest_frequency):
-            raise refusal("step", self.step, f"at most {longest:.3g} in this chain: longer steps miss events")
-        if self.solver == "rk4" and self.duration / self.step * blocks > MOST_STEPS:
-            raise refusal("step", self.step, f"at most {MOST_STEPS / blocks:.3g} steps in transient and window")
+        if self.solver == "rk4":
+            check_step(self.step, LONGEST_STEP, self.duration, chain)
         # The number of events is not known beforehand. Their tables have the same limit; a run that reaches it ends.
         numbers = (2.0 * blocks + 1.0) * min(self.trajectory, self.duration) / self.trajectory_sampling
         if numbers > MOST_NUMBERS:

@@ -1,0 +1,117 @@
+"""Exponents per event against a QR decomposition of what each event makes of perturbations, and the clock of a state."""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, ChainState, Model, event_exponents, law_of, record_events
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from tests.kernel.test_catalogue import recorded
+from tests.kernel.test_quasistatic import next_event
+
+
+def rough(model, seed=1, time=0.0):
+    """Return a state of rest, somewhat out of line."""
+    blocks = model.blocks
+    position = np.random.default_rng(seed).uniform(-0.95, -0.6, blocks) - model.sliding_offset
+    return ChainState(position, np.zeros(blocks), np.ones(blocks, dtype=bool), time=time)
+
+
+def growth_between(model, start, times, count, loading):
+    """Return the logarithms by which perturbations grow from each time to the next, shape (times - 1, count)."""
+    blocks = model.blocks
+    generator = np.random.default_rng(5)
+    matrix = np.vstack([generator.normal(size=(blocks, count)), np.zeros((blocks, count))])
+    state, growth = start, []
+    for time in times:
+        runner = Runner(model, perturbations=np.linalg.qr(matrix)[0], loading=loading, groups=False)
+        runner.begin(state)
+        assert runner.run(time) == Status.COMPLETED
+        state = runner.final()
+        matrix, triangle = np.linalg.qr(runner.perturbations)
+        with np.errstate(divide="ignore"):
+            growth.append(np.log(np.abs(np.diag(triangle))))
+    return np.array(growth[1:])
+
+
+@pytest.mark.parametrize("blocks", [2, 3, 7, 23, 24, 30])
+def test_exponents_under_quasistatic_loading_are_those_of_the_maps_from_event_to_event(blocks):
+    """All of them: each map has one that is −∞. Once they were 0, as a time of the slip clock ended the batches."""
+    model = Model(Chain(blocks, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 1.0)
+    start, begin, end = rough(model), 2.0, 2.0 + 60.0 / blocks
+    found = event_exponents(model, start, end, begin=begin, count=blocks, loading="quasistatic")
+    # As a whole, like the perturbations: chaos takes the run in groups apart from it.
+    time = recorded(model, start, end, False, loading="quasistatic")[0]["time"]
+    before, seen = time[time < begin], time[time >= begin]
+    assert found.events == len(seen) > 20
+    # Moments of rest before and after each event; the perturbations align until the window begins.
+    edges = np.concatenate([before[-1:], seen, [end]])
+    rest = np.concatenate([0.5 * (before[:-1] + before[1:]), 0.5 * (edges[:-1] + edges[1:])])
+    growth = growth_between(model, start, rest, blocks, "quasistatic")[-len(seen) :]
+    finite, expected = found.exponent[:-1], growth.mean(axis=0)[:-1]
+    assert finite[0] == pytest.approx(expected[0], rel=1e-5)
+    assert finite.sum() == pytest.approx(expected.sum(), abs=1e-6)
+    # Those between align slowly, each by its distance from the next.
+    assert finite == pytest.approx(expected, abs=5e-3)
+    assert found.exponent[-1] == -np.inf
+    assert found.exponent[0] > 0.0
+
+
+def rests(model, start, end):
+    """Return moments at which all blocks stick, from a start of rest to an end."""
+    runner = Runner(model, keep_events=True)
+    runner.begin(start)
+    assert runner.run(end) == Status.COMPLETED
+    time, _, kind = runner.events()
+    stop = np.flatnonzero(np.cumsum(np.where(kind == 1, 1, -1))[:-1] == 0)
+    return 0.5 * (time[stop] + time[stop + 1])
+
+
+@pytest.mark.parametrize("blocks", [2, 3, 12])
+def test_exponents_under_a_steady_driver_are_those_of_the_flow(blocks):
+    model = Model(Chain(blocks, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.02 / blocks)
+    start = rough(model)
+    times = rests(model, start, 60.0 / model.v)
+    times = times[times > 6.0 / model.v]
+    found = event_exponents(model, start, times[-1], begin=times[0], count=2, loading="steady")
+    growth = growth_between(model, start, np.concatenate([rests(model, start, times[0]), times]), 2, "steady")
+    growth = growth[-len(times) + 1 :]
+    assert found.events > 40
+    # All but the turn of the perturbations within the first and the last event.
+    assert found.exponent == pytest.approx(growth.sum(axis=0) / found.events, abs=5e-3)
+
+
+def test_the_exponent_of_two_blocks_is_that_of_their_map():
+    """Which SciPy integrates from stop to start to stop; its derivative by differences."""
+    model = Model(
+        Chain(2, coupling=3.62, pulling=1.0, threshold=(1.0, 2.25)), law_of("carlson_langer", 0.0, {"sigma": 0.2}), 1.0
+    )
+    position = np.array([-0.5, -0.8])
+    start = ChainState(position - model.sliding_offset, np.zeros(2), np.ones(2, dtype=bool))
+    rates, size, direction = [], 1e-6, np.array([1.0, 0.0])
+    for _ in range(45):
+        ends = [next_event(position + shift * direction, 3.62)[0] for shift in (size, -size)]
+        change = np.subtract(*ends) / (2.0 * size)
+        rates.append(np.log(np.linalg.norm(change)))
+        direction = change / np.linalg.norm(change)
+        position = next_event(position, 3.62)[0]
+    time = record_events(model, start, 100.0, loading="quasistatic").time
+    # Perturbations have one direction from the first event on.
+    begin, end = (0.5 * (time[k - 1] + time[k]) for k in (5, 45))
+    found = event_exponents(model, start, end, begin=begin)
+    assert found.events == 40
+    assert found.exponent[0] == pytest.approx(np.mean(rates[5:]), abs=1e-4)
+
+
+@pytest.mark.parametrize("loading", ["steady", "quasistatic"])
+def test_the_clock_of_the_state_moves_no_exponent(loading):
+    """Errors were 6.7 times too small from a late state, whose events all fell into one batch."""
+    model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.1)
+    found = [
+        event_exponents(model, rough(model, time=time), time + 512.0, loading=loading)
+        for time in (0.0, 2.0**14, -(2.0**14))
+    ]
+    for other in found[1:]:
+        assert other.events == found[0].events
+        assert other.exponent == pytest.approx(found[0].exponent, rel=1e-6)
+        assert other.error == pytest.approx(found[0].error, rel=1e-3)

@@ -1,0 +1,137 @@
+"""Nothing depends on τ: every public function that takes a state gives the same for it at any time of its clock."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    Chain,
+    InitialState,
+    Model,
+    OrbitError,
+    Symmetry,
+    event_exponents,
+    event_multipliers,
+    find_periodic_orbit,
+    law_of,
+    limit_cycle,
+    record_events,
+    simulate,
+    transverse_exponent,
+)
+from burridge_knopoff.motion.chain_synchronization import Watch, watch_state
+from burridge_knopoff.motion.section_returns import visit
+from burridge_knopoff.periodic_orbits.flow import flow, mean_distance
+from burridge_knopoff.running.runner import Runner
+
+#: Times at which the clock starts; sums with them are exact for dyadic steps.
+CLOCKS = (-(2.0**20), -1.0, 2.0**13, 2.0**20)
+
+PAPER = Model(Chain(3), law_of("linearized", 0.08))
+ROUGH = Model(Chain(5, coupling=5.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.125)
+
+
+def settled(model=PAPER):
+    run = simulate(model, "plus", transient=0.0, window=3000.0, lyapunov_exponents=0)
+    return replace(run.final, time=0.0)
+
+
+def at_rest(model=ROUGH):
+    position = (-0.5, -0.9, -0.6, -0.8, -0.7)
+    return model.begin(InitialState("rest", position, 0.0), "tested")
+
+
+def run_of(state, **options):
+    run = simulate(PAPER, state, transient=64.0, window=512.0, sampling=4.0, batches=4, events="all", **options)
+    shift = state.time
+    times = np.concatenate([run.event_time, run.time, run.trajectory_time, run.crossing_time]) - shift
+    assert (run.begin_time, run.end_time) == (shift, shift + 576.0)
+    return run.status, times, run.distance, run.crossing_velocity, run.lyapunov_exponent, run.lyapunov_error
+
+
+def events_of(state, **options):
+    found = record_events(ROUGH, state, state.time + 512.0, **options)
+    return found.status.name, found.time - state.time, found.moment, found.interval, found.blocks
+
+
+def events_later(state):
+    found = record_events(ROUGH, state, state.time + 512.0, begin=state.time + 256.0)
+    return found.time - state.time, found.moment, found.interval
+
+
+def exponents_of(state, loading="quasistatic"):
+    found = event_exponents(ROUGH, state, state.time + 64.0, count=3, loading=loading)
+    return found.status.name, found.events, found.exponent[:2], found.error[:2]
+
+
+def orbit_of(orbit):
+    return orbit.period, orbit.symmetry.name, orbit.stop_counts
+
+
+def watched(state):
+    fate = watch_state(Runner(PAPER), state, Watch(time_limit=800.0))
+    return fate.outcome.name, fate.mean_distance
+
+
+CALLS = {
+    "simulate": (settled, run_of),
+    "simulate by rk4": (settled, lambda state: run_of(state, solver="rk4", step=2.0**-6)[:4]),
+    "simulate by map": (settled, lambda state: run_of(state, solver="map")),
+    "record_events": (at_rest, events_of),
+    "record_events, quasi-static": (at_rest, lambda state: events_of(state, loading="quasistatic")),
+    "record_events by rk4": (at_rest, lambda state: events_of(state, solver="rk4", step=2.0**-6)),
+    "record_events, some": (at_rest, events_later),
+    "event_exponents": (at_rest, exponents_of),
+    "event_exponents, steady": (at_rest, lambda state: exponents_of(state, "steady")),
+    "event_multipliers": (at_rest, lambda state: np.abs(event_multipliers(ROUGH, state, state.time + 0.25))),
+    "limit_cycle": (settled, lambda state: orbit_of(limit_cycle(PAPER, state, window=1000.0))),
+    "find_periodic_orbit": (
+        lambda: limit_cycle(PAPER, settled()).reference,
+        lambda state: orbit_of(find_periodic_orbit(PAPER, state, 157.2451476 / 2, Symmetry.SYMMETRIC)),
+    ),
+    "transverse_exponent": (settled, lambda state: transverse_exponent(PAPER, state, 64.0, 256.0)),
+    "visit": (settled, lambda state: visit(PAPER, state, 64.0, 512.0).returns),
+    "watch_state": (settled, watched),
+    "flow": (settled, lambda state: flow(PAPER, state, 32.0)[1]),
+    "mean_distance": (settled, lambda state: mean_distance(PAPER, state, 32.0)),
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_the_clock_moves_nothing(name):
+    make, call = CALLS[name]
+    state = make()
+    expected = call(replace(state, time=0.0))
+    for clock in CLOCKS:
+        # Times are those of a clock that resolves no less than 1e-10.
+        _same(call(replace(state, time=clock)), expected)
+
+
+def _same(found, expected):
+    if isinstance(expected, tuple | list) and not all(isinstance(item, int | float) for item in expected):
+        assert len(found) == len(expected)
+        for one, other in zip(found, expected, strict=True):
+            _same(one, other)
+    elif isinstance(expected, str):
+        assert found == expected
+    else:
+        assert np.allclose(found, expected, rtol=1e-7, atol=1e-9, equal_nan=True)
+
+
+def test_a_cycle_is_found_from_the_end_of_a_long_run():
+    """It was not from τ = 8000 on, as the clock of the state was taken for time that had passed."""
+    run = simulate(PAPER, "plus", transient=0.0, window=9000.0, lyapunov_exponents=0)
+    assert limit_cycle(PAPER, run.final).period == pytest.approx(157.2451476, abs=1e-6)
+    with pytest.raises(OrbitError, match="no periodic orbit found within 1$"):
+        limit_cycle(PAPER, run.final, window=1.0)
+
+
+@pytest.mark.parametrize("clock", [0.0, -1e6])
+def test_many_events_of_a_long_chain_accumulate_at_no_clock(clock):
+    """From a clock below 0 they all counted as those of one time unit once."""
+    model = Model(Chain(3), law_of("linearized", 0.2))
+    state = replace(model.begin(InitialState("own", (-0.9, -1.0, -0.95), (0.1, 0.1, 0.1))), time=clock)
+    run = simulate(model, state, transient=0.0, window=5000.0, lyapunov_exponents=0)
+    assert run.event_count > 3000
+    assert run.status == "completed"
