@@ -1,4 +1,4 @@
-"""Exponents per event against a QR decomposition of what each event makes of perturbations, and the clock of a state."""
+"""Exponents per event against a QR decomposition of what each event makes of perturbations."""
 
 import numpy as np
 import pytest

@@ -11,8 +11,8 @@ from burridge_knopoff.catalogue.stability import event_exponents, event_multipli
 from burridge_knopoff.kernel._core import Catalogue, Exponents
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.runner import Runner, new_observer
-from burridge_knopoff.running.simulation import run as simulation
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import run as simulation
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS
 

@@ -103,8 +103,10 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     loading : see `record_events`
 
     They are eigenvalues of what the events make of displacements of the blocks. Under quasi-static loading one of them
-    is 0, as the threshold fixes one displacement. Raises ValueError, one line, as `record_events` does, if a block slips
-    at the start or at the end, and if perturbations overflow on the way.
+    is 0, as the threshold fixes one displacement.
+
+    Raises ValueError, one line, as `record_events` does, if a block slips at the start or at the end, and if
+    perturbations overflow on the way.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, event_multipliers, law_of
     >>> model = Model(Chain(1, pulling=1), law_of("carlson_langer", 0.0, {"sigma": 0.2}), v=1.0)
