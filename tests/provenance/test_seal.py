@@ -116,6 +116,15 @@ def test_a_damaged_text_or_picture_is_known(tmp_path, suffix, damage, reason):
         read_seal(path)
 
 
+def test_an_empty_text_is_whole_if_it_was_written_empty(tmp_path):
+    path = tmp_path / "result.txt"
+    write_sealed_text(path, "", ABOUT)
+    assert read_seal(path) == (ABOUT, "made")
+    path.write_text("some text\n")
+    with pytest.raises(BadFile, match="has other bytes than were written"):
+        read_seal(path)
+
+
 def test_a_seal_of_another_version(tmp_path):
     """It held 16 digits where what the file is stands now."""
     head = b"\n#seal 0123456789abcdef completed "

@@ -286,6 +286,11 @@ def test_bifurcations_in_words(found):
     ]
 
 
+def test_no_bifurcation_in_words(found):
+    """An empty text could not be told from one that was cut off."""
+    assert digest(found.isel(bifurcation=[])) == "No bifurcation was found between the values of a.\n"
+
+
 def test_a_segment_has_the_branch_of_most_attractors_on_it():
     """Not of the one that it was followed from, here the first."""
     places = {(0, 0): 0, (1, 0): 0, (2, 1): 0, (3, 0): 1}

@@ -30,6 +30,8 @@ _SEAL = re.compile(rb"\n#seal (.+) ([a-z_]+) ([0-9a-f]{64})\n\Z")
 _INSIDE = (".nc", "")
 #: Differences reported last, since they may follow from others.
 _LAST = ("inputs", "sources")
+#: Separates the reason why a file must not be used from the command that remakes it.
+REMEDY = "; remake it: "
 #: Maximum length of a value in a message.
 _LONGEST = 60
 
@@ -42,7 +44,7 @@ class BadFile(ValueError):
 
     def __init__(self, path: str | Path, reason: str, kind: str = "stale") -> None:
         self.path, self.reason, self.kind = Path(path), reason, kind
-        super().__init__(f"{path}: {reason}; remake it: {remake_command(path)}")
+        super().__init__(f"{path}: {reason}{REMEDY}{remake_command(path)}")
 
 
 def identity(*parts: str) -> str:
@@ -114,7 +116,7 @@ def read_sealed(path: str | Path) -> tuple[bytes, dict[str, Any], str]:
         raise BadFile(path, "is missing", "missing") from None
     except OSError as error:
         raise BadFile(path, f"cannot be read: {error.strerror}", "corrupt") from None
-    if not content:
+    if beside == path and not content:
         raise BadFile(path, "is empty", "corrupt")
     found = _SEAL.search(seal, max(seal.rfind(_MARK), 0))
     if found is None:
@@ -123,7 +125,7 @@ def read_sealed(path: str | Path) -> tuple[bytes, dict[str, Any], str]:
     if beside == path:
         content = content[: found.start()]
     if hashlib.sha256(content + found[0][: -len(found[3]) - 1]).hexdigest().encode() != found[3]:
-        raise BadFile(path, "has other bytes than were written", "corrupt")
+        raise BadFile(path, "has other bytes than were written" if content else "is empty", "corrupt")
     try:
         about = json.loads(found[1])
     except ValueError:

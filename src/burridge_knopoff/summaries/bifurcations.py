@@ -137,8 +137,8 @@ def digest(dataset: xarray.Dataset) -> str:
         if np.isfinite(one["period"]):
             beyond = f", beyond {_listed(one['stops_beyond'])}" if (one["stops_beyond"] >= 0).all() else ""
             parts.append(f"period {one['period']:.6g}, stops {_listed(one['stops'])}{beyond}")
-        lines.append("; ".join(parts) + "\n")
-    return "".join(lines)
+        lines.append("; ".join(parts))
+    return "\n".join(lines or ["No bifurcation was found between the values of a."]) + "\n"
 
 
 def _happening(one: Mapping[str, Any]) -> str:
