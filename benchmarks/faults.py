@@ -36,6 +36,7 @@ from tests.workflow.faults import (
     no_mounts,
     processes,
     read_only,
+    remedies,
     running,
     small_disk,
     stages_running,
@@ -195,7 +196,7 @@ def damages(trials: Trials) -> None:
             os.utime(target)
             run = study.run()
             reasons = failures(run.stderr) if run.returncode else {}
-            named = {found[1] for reason in reasons.values() if (found := re.search("; remake it: (.*)$", reason))}
+            named = remedies(run.stderr)
             trials.stopped(f"point: {name}", len(named) == 1 and "mean_distance.log" in reasons)
             remake = min(named, default="")
         trials.judge(study, f"point: {name}", remake=remake)

@@ -12,7 +12,7 @@ import numpy as np
 from burridge_knopoff.claims.formats import untestable
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, READING
 from burridge_knopoff.study.formatting import counted
-from burridge_knopoff.study.job_log import failure, interrupted
+from burridge_knopoff.study.job_log import failure, interrupted, remedies
 from snakemake_logger_plugin_study.display import elapsed
 from snakemake_logger_plugin_study.run import DONE, FAILED, Run
 
@@ -37,7 +37,8 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
             f"study {results.name}: stopped after {elapsed(seconds)}: {reasons or 'not at its end'}",
             *(failure(*job) for job in told[:MOST_FAILED]),
             *([f"failed: and {len(told) - MOST_FAILED} more"] if len(told) > MOST_FAILED else []),
-            *(made, "the same command goes on where this run stopped"),
+            made,
+            *(_continuing(remedies(path for job in failed for path in job.log))),
         ]
     lines = [f"study {results.name}: done in {elapsed(seconds)}", made]
     # Older summaries say nothing about the run.
@@ -48,6 +49,13 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
             except Exception as error:
                 lines.append(f"{results / name}: cannot be read ({error})")
     return lines
+
+
+def _continuing(remedies: Sequence[str]) -> list[str]:
+    """Return how to continue: the command of the run would stop at the same bad files again."""
+    if not remedies:
+        return ["the same command goes on where this run stopped"]
+    return [f"this command recreates the bad files and continues: {command}" for command in remedies]
 
 
 def _made(results: Path, made: Sequence[str]) -> str:

@@ -112,6 +112,22 @@ def test_a_run_that_failed():
     ]
 
 
+def test_bad_files_are_remade_by_one_command_and_by_no_other():
+    """Seven jobs stop at two bad files: the command of the run would stop there again."""
+    head = "snakemake -c2 --configfile study.yaml -R"
+    for n in range(7):
+        file = f"results/paper/points/{n % 2}.nc"
+        error = f"burridge_knopoff.provenance.seal.BadFile: {file}: is empty; remake it: {head} {file}"
+        Path(f"{n}.log").write_text(f"Traceback (most recent call last):\n  raise\n{error}\n")
+    assert lines(*((f"job {n}", FAILED, [], [f"{n}.log"]) for n in range(7))) == [
+        "study paper: stopped after 1 s: 7 jobs failed",
+        *(f"failed: job {n}: results/paper/points/{n % 2}.nc: is empty (log {n}.log)" for n in range(7)),
+        "made: nothing",
+        "this command recreates the bad files and continues: "
+        f"{head} results/paper/points/0.nc results/paper/points/1.nc",
+    ]
+
+
 def test_a_run_that_was_interrupted():
     """A job of which the log tells no end did not run to its end, even if its file is there."""
     Path("x.nc").touch()

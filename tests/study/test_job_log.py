@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from burridge_knopoff.running.processes import shared_out
-from burridge_knopoff.study.job_log import SILENT, failure, last_words
+from burridge_knopoff.study.job_log import SILENT, failure, last_words, remedies
 
 TRACEBACK = """Traceback (most recent call last):
   File "a.py", line 3, in <module>
@@ -35,6 +35,14 @@ def test_last_words(tmp_path, text, words):
     assert last.startswith(words)
     assert bool(last) == bool(words)
     assert "\n" not in last
+
+
+def test_the_command_that_remakes_a_bad_file_is_no_part_of_the_reason(tmp_path):
+    """Seven jobs may stop at one file: their reasons are listed one by one, the command once."""
+    (tmp_path / "log").write_text(TRACEBACK + "ValueError: a.nc: is empty; remake it: snakemake -c2 -R a.nc\n")
+    (tmp_path / "other").write_text(TRACEBACK + "ValueError: wrong\n")
+    assert last_words(tmp_path / "log") == "ValueError: a.nc: is empty"
+    assert remedies([tmp_path / "log"] * 7 + [tmp_path / "other"]) == ["snakemake -c2 -R a.nc"]
 
 
 def test_what_a_long_job_has_done_is_not_why_it_failed(tmp_path, caplog):

@@ -134,6 +134,11 @@ def failures(text: str) -> dict[str, str]:
     return {line[3]: line[2] for line in found if line}
 
 
+def remedies(text: str) -> list[str]:
+    """Return the commands of the last words of a run that recreate bad files."""
+    return re.findall(r"^this command recreates the bad files and continues: (.+)$", text, re.MULTILINE)
+
+
 def differences(study: Study, other: Study, *folders: str) -> list[str]:
     """Return the files that the two studies do not have alike, and temporary files."""
     mine, theirs = (each.files(*(folders or COMPARED)) for each in (study, other))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from burridge_knopoff.provenance.files import nearest_folder
+from burridge_knopoff.provenance.seal import REMEDY
 
 #: Only the end of a log is read.
 _TAIL = 20_000
@@ -32,7 +33,25 @@ _NO_FAILURE = re.compile(r"note: |.+: \d+, [\d.]+ s, the longest [\d.]+ s")
 
 
 def last_words(log: str | Path) -> str:
-    """Return, in one line, the error of the last traceback in a log, or its last line if that reports a failure."""
+    """Return, in one line, the error of the last traceback in a log, or its last line if that reports a failure.
+
+    Without the command that remakes a bad file, which is that of all jobs that read it: see `remedies`.
+    """
+    words = _last_words(log).partition(REMEDY)[0]
+    return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
+
+
+def remedies(logs: Iterable[str | Path]) -> list[str]:
+    """Return the commands that remake the bad files at which jobs stopped, one for all files of a study."""
+    files: dict[str, dict[str, None]] = {}
+    for log in logs:
+        if command := _last_words(log).partition(REMEDY)[2]:
+            head, option, file = command.rpartition(" -R ")
+            files.setdefault(head + option, {})[file] = None
+    return [head + " ".join(named) for head, named in files.items()]
+
+
+def _last_words(log: str | Path) -> str:
     try:
         text = Path(log).read_bytes()[-_TAIL:].decode("utf-8", errors="replace")
     except OSError:
@@ -40,8 +59,7 @@ def last_words(log: str | Path) -> str:
     _, traceback, said = text.rpartition(_TRACEBACK)
     lines = [line for line in said.splitlines() if line.strip() and not _NO_FAILURE.match(line)]
     said = _CALLS.sub("", said) if traceback else "".join(lines[-1:])
-    words = _CLASS.sub("", " ".join(said.split()))
-    return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
+    return _CLASS.sub("", " ".join(said.split()))
 
 
 def interrupted(logs: Sequence[str | Path], *, stopping: bool = False) -> bool:
