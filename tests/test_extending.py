@@ -94,7 +94,7 @@ def extend(folder):
     for name in (".clang-format", "pyproject.toml", "setup.py", "Snakefile"):
         shutil.copy(REPOSITORY / name, folder)
     (folder / "profiles").symlink_to("workflow/profiles")
-    assert len(apply(PAGE, folder)) == 13
+    assert len(apply(PAGE, folder)) == 14
     run(folder, sys.executable, "setup.py", "--quiet", "build_ext", "--inplace")
 
 

@@ -13,11 +13,12 @@ import pytest
 import xarray
 
 from burridge_knopoff.claims.claim import read_claims
+from burridge_knopoff.claims.evidence import READ_BY_JUDGES
 from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
 from burridge_knopoff.claims.ledger import ledger
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, NotTestableError, Range, at_values, by_interval, by_value
 from burridge_knopoff.study.yaml_file import ConfigError
-from tests.claims.said import CLAIMS, PICTURES
+from tests.claims.said import CLAIMS, PICTURES, judged
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
 from tests.refused import refused
 
@@ -136,6 +137,36 @@ def test_a_file_that_is_not_there_or_no_text(tmp_path: Path) -> None:
 @pytest.fixture(scope="module")
 def content() -> dict:
     return ledger("test", CLAIMS.values(), evidence(paper_world()), ["orbits"])
+
+
+class Recorded(dict):
+    """Summaries that note which of them are asked for."""
+
+    def __init__(self, summaries: dict[str, xarray.Dataset]) -> None:
+        super().__init__(summaries)
+        self.read: set[str] = set()
+
+    def __getitem__(self, name: str) -> xarray.Dataset:
+        self.read.add(name)
+        return super().__getitem__(name)
+
+    def __contains__(self, name: object) -> bool:
+        self.read.add(str(name))
+        return super().__contains__(name)
+
+    def get(self, name: str, default: object = None) -> object:
+        return self[name] if name in self else default
+
+
+def test_judges_read_the_summaries_that_are_declared_and_no_others() -> None:
+    """The rule takes these: of more the verdicts would be out of date needlessly, of fewer they would hide a change."""
+    summaries = Recorded(paper_world())
+    known = evidence(summaries)
+    for name in CLAIMS:
+        judged(name, known)
+    assert summaries.read == set(READ_BY_JUDGES)
+    with pytest.raises(ValueError, match=r"basins: not in READ_BY_JUDGES"):
+        known.summary("basins")
 
 
 def test_json_is_strict_and_whole(content: dict) -> None:

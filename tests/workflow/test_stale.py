@@ -268,6 +268,13 @@ def test_a_key_remakes_only_what_uses_it(finished, edited, changes, roots):
     assert found == planned(finished, *roots, "report")
 
 
+def test_maps_of_basins_leave_the_verdicts_up_to_date(edited):
+    """No statement of the paper is about them."""
+    found = jobs(changed(edited, {"basins.pixels": 9, "basins.pairs": 21}).ok("-n"))
+    assert {"basins", "figure_basins", "report"} <= found.keys()
+    assert "claims" not in found
+
+
 @pytest.mark.parametrize(("key", "value", "counts", "spared"), RESHAPED, ids=[key for key, *_ in RESHAPED])
 def test_a_key_that_adds_or_takes_away(edited, key, value, counts, spared):
     found = jobs(changed(edited, {key: value}).ok("-n"))

@@ -1,10 +1,14 @@
-# Claims: the verdict on each statement of the paper, from the summaries.
+# Claims: the verdict on each statement of the paper, from the summaries that judges read.
+from burridge_knopoff.claims.evidence import READ_BY_JUDGES
 
 
 rule claims:
     """Judge every claim of the paper from the summaries."""
     input:
-        expand(f"{SUMMARY}/{{name}}.nc", name=MADE),
+        expand(
+            f"{SUMMARY}/{{name}}.nc",
+            name=[name for name in MADE if name in READ_BY_JUDGES],
+        ),
     output:
         content=f"{SUMMARY}/claims.json",
         table=report(

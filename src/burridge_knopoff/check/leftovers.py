@@ -9,9 +9,10 @@ from pathlib import Path
 from burridge_knopoff.figures.description import figure_descriptions, study_figures
 from burridge_knopoff.provenance.seal import seal_path
 from burridge_knopoff.study.paths import STRETCH, VALUE
-from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES, SUMMARIES, TEXTS
+from burridge_knopoff.study.stages import OPTIONAL_SUMMARIES, SUMMARIES
 from burridge_knopoff.study.stretches import stretches
 from burridge_knopoff.study.study import Study, all_points, solver_points
+from burridge_knopoff.study.summary_rows import SUMMARY_ROWS, TEXTS
 
 #: Patterns of the parts of file names; a file with any other name never counts as leftover.
 _WILDCARDS = {
@@ -105,9 +106,7 @@ def _other_files(study: Study) -> Iterator[Named]:
         yield [f"{folder}/{{law}}.nc"], f"{_STAGE_OF.get(stage, stage)}/{{law}}", [{"law": law} for law in laws]
     numbers = study.config["chains"]["blocks"] if study.chain_summaries else []
     yield ["chains/blocks{blocks}.nc"], "chains/blocks{blocks}", [{"blocks": str(number)} for number in numbers]
-    # Summaries that every study over a has are identified by their figures.
-    shown = {name for figure in figure_descriptions() if not figure.of_runs for name in figure.inputs}
-    for name in sorted(OPTIONAL_SUMMARIES | shown):
+    for name in sorted(OPTIONAL_SUMMARIES | SUMMARY_ROWS.keys()):
         files = [f"summary/{name}.{suffix}" for suffix in ("nc", *TEXTS.get(name, ()))]
         yield files, _STAGE_OF.get(name, name), [{}] if study.has_summary(name) else []
     files = [f"summary/claims.{suffix}" for suffix in ("json", "csv", "md")]

@@ -22,8 +22,8 @@ SUMMARIES = {"attractors": ("attractors", "refined", "rotation"), "claims": ()}
 #: Summaries of longer chains, which have their own target.
 CHAIN_SUMMARIES = ("chains", "two_blocks")
 
-#: Suffixes of the text files that come with the netCDF file of a summary.
-TEXTS = {"agreement": ("csv", "txt"), **dict.fromkeys(("attractors", "basins", "bifurcations", "proof"), ("txt",))}
+#: Suffixes of the text files that come with the netCDF file of a summary of a stage.
+TEXTS = dict.fromkeys(("attractors", "basins", "bifurcations", "proof"), ("txt",))
 
 #: All summaries of optional stages and of longer chains.
 OPTIONAL_SUMMARIES = {name for stage in OPTIONAL for name in SUMMARIES.get(stage, (stage,))} | {*CHAIN_SUMMARIES}

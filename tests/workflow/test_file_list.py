@@ -1,0 +1,77 @@
+"""The files of a study: those that rules make are those that are recorded and checked, and a job reads what it needs."""
+
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+from burridge_knopoff.check.leftovers import study_files
+from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.yaml_file import read_yaml
+from tests.workflow.conftest import REPOSITORY, Study
+from tests.workflow.test_runs import jobs
+
+ONE_POINT = """
+study: one
+a: [0.08]
+initial: {minus: {}}
+laws: {linearized: {}}
+transient: 20
+window: 20
+batches: 2
+without: [attractors, solvers, proof, claims]
+"""
+ROW = '    "unseen": SummaryRow("Average J, which no figure shows.", keys=("synchronization_threshold",)),\n'
+SEEN = "summary/mean_distance.nc"
+UNSEEN = "summary/unseen.nc"
+
+
+@pytest.fixture
+def with_unseen(tmp_path):
+    """A study of one point whose tree has a summary that no figure shows."""
+    tree = tmp_path / "tree"
+    tree.mkdir()
+    for name in ("Snakefile", "profiles", "config", "src", "workflow"):
+        subprocess.run(["cp", "-a", str(REPOSITORY / name), str(tree)], check=True)
+    rows = tree / "src/burridge_knopoff/study/summary_rows.py"
+    rows.write_text(rows.read_text().replace("SUMMARY_ROWS = {\n", f"SUMMARY_ROWS = {{\n{ROW}"))
+    shutil.copy(tree / "src/burridge_knopoff/summaries/mean_distance.py", rows.parents[1] / "summaries/unseen.py")
+    return Study(tmp_path / "study", ONE_POINT, tree)
+
+
+def check(study):
+    """Return what `bk check` of its tree prints."""
+    command = [sys.executable, "-c", "from burridge_knopoff.cli import main; main(['check', 'results/one'])"]
+    return subprocess.run(command, cwd=study.folder, env=study.environment(), capture_output=True, text=True).stdout
+
+
+def test_a_summary_that_no_figure_shows_is_checked(with_unseen):
+    study = with_unseen
+    results = study.folder / "results/one"
+    study.ok(f"results/one/{UNSEEN}", f"results/one/{SEEN}")
+    assert check(study) == "results/one: 1 point and 2 other files: 0 missing, 0 corrupt, 0 stale, 0 failed\n"
+    whole = (results / UNSEEN).read_bytes()
+    (results / UNSEEN).write_bytes((results / SEEN).read_bytes())
+    assert f"stale    results/one/{UNSEEN}: is another file: got {SEEN}, expected {UNSEEN}\n" in check(study)
+    (results / UNSEEN).write_bytes(whole[:-1])
+    assert f"corrupt  results/one/{UNSEEN}: " in check(study)
+    (results / UNSEEN).unlink()
+    assert f"missing  results/one/{UNSEEN}: not made yet\n" in check(study)
+
+
+def test_what_rules_make_is_what_is_checked(study):
+    """Of the whole study, and of its optional stage."""
+    made = study.ok("--summary", "all", "chains")
+    paths = set(re.findall(r"^results/tiny/(\S+)\t", made, re.MULTILINE))
+    of_points = {path for path in paths if path.startswith(("points/", "solvers/"))}
+    assert len(of_points) == 22
+    assert paths - of_points == {*study_files(load_study(read_yaml(study.config), "study.yaml"))}
+
+
+def test_verdicts_wait_for_what_judges_read(study):
+    """No statement of the paper is about maps of basins: the longest jobs of a study."""
+    found = jobs(study.ok("-n", "results/tiny/summary/claims.json"))
+    assert {"attractors", "phases", "two_blocks", "stick_slip"} <= found.keys()
+    assert not found.keys() & {"basins", "basin_tile", "basin_pairs"}
