@@ -179,6 +179,14 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
         f"{GOOD}chain: {{springs: none.txt}}\n",
         ["chain.springs: ", "none.txt: cannot be read: No such file"],
     ),
+    "springs_of_two_lines": (
+        f'{GOOD}chain: {{springs: "a\\nb"}}\n',
+        ["chain.springs: got 'a\\nb'", "name of a text file"],
+    ),
+    "springs_with_zero": (
+        f'{GOOD}chain: {{springs: "a\\0b"}}\n',
+        ["chain.springs: got 'a\\x00b'", "name of a text file"],
+    ),
     "springs_number": (f"{GOOD}chain: {{springs: 3}}\n", ["chain.springs: 3", "name of a text file"]),
     "light": (f"{GOOD}chain: {{mass: 0}}\n", ["chain.mass: got 0, expected a number between 1e-06 and 1e+06"]),
     "masses": (f"{GOOD}chain: {{mass: [1]}}\n", ["chain.mass: got 1 numbers, expected 1, or 3"]),

@@ -185,6 +185,17 @@ def test_texts_and_pictures_are_read_too(results, name, size):
     assert found(results) == {("corrupt", name)}
 
 
+def test_a_copy_under_another_name_is_no_file_of_the_study(results, capsys):
+    """Its seal is whole, but names another file; no rule makes it, so that there is no command that would."""
+    copy = results / "summary" / "mean_distance_copy.nc"
+    shutil.copy(results / "summary" / "mean_distance.nc", copy)
+    assert main(["check", str(results)]) == 0
+    assert capsys.readouterr().out.splitlines() == [
+        f"unknown  {copy}: no file of a study has that name",
+        f"{results}: 7 points and 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed",
+    ]
+
+
 def test_what_a_file_was_made_from_is_compared_with_the_record(results, capsys):
     """Where a file was made from another one that is bad itself, the reason names that."""
     names = ("attractors/linearized.nc", "summary/attractors.nc", "summary/attractors.txt", "figures/windows.png")
@@ -377,7 +388,7 @@ def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
     assert capsys.readouterr().out == f"{results}: 0 files deleted\n"
     main(["check", str(results)])
     said = capsys.readouterr().out
-    assert f"unknown  {results}/points/linearized/minus/a0.0500_copy.nc: no point of a study has that name" in said
+    assert f"unknown  {results}/points/linearized/minus/a0.0500_copy.nc: no file of a study has that name" in said
 
 
 def test_a_study_whose_config_has_changed_is_not_pruned(results, capsys):

@@ -76,9 +76,13 @@ def refusal(key: str, value: Any, allowed: object) -> ValueError:
 def cut(text: str, longest: int = LONGEST) -> str:
     """Return a text in one line of letters that can be printed, cut if it is long."""
     # What is left out is not looked at, however much it is.
-    head = " ".join(text[: 4 * longest].split())
-    head = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in head)
+    head = printable(" ".join(text[: 4 * longest].split()))
     return head if len(head) <= longest and len(text) <= 4 * longest else f"{head[: longest - 3]}..."
+
+
+def printable(text: str) -> str:
+    """Return a text with escapes for what cannot be printed, as a line break in the name of a file."""
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
 
 
 def shown(value: Any) -> str:

@@ -106,9 +106,9 @@ def check_study(results: str | Path) -> Check:
         files = counted(len(left), "file")
         notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
     others = {path for path in results.rglob("*.nc") if not path.name.startswith(".")} - points.keys() - set(left)
-    unknown = {path for path in others if path.relative_to(results).parts[0] in ("points", "solvers")}
-    there = {path for name in study_files(study) if (path := results / name).is_file()}
-    rest = {**dict.fromkeys((others - unknown) | there, Path()), **unmade(results, study)}
+    named = {results / name for name in study_files(study)}
+    there = {path for path in named if path.is_file()}
+    rest = {**dict.fromkeys(there, Path()), **unmade(results, study)}
     found = [
         *(_look(path, *run) for path, run in points.items()),
         *(_look(path, log=log) for path, log in rest.items()),
@@ -119,7 +119,7 @@ def check_study(results: str | Path) -> Check:
         sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path)),
         [
             *(Finding("leftover", path, "not part of this study") for path in left if path.suffix not in LOGS),
-            *(Finding("unknown", path, "no point of a study has that name") for path in sorted(unknown)),
+            *(Finding("unknown", path, "no file of a study has that name") for path in sorted(others - named)),
             *filter(None, [changed(results, record)]),
         ],
         notes,

@@ -94,7 +94,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _write_no_more()
         return READER_GONE
     except (ValueError, OSError, ImportError) as error:
-        words = f"{error}"
+        from burridge_knopoff.values import printable
+
+        words = printable(f"{error}")
         # Errors about files already name the file.
         if isinstance(error, OSError) and error.errno is not None and error.filename is None:
             words = f"standard output: cannot be written: {error.strerror}"

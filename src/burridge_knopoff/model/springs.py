@@ -82,7 +82,7 @@ class SpringsFile(Range):
     """
 
     def _fit(self, value: Any, key: str) -> str | None:
-        if not isinstance(value, str) or not value:
+        if not isinstance(value, str) or not value or not value.isprintable():
             return None
         return value if has_digest(value) else f"{value}@{_digest(_content(value))}"
 

@@ -51,7 +51,8 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     springs = chain_keys.get("springs") if isinstance(chain_keys, Mapping) else None
     # The config of a record names the file of springs with the digest of its content.
     is_new = isinstance(springs, str) and not has_digest(springs)
-    if isinstance(chain_keys, Mapping) and is_new:
+    # Any other name is refused below, with its key.
+    if isinstance(chain_keys, Mapping) and is_new and springs.isprintable():
         config = {**config, "chain": {**chain_keys, "springs": display_path(folder / f"{springs}")}}
     config = given_grid(config)
     # Use the types of YAML: lists instead of tuples.
