@@ -13,6 +13,11 @@ PIP := $(BIN)/python -m pip --disable-pip-version-check --quiet
 # pip compiles one file after the other, and the packages' own tests as well. Where Python may write no bytecode, the
 # project's own would be compiled anew in every job.
 INSTALL := $(PIP) install --no-compile --require-hashes --requirement
+# Without a compiler pip would print dozens of lines.
+define INSTALL_KERNEL
+@$(BIN)/python setup.py --quiet check_compiler
+$(PIP) install --no-build-isolation --no-deps --editable .
+endef
 COMPILE := $(BIN)/python -m compileall -qq -j 0 -x /tests/ .venv/lib src
 
 .PHONY: study announce setup kernel test types style test-oldest durations benchmark faults fuzz mutants size docs site lock clean
@@ -40,12 +45,12 @@ endif
 	@touch $@
 
 .venv/kernel: .venv/study setup.py pyproject.toml $(KERNEL)
-	$(PIP) install --no-build-isolation --no-deps --editable .
+	$(INSTALL_KERNEL)
 	@touch $@
 
 # Whatever the times of files say: what is compiled is known by what it was compiled from.
 kernel: .venv/study
-	$(PIP) install --no-build-isolation --no-deps --editable .
+	$(INSTALL_KERNEL)
 	@touch .venv/kernel
 
 .venv/test: requirements/test.lock .venv/study

@@ -1,6 +1,7 @@
 """Compiles the kernel; everything else about the package is in pyproject.toml."""
 
 import os
+import subprocess
 import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
@@ -37,6 +38,36 @@ def core(folder: str, flags: tuple[str, ...]) -> Extension:
     )
 
 
+def require_compiler(compiler: list[str], include: list[str]) -> None:
+    """End with one line, where pip would print dozens, if a C++20 file with Python's headers cannot be compiled.
+
+    compiler : its command; include : folders of headers
+    """
+    command = [*compiler, *COMPILER_FLAGS, *(f"-I{folder}" for folder in include), "-x", "c++", "-c", "-"]
+    probe = "#include <Python.h>\n#include <concepts>\n"
+    try:
+        done = subprocess.run([*command, "-o", f"{WORK.name}/probe.o"], input=probe, capture_output=True, text=True)
+    except OSError as error:
+        reason = f"{compiler[0]}: {error.strerror}"
+    else:
+        if not done.returncode:
+            return
+        said = done.stderr.splitlines() or [f"{compiler[0]}: exit code {done.returncode}"]
+        reason = next((line for line in said if "error" in line), said[-1])
+    sys.exit(
+        f"no C++20 compiler that works ({reason}): install g++ 11 or newer and Python's headers "
+        "(Debian, Ubuntu: apt install g++ python3-dev), or name another compiler in CXX"
+    )
+
+
+class CheckedCompiler(build_ext):
+    """Compiles nothing, but finds out whether the kernel could be compiled."""
+
+    def build_extensions(self) -> None:
+        """End with one line if not."""
+        require_compiler(self.compiler.compiler_so_cxx, self.compiler.include_dirs)
+
+
 class RecordedBuild(build_ext):
     """Compiles the kernel, and records beside it what it was compiled from."""
 
@@ -47,6 +78,7 @@ class RecordedBuild(build_ext):
 
     def build_extensions(self) -> None:
         """Compile the files of a module side by side, which setuptools compiles one after the other."""
+        require_compiler(self.compiler.compiler_so_cxx, self.compiler.include_dirs)
         compile_files = self.compiler.compile
 
         def compile_file(source: str, options: dict) -> list[str]:
@@ -73,7 +105,7 @@ class RecordedBuild(build_ext):
 
 
 setup(
-    cmdclass={"build_ext": RecordedBuild},
+    cmdclass={"build_ext": RecordedBuild, "check_compiler": CheckedCompiler},
     # A source distribution has its metadata in the tree.
     options={"build": {"build_base": WORK.name}, "egg_info": {} if "sdist" in sys.argv else {"egg_base": WORK.name}},
     ext_modules=[core(folder, flags) for folder, flags in vector_flags().items()],

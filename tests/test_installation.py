@@ -1,9 +1,12 @@
 """Installed from its distributions, away from the checkout: what a plain install brings is enough for the library."""
 
 import json
+import os
 import subprocess
+import sys
 import tarfile
 import zipfile
+from pathlib import Path
 
 import pytest
 
@@ -42,6 +45,30 @@ def run(installed, folder, *arguments):
     done = subprocess.run([installed.python, "-I", *arguments], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     return done.stdout
+
+
+OLD = "#!/bin/sh\necho 'cc1plus: error: unrecognized option -std=c++20' >&2; exit 1\n"
+
+
+@pytest.mark.parametrize(
+    ("program", "reason"),
+    [("", "compiler: No such file or directory"), (OLD, "cc1plus: error: unrecognized option -std=c++20")],
+)
+def test_without_a_compiler_make_says_in_one_line_what_to_install(repository, tmp_path, program, reason):
+    compiler = tmp_path / "compiler"
+    if program:
+        compiler.write_text(program)
+        compiler.chmod(0o755)
+    command = ["make", "-o", ".venv/study", "kernel", f"BIN={Path(sys.executable).parent}"]
+    outside = {key: value for key, value in os.environ.items() if not key.startswith("MAKE")}
+    environment = {**outside, "CXX": str(compiler), "LC_ALL": "C"}
+    run = subprocess.run(command, cwd=repository, env=environment, capture_output=True, text=True)
+    assert run.returncode == 2
+    line, end = run.stderr.splitlines()
+    assert line.startswith("no C++20 compiler that works (")
+    assert reason in line
+    assert "apt install g++ python3-dev" in line
+    assert end.startswith("make: ***")
 
 
 def test_building_for_another_environment_touches_nothing_in_the_tree(installed):

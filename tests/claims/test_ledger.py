@@ -155,7 +155,8 @@ class Recorded(dict):
         return super().__contains__(name)
 
     def get(self, name: str, default: object = None) -> object:
-        return self[name] if name in self else default
+        self.read.add(name)
+        return super().get(name, default)
 
 
 def test_judges_read_the_summaries_that_are_declared_and_no_others() -> None:

@@ -1,4 +1,4 @@
-"""The files of a study: those that rules make are those that are recorded and checked, and a job reads what it needs."""
+"""The files of a study: those that rules make are recorded and checked, and a job waits for what it reads."""
 
 import re
 import shutil
