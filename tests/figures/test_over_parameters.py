@@ -11,10 +11,10 @@ from burridge_knopoff.figures.over_parameters import MOST
 from burridge_knopoff.figures.style import write_figure
 
 
-def summary(**parameters):
+def summary(laws=("drop",), states=("minus", "plus"), **parameters):
     """Return a summary of numbers that are all different."""
     axes = ("law", "initial", *parameters)
-    shape = (1, 2, *map(len, parameters.values()))
+    shape = (len(laws), len(states), *map(len, parameters.values()))
     numbers = np.arange(np.prod(shape), dtype=float).reshape(shape)
     values = {
         "mean_distance": (axes, numbers),
@@ -23,7 +23,7 @@ def summary(**parameters):
         "lyapunov_exponent": ((*axes, "exponent"), np.stack([numbers - 5.0, numbers - 9.0], axis=-1)),
         "lyapunov_error": ((*axes, "exponent"), np.stack([numbers, numbers], axis=-1)),
     }
-    return xr.Dataset(values, {"law": ["drop"], "initial": ["minus", "plus"], **parameters})
+    return xr.Dataset(values, {"law": list(laws), "initial": list(states), **parameters})
 
 
 A, SIGMA, V = [0.1, 0.2, 0.4], [0.0, 0.5], np.linspace(1.0, 2.0, 9)
@@ -46,6 +46,17 @@ def test_a_map_has_the_first_parameter_to_the_right_and_the_second_upward(tmp_pa
             assert np.array_equal(drawn.get_array(), expected)
         assert [panel.get_xlabel() for panel in figure.axes[:2]] == ["$a$"] * 2
         assert figure.axes[0].get_ylabel() == r"$\mathrm{sigma}$"
+
+
+@pytest.mark.parametrize(("laws", "states"), [(1 + (n % 2 == 0), n // (1 + (n % 2 == 0))) for n in range(1, 13)])
+@pytest.mark.usefixtures("no_collection")
+def test_any_number_of_panels_is_drawn(laws, states):
+    names = [f"law{k}" for k in range(laws)], [f"state{k}" for k in range(states)]
+    figure = grid_distance.draw(summary(*names, a=A, sigma=SIGMA))
+    figure.draw_without_rendering()
+    titles = [title for panel in figure.axes if (title := panel.get_title(loc="left"))]
+    assert len(titles) == laws * states
+    assert titles[-1].replace("\n", " ").endswith(f"law{laws - 1} law, state{states - 1}")
 
 
 def test_kinds_have_their_colours():

@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.style import (
+    ACROSS,
     begin_at_zero,
     cells,
     label_panels,
@@ -96,6 +97,25 @@ def test_only_several_panels_have_letters():
     assert [panel.get_title(loc="left") for panel in panels] == ["(a) one", "(b) two"]
     label_panels(panels[:1], ["one"])
     assert panels[0].get_title(loc="left") == "one"
+
+
+@pytest.mark.usefixtures("no_collection")
+@pytest.mark.parametrize("rows", [1, 2])
+@pytest.mark.parametrize("columns", range(1, 13))
+def test_a_table_of_any_number_of_panels_is_drawn_with_its_labels_aligned(columns, rows):
+    @styled
+    def draw() -> Figure:
+        figure, table = panel_table(1.0, columns, "x", ["one", "two"][:rows])
+        for number, panel in enumerate(table.flat):
+            panel.plot([0.0, 1.0], [0.0, 10.0**number])
+        return figure
+
+    figure = draw()
+    figure.draw_without_rendering()
+    assert len(figure.axes) == rows * columns
+    left = [panel.yaxis.label.get_window_extent().x1 for panel in figure.axes if panel.get_ylabel()]
+    assert len(left) == rows * -(-columns // ACROSS)
+    assert left == pytest.approx([left[0]] * len(left), abs=0.5)
 
 
 def test_a_row_of_many_panels_goes_on_in_the_next_line():

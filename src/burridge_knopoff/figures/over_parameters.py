@@ -40,11 +40,10 @@ def draw_panels(
     shown = list(_parts(grid, [name for name in parameters if name not in varied[:2]]))
     across = min(len(shown), ACROSS)
     down = -(-len(shown) // across)
-    figure, panels = new_figure(page_width(max(across, 2)), 0.6 + 2.5 * down, down, across, share_columns=False)
-    for panel in panels[len(shown) :]:
-        panel.remove()
-    panels, drawn = panels[: len(shown)], None
-    first = grid[varied[0]].values
+    size = page_width(max(across, 2)), 0.6 + 2.5 * down
+    empty = range(len(shown), down * across)
+    figure, panels = new_figure(*size, down, across, share_columns=False, empty=empty)
+    first, drawn = grid[varied[0]].values, None
     for number, (panel, (_, one)) in enumerate(zip(panels, shown, strict=True)):
         panel.set_xlabel(f"${_symbol(varied[0])}$")
         if len(varied) > 1:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import partial, wraps
 from pathlib import Path
 from typing import Any, ParamSpec
@@ -75,9 +75,18 @@ def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:
 
 
 def new_figure(
-    width: float, height: float, rows: int = 1, columns: int = 1, share_rows: bool = True, share_columns: bool = True
+    width: float,
+    height: float,
+    rows: int = 1,
+    columns: int = 1,
+    share_rows: bool = True,
+    share_columns: bool = True,
+    empty: Collection[int] = (),
 ) -> tuple[Figure, list[Axes]]:
-    """Return a figure of a size in inches and its panels, row by row; columns may share x, and rows may share y."""
+    """Return a figure of a size in inches and its panels, row by row; columns may share x, and rows may share y.
+
+    empty : places without a panel, counted row by row
+    """
     # Wide enough that the last tick label of a panel stays apart from the first of the next panel.
     figure = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(wspace=0.04))
     axes = figure.subplots(
@@ -87,8 +96,11 @@ def new_figure(
         sharey="row" if share_rows else False,
         squeeze=False,
     )
+    for place in empty:
+        axes.flat[place].remove()
+    # A panel removed later would stay in the alignment, and the figure could not be drawn.
     figure.align_ylabels()
-    return figure, list(axes.flat)
+    return figure, [panel for place, panel in enumerate(axes.flat) if place not in empty]
 
 
 def page_width(columns: int) -> float:
@@ -107,11 +119,9 @@ def panel_table(
     across = min(columns, ACROSS)
     lines = -(-columns // across)
     count = len(ys) * lines
-    figure, panels = new_figure(page_width(across), 0.6 + height * count, count, across, share_rows=False)
-    table = np.reshape(np.array(panels, dtype=object), (len(ys), lines * across))
-    for panel in table[:, columns:].flat:
-        panel.remove()
-    table = table[:, :columns]
+    empty = np.arange(count * across).reshape(len(ys), -1)[:, columns:].ravel().tolist()
+    figure, panels = new_figure(page_width(across), 0.6 + height * count, count, across, share_rows=False, empty=empty)
+    table = np.reshape(np.array(panels, dtype=object), (len(ys), columns))
     for row, y in zip(table, ys, strict=True):
         for number, panel in enumerate(row):
             if number % across == 0:

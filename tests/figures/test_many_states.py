@@ -1,0 +1,65 @@
+"""Every figure with a panel, a column or a row for each initial state, of one to eight states under both laws."""
+
+from importlib import import_module
+from itertools import product
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff.dataset.point import to_dataset
+from burridge_knopoff.figures.description import figure_descriptions
+from burridge_knopoff.running.simulation import run
+
+STATES = range(1, 9)
+#: Summaries that know of initial states.
+OF_STATES = {"mean_distance", "bifurcation_diagram", "lyapunov", "agreement", "stick_slip", "solvers", "attractors"}
+
+
+def with_states(data: xr.Dataset, names: list[str]) -> xr.Dataset:
+    """Return a summary of two initial states as it is of more: each of the two in turn, under these names."""
+    if "initial" in data.dims:
+        return data.isel(initial=np.arange(len(names)) % 2).assign_coords(initial=names)
+    if "initial" not in data.coords:
+        return data
+    of_crossing = np.repeat(np.arange(data.sizes["point"]), data["crossing_count"])
+    points, crossings, states = [], [], []
+    for law, state in product(np.unique(data["law"]), range(len(names))):
+        these = np.flatnonzero((data["law"] == law) & (data["initial"] == state % 2))
+        points.append(these)
+        crossings.append(np.flatnonzero(np.isin(of_crossing, these)))
+        states.append(np.full(len(these), state))
+    chosen = data.isel(point=np.concatenate(points), crossing=np.concatenate(crossings))
+    flag = {**data["initial"].attrs, "flag_meanings": " ".join(names)}
+    return chosen.assign_coords(initial=("point", np.concatenate(states), flag))
+
+
+pytestmark = pytest.mark.usefixtures("no_collection")
+
+
+@pytest.fixture(scope="module")
+def small(small_studies):
+    return small_studies("paper")
+
+
+@pytest.fixture(scope="module")
+def point(small):
+    study, grid = small.study, small.grid
+    return to_dataset(run(study.model("linearized", 0.2), grid.initial["minus"], grid.settings["linearized"]))
+
+
+@pytest.mark.parametrize("count", STATES)
+def test_figures_of_one_to_eight_states(count, small, point):
+    names = [f"s{k}" for k in range(count)]
+    found = {name: with_states(data, names) for name, data in small.found.items()}
+    drawn = []
+    for figure in figure_descriptions():
+        known = figure.of_runs or set(figure.inputs) <= set(found)
+        if not known or not (figure.of_runs or OF_STATES & set(figure.inputs)) or "{initial}" in figure.file:
+            continue
+        taken = [dict.fromkeys(names, point)] if figure.of_runs else [found[name] for name in figure.inputs]
+        draw = import_module(f"burridge_knopoff.figures.{figure.name}").draw
+        made = draw(*taken, **{name: getattr(small.study, name) for name in figure.from_study})
+        made.draw_without_rendering()
+        drawn.append(figure.name)
+    assert {"agreement", "bifurcation_diagram", "distance", "lyapunov", "mean_distance", "stick_slip"} <= set(drawn)
