@@ -160,6 +160,18 @@ def locked(
     return change
 
 
+def parted(a: Callable[[np.ndarray], np.ndarray] = np.isfinite, **where: object) -> Alteration:
+    """Let the end blocks of branch 1 have two frequencies after detuning, where its a is so."""
+
+    def change(world: Summaries) -> None:
+        rotation = world["rotation"]
+        other = rotation["detuned_frequency"].copy(deep=True)
+        other.loc[{"block": 3, **where}] = 0.15
+        rotation["detuned_frequency"] = rotation["detuned_frequency"].where(~a(rotation["a"]), other)
+
+    return change
+
+
 def halved_growth(world: Summaries) -> None:
     world["equilibrium"]["growth_rate"].values[...] *= 0.5
 
@@ -204,12 +216,26 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("upper_edge", FAILS, reached(0, initial="minus", a=lambda a: a < 0.145)),
     ("upper_edge", NOT_TESTABLE, both(UNKNOWN_ABOVE, lost_at(np.nan))),
     ("upper_edge", NOT_TESTABLE, reached(0, initial="minus")),
+    ("lower_edge", HOLDS, reached(1, initial="minus", a=lambda a: a < 0.0051)),
+    ("lower_edge", NOT_TESTABLE, reached(1, initial="minus", a=lambda a: a < 0.0101)),
+    ("lower_edge", FAILS, reached(1, initial="minus", a=lambda a: a < 0.03)),
+    ("lower_edge", FAILS, reached(1, initial="minus", law="nonlinear", a=lambda a: a < 0.03)),
+    ("lower_edge", HOLDS, reached(0, initial="minus", a=0.0025)),
+    ("lower_edge", NOT_TESTABLE, reached(1, initial="minus")),
+    # A value of a at which it is not known leaves both open.
+    ("lower_edge", NOT_TESTABLE, reached(-1, initial="minus", a=lambda a: a < 0.0201)),
     ("plus_does_not_synchronize", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),
     ("plus_does_not_synchronize", CONVENTION, reached(0, initial="plus", **OTHER)),
     ("plus_does_not_synchronize", LOOSELY, synchronized(1, initial="plus", a=0.005)),
     ("plus_mean_distance", FAILS, both(alter("mean_distance", "mean_distance", 0.2), reached(0, initial="plus"))),
     ("plus_mean_distance", LOOSELY, alter("mean_distance", "mean_distance", 0.147)),
     ("plus_mean_distance", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("plus_stationary", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),
+    ("plus_stationary", CONVENTION, alter("agreement", "settled", 0, initial="plus")),
+    ("plus_stationary", CONVENTION, reached(0, initial="plus", **OTHER)),
+    ("plus_stationary", HOLDS, reached(-1, initial="plus", **OTHER)),
+    ("plus_stationary", NOT_TESTABLE, alter("agreement", "settled", -1, initial="plus")),
+    ("plus_stationary", NOT_TESTABLE, alter("mean_distance", "status", 1)),
     ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", 8000.0)),
     ("minus_distance_vanishes", FAILS, alter("mean_distance", "settling_time", np.nan)),
     ("minus_distance_vanishes", NOT_TESTABLE, alter("mean_distance", "status", 1)),
@@ -218,10 +244,6 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("history_decides", FAILS, both(alter("attractors", "branch", 0), reached(0))),
     ("history_decides", LOOSELY, ONE_ATTRACTOR),
     ("history_decides", NOT_TESTABLE, both(ONE_ATTRACTOR, alter("attractors", "basin_count", 20))),
-    ("history_decides_only_below", FAILS, alter("attractors", "basin_count", 100)),
-    ("history_decides_only_below", LOOSELY, alter("attractors", "basin_count", 100, a=0.2)),
-    ("history_decides_only_below", FAILS, reached(2, initial="minus", a=lambda a: a > 0.1)),
-    ("history_decides_only_below", NOT_TESTABLE, alter("attractors", "basin_count", 20, attractor=1)),
     ("first_block_decides", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),
     ("first_block_decides", CONVENTION, reached(0, initial="plus", **OTHER)),
     (
@@ -284,15 +306,29 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("transition", FAILS, alter("refined", "kind", TRANSIENT)),
     # Chaos of a run may be a transient.
     ("transition", HOLDS, alter("agreement", "kind", CHAOTIC)),
-    ("branch_locked", FAILS, locked(0)),
-    ("branch_locked", FAILS, locked(0, law=1)),
-    ("branch_locked", LOOSELY, locked(0, a=lambda a: (a > 0.03) & (a < 0.036))),
+    # The end blocks may be locked to the middle one, or to each other: then they keep one frequency with other masses.
+    ("branch_locked", READING, locked(0)),
+    ("branch_locked", READING, locked(0, law=1)),
+    ("branch_locked", HOLDS, locked(0, a=lambda a: (a > 0.03) & (a < 0.036))),
+    ("branch_locked", READING, parted()),
+    ("branch_locked", READING, alter("rotation", "detuned_correlation", 0.9)),
+    ("branch_locked", HOLDS, parted(detuning=0.8)),
+    ("branch_locked", LOOSELY, parted(a=lambda a: (a > 0.03) & (a < 0.036))),
+    ("branch_locked", FAILS, both(locked(0), parted())),
+    # Too few values of a leave one reading open, or both.
+    ("branch_locked", HOLDS, parted(a=lambda a: (a > 0.03) & (a < 0.05))),
+    (
+        "branch_locked",
+        NOT_TESTABLE,
+        both(*(change(a=lambda a: (a > 0.03) & (a < 0.05)) for change in (parted, lambda a: locked(0, a=a)))),
+    ),
     # Beyond the range, and where the kind of motion is not known.
     ("branch_locked", HOLDS, locked(0, a=lambda a: a > 0.1)),
     ("branch_locked", HOLDS, locked(-1, a=lambda a: (a > 0.03) & (a < 0.036))),
     ("branch_locked", NOT_TESTABLE, locked(-1, a=lambda a: a > 0.03)),
-    # That the end blocks share a frequency, as mirror symmetry makes them, is no locking.
-    ("branch_locked", FAILS, both(locked(0), alter("stick_slip", "velocity_frequency", 0.17))),
+    ("branch_locked", NOT_TESTABLE, lambda world: world.update(rotation=world["rotation"].sel(detuning=[0.8]))),
+    # That the end blocks share a frequency at equal masses, as mirror symmetry makes them, is no locking.
+    ("branch_locked", FAILS, both(locked(0), parted(), alter("stick_slip", "velocity_frequency", 0.17))),
     ("locking_precedes_chaos", FAILS, alter("bifurcations", "motion_before", QUASIPERIODIC)),
     ("locking_precedes_chaos", LOOSELY, alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=13)),
     # An orbit too long to be followed may be that of a tongue between tori: one of twelve may be, two of twelve decide.
@@ -333,6 +369,16 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("locking_precedes_chaos", HOLDS, both(alter("bifurcations", "change", Change.END), chaos_from(0.3))),
     ("locking_precedes_chaos", HOLDS, chaos_from(0.05)),
     ("periodic_is_synchronized", FAILS, alter("agreement", "kind", PERIODIC, initial="plus")),
+    # Sections of many points are a cloud, which the paper does not call periodic; beyond 0.08 it finds no synchrony.
+    (
+        "periodic_is_synchronized",
+        READING,
+        both(
+            alter("agreement", "kind", PERIODIC, initial="plus"),
+            alter("lyapunov", "section_period", 48, initial="plus"),
+        ),
+    ),
+    ("periodic_is_synchronized", READING, alter("agreement", "kind", PERIODIC, a=lambda a: a > 0.08)),
     ("periodic_is_synchronized", LOOSELY, alter("agreement", "kind", PERIODIC, **ONE_OF_MINUS)),
     ("periodic_is_synchronized", HOLDS, alter("agreement", "kind", UNDETERMINED, **ONE_OF_MINUS)),
     (
@@ -442,6 +488,16 @@ CASES: list[tuple[str, str, Alteration]] = [
     # A cycle may be that of one block, or the time between stops of any.
     ("cycle_time", READING, alter("stick_slip", "cycle_time", 5.7)),
     ("cycle_time", READING, alter("stick_slip", "stop_rate", 1.0)),
+    # Or that of the middle block from plus, where the figures are.
+    (
+        "cycle_time",
+        READING,
+        both(
+            alter("stick_slip", "cycle_time", 5.7),
+            alter("stick_slip", "stop_rate", 1.0),
+            alter("stick_slip", "cycle_time", 2.9, a=0.08, initial="plus", block=2),
+        ),
+    ),
     ("cycle_time", FAILS, both(alter("stick_slip", "cycle_time", 5.7), alter("stick_slip", "stop_rate", 1.0))),
     ("cycle_time", HOLDS, alter("stick_slip", "cycle_time", 5.7, a=lambda a: a > 0.245)),
     ("cycle_time", LOOSELY, alter("stick_slip", "cycle_time", 3.8)),
@@ -470,7 +526,9 @@ CASES: list[tuple[str, str, Alteration]] = [
     # The transient is no part of it.
     ("linearization_justified", HOLDS, alter("mean_distance", "least_friction", 0.7, a=ONE_OF_MANY)),
     ("linearization_justified", NOT_TESTABLE, alter("mean_distance", "status", 1, initial="minus")),
-    ("springs_and_masses_help", FAILS, slips(0.0)),
+    # At one velocity V of the driver, and at one v: a power of 2, and one of 0.
+    ("springs_and_masses_help", READING, slips(0.0)),
+    ("springs_and_masses_help", FAILS, slips(-1.0)),
     ("springs_and_masses_help", LOOSELY, slips(0.6)),
     ("springs_and_masses_help", HOLDS, slips(0.8)),
     ("laws_agree", FAILS, means_apart(lambda a: a > 0.055)),
@@ -483,13 +541,29 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("laws_agree_in_kind", LOOSELY, alter("agreement", "same_kind", 0, a=ONE_OF_MANY, initial="plus")),
     ("laws_agree_in_kind", NOT_TESTABLE, alter("agreement", "same_kind", -1, a=lambda a: a > 0.03, initial="plus")),
     ("laws_agree_in_kind", HOLDS, means_apart(lambda a: a > 0.055)),
-    ("two_blocks_agree", FAILS, PARTED),
-    ("two_blocks_agree", FAILS, both(PARTED, alter("two_blocks", "agrees", -1, state=1))),
+    # The kind of motion is one thing, ⟨J⟩ another.
+    ("two_blocks_agree", READING, PARTED),
+    ("two_blocks_agree", FAILS, both(PARTED, alter("two_blocks", "difference", 0.1, state=0))),
+    ("two_blocks_agree", READING, alter("two_blocks", "difference", 0.1, state=0)),
+    ("two_blocks_agree", HOLDS, alter("two_blocks", "difference", 0.1, state=0, a=0.1)),
+    # Two values of fourteen leave a reading open.
+    ("two_blocks_agree", HOLDS, alter("two_blocks", "difference", 0.1, state=0, a=[0.1, 0.12])),
+    (
+        "two_blocks_agree",
+        NOT_TESTABLE,
+        both(
+            *(
+                alter("two_blocks", name, value, a=[0.1, 0.12])
+                for name, value in {"difference": 0.1, "agrees": 0}.items()
+            )
+        ),
+    ),
+    ("two_blocks_agree", READING, both(PARTED, alter("two_blocks", "agrees", -1, state=1))),
     ("two_blocks_agree", HOLDS, alter("two_blocks", "agrees", -1, state=1, a=0.1)),
     # What the kind of motion decides needs no distance.
     (
         "two_blocks_agree",
-        FAILS,
+        READING,
         both(PARTED, alter("two_blocks", "same_kind", 0, state=0), alter("two_blocks", "margin", -2.0, state=0)),
     ),
     ("two_blocks_agree", HOLDS, alter("two_blocks", "margin", 7.0, a=0.1, state=2)),
@@ -518,7 +592,16 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("solutions_agree", CONVENTION, CHAOS_OF_RUNS),
     ("solutions_agree", CONVENTION, alter("agreement", "kind", PERIODIC, law="nonlinear", initial="minus")),
     # Whether other regular motion is periodic or not is no other result.
-    ("solutions_agree", HOLDS, alter("agreement", "kind", PERIODIC, law="nonlinear", initial="plus")),
+    (
+        "solutions_agree",
+        HOLDS,
+        alter("agreement", "kind", PERIODIC, law="nonlinear", initial="plus", a=lambda a: a < 0.1),
+    ),
+    # The laws are compared at every a: one of sixty is no exception to the rule.
+    ("solutions_agree", LOOSELY, alter("agreement", "kind", CHAOTIC, law="nonlinear", a=ONE_OF_MANY)),
+    # One of six points at which solvers differ is too little to say that they do.
+    ("solutions_agree", NOT_TESTABLE, alter("solvers", "difference", 0.05, a=0.02, initial="plus", solver="rk4")),
+    ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED, a=lambda a: a > 0.2)),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", CHAOTIC, law="nonlinear"))),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", UNDETERMINED))),
     ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED)),

@@ -10,9 +10,22 @@ import pytest
 import xarray
 
 from burridge_knopoff.attractors.lookup import reached
-from burridge_knopoff.claims.conventions import judge_shares, under_conventions
+from burridge_knopoff.claims.conventions import judge_shares, shares_by_readings, under_conventions
 from burridge_knopoff.claims.ledger import judge
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING, Measured, Verdict
+from burridge_knopoff.claims.verdict import (
+    CONVENTION,
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    NOT_TESTABLE,
+    READING,
+    Measured,
+    NotTestableError,
+    Share,
+    Verdict,
+    by_share,
+    verdict_of,
+)
 from tests.claims import alterations
 from tests.claims.alterations import CASES, ONE_OF_MANY, Alteration, at
 from tests.claims.said import CLAIMS, FILE, altered, judged, said
@@ -90,8 +103,45 @@ def test_the_attractor_that_is_reached_is_known_by_branch_and_side() -> None:
     assert known.tolist() == [True, True, False, False]
     assert values[known].tolist() == [2.0, 3.0]
     assert judge_shares({}, 0.9) == ("", "")
-    assert judge_shares({"one": 1.0, "other": 0.9}, 0.9) == (LOOSELY, "100.0 % (one), 90.0 % (other)")
-    assert judge_shares({"one": 1.0, "other": 0.89}, 0.9)[0] == FAILS
+
+
+@pytest.mark.parametrize(
+    ("hits", "count", "expected"),
+    [
+        (40, 40, HOLDS),
+        (1, 1, HOLDS),
+        (36, 40, LOOSELY),
+        (9, 10, LOOSELY),
+        # 95 % intervals that reach nine of ten, and those that do not.
+        (7, 8, NOT_TESTABLE),
+        (22, 26, NOT_TESTABLE),
+        (32, 39, NOT_TESTABLE),
+        (31, 39, FAILS),
+        (5, 8, FAILS),
+        (0, 1, FAILS),
+    ],
+)
+def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> None:
+    """Too few values are no reason to say that a statement fails, whichever claim they are of."""
+    share = Share(hits, count)
+    assert by_share(share, 0.9) == expected
+    texts = f"100.0 % (one), {100 * hits / count:.1f} % (other)"
+    one, open_one = {"one": Share(9, 9), "other": share}, expected == NOT_TESTABLE
+    assert judge_shares(one, 0.9) == ("" if open_one else expected, texts)
+    if open_one:
+        with pytest.raises(NotTestableError, match=rf"{hits} of {count} \(other\), and the 95 % interval"):
+            verdict_of(one, 0.9)
+    else:
+        assert verdict_of(one, 0.9) == expected
+    # What fails anyhow is not left open by another share.
+    assert verdict_of({**one, "third": Share(0, 9)}, 0.9) == FAILS
+
+
+def test_a_reading_that_is_open_does_not_count() -> None:
+    shares = {"first": {"one": Share(7, 8)}, "second": {"one": Share(8, 8)}}
+    assert shares_by_readings(shares, 0.9) == {"second": HOLDS}
+    with pytest.raises(NotTestableError, match="7 of 8"):
+        shares_by_readings({"first": shares["first"]}, 0.9)
 
 
 def test_every_claim_is_seen_to_fail() -> None:

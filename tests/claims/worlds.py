@@ -105,6 +105,8 @@ def paper_world() -> Summaries:
             other_law=["nonlinear"],
             state=np.arange(4),
             a=np.linspace(0.02, 0.4, 20).round(2),
+        ).assign_attrs(
+            synchronization_threshold=1e-6, **{f"agreement_{name}": value for name, value in AGREEMENT.items()}
         ),
     }
     for name, dataset in world.items():
@@ -250,7 +252,7 @@ def _refined() -> xarray.Dataset:
 
 
 def _rotation() -> xarray.Dataset:
-    """Return a plateau, 1/2, over all values of a of both laws."""
+    """Return a plateau, 1/2, over all values of a of both laws, and end blocks that keep one frequency if detuned."""
     refined = _refined()
     there = np.isfinite(refined["a"].values)
     data = {
@@ -259,8 +261,14 @@ def _rotation() -> xarray.Dataset:
         "rotation_number": (("law", "value"), np.where(there, 0.5, np.nan)),
         "rotation_error": (("law", "value"), np.where(there, 1e-3, np.nan)),
         "locked": (("law", "value"), np.where(there, 1, -1).astype("i1")),
+        "detuned_frequency": (
+            ("law", "value", "detuning", "block"),
+            there[..., None, None] * np.ones((2, 1)) * [0.22, 0.34, 0.22],
+        ),
+        "detuned_correlation": (("law", "value", "detuning"), there[..., None] * [-0.6, -0.6]),
     }
-    return xarray.Dataset(data, {"law": list(LAWS)})
+    coordinates = {"law": list(LAWS), "detuning": [0.1, 0.8], "block": BLOCKS}
+    return xarray.Dataset(data, coordinates, {"detuned_window": 1000.0})
 
 
 def _bifurcations() -> xarray.Dataset:

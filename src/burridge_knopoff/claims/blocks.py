@@ -4,66 +4,86 @@ from __future__ import annotations
 
 import numpy as np
 
+from burridge_knopoff.claims.conventions import by_readings, shares_by_readings
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
+    NOT_TESTABLE,
     Measured,
     Range,
+    Share,
     Verdict,
     at_values,
-    by_share,
     known_share,
+    verdict_of,
 )
+from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
+from burridge_knopoff.summaries.judgement import same_mean
+
+#: The two readings of «the same».
+KIND_AND_MEAN, MEAN = "in the kind of motion and in ⟨J⟩", "in ⟨J⟩"
 
 
 def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
-    """Judge whether both laws lead to like motion of the two-block train from all sampled states, in a range of a.
+    """Judge whether both laws give practically the same for the two-block train, from all sampled states at each a.
 
-    For comparison, the same is measured for two blocks that are both pulled, which is not the paper's chain.
+    The same may mean the kind of motion and ⟨J⟩, or ⟨J⟩ alone, the paper's measure. For comparison, the first is
+    measured for two blocks that are both pulled as well, which is not the paper's chain.
     """
-    both = evidence.choose(evidence.compared(evidence.summary("two_blocks")), a)
-    found = both.sel(chain="train")
-    agrees, same_kind, margin = (
-        found[name].transpose("state", "a").values for name in ("agrees", "same_kind", "margin")
-    )
-    known, right, grid = *_for_all_states(agrees), found["a"].values
-    share = known_share(
-        right, known, loose_share, f"the laws could not be compared for two blocks {at_values(grid, ~known)}"
-    )
-    measured = [Measured("share of a at which the laws agree from all states", share)]
-    measured.append(Measured("share of states and a at which they agree", float((agrees == 1)[agrees >= 0].mean())))
-    wrong = grid[known & ~right]
-    if len(wrong):
-        measured += [
-            Measured("smallest a at which they disagree", wrong[0]),
-            Measured("largest a at which they disagree", wrong[-1]),
-        ]
-    by_distance = (same_kind == 1) & (agrees >= 0) & np.isfinite(margin)
+    summary = evidence.summary("two_blocks")
+    both = evidence.choose(evidence.compared(summary), a)
+    found = both.sel(chain="train").transpose("law", "state", "a", ...)
+    grid, states = found["a"].values, found.sizes["state"]
+    agreement = {key: summary.attrs[f"agreement_{key}"] for key in ("relative_tolerance", "standard_errors")}
+    pair = {name: found[name].values for name in ("mean_distance", "kind", "difference", "difference_error")}
+    answers = {
+        KIND_AND_MEAN: found["agrees"].values,
+        MEAN: same_mean(pair, summary.attrs["synchronization_threshold"], agreement),
+    }
+    shares: dict[str, dict[str, Share]] = {}
+    measured, changes = [], []
+    for reading, agrees in answers.items():
+        known, right = _for_all_states(agrees)
+        unknown = f"the laws could not be compared for two blocks {at_values(grid, ~known)}"
+        share = known_share(right, known, loose_share, unknown)
+        shares[reading] = {reading: share}
+        measured.append(Measured(f"share of a at which the laws agree {reading} from all states", share.value))
+        of_states = float((agrees == Answer.YES)[agrees != Answer.UNDETERMINED].mean())
+        measured.append(Measured(f"share of states and a at which they agree {reading}", of_states))
+        wrong = grid[known & ~right]
+        if len(wrong):
+            measured.append(Measured(f"smallest a at which they disagree {reading}", wrong[0]))
+            measured.append(Measured(f"largest a at which they disagree {reading}", wrong[-1]))
+            changes.append(f"they disagree {reading} {at_values(grid, known & ~right)}")
+        if not known.all():
+            changes.append(f"unknown {reading} {at_values(grid, ~known)}")
+    readings = shares_by_readings(shares, loose_share)
+    ratio = np.abs(pair["difference"]) / np.maximum(*pair["mean_distance"])
+    if np.isfinite(ratio).any():
+        measured.append(Measured("largest |Δ⟨J⟩|/⟨J⟩", float(np.nanmax(ratio))))
+    by_distance = (found["same_kind"].values == Answer.YES) & (answers[KIND_AND_MEAN] != Answer.UNDETERMINED)
+    by_distance &= np.isfinite(found["margin"].values)
     if by_distance.any():
-        nearest = float(np.abs(margin[by_distance]).min())
+        nearest = float(np.abs(found["margin"].values[by_distance]).min())
         measured.append(Measured("smallest distance of Δ⟨J⟩ from the tolerance where it decides, in errors", nearest))
     other_known, other_right = _for_all_states(both["agrees"].sel(chain="both_pulled").transpose("state", "a").values)
     if other_known.any():
         of_other = float(other_right[other_known].mean())
-        measured.append(
-            Measured("the same share of a if both blocks are pulled, which is not the paper's chain", of_other)
-        )
-    states = found.sizes["state"]
+        measured.append(Measured("the first share if both blocks are pulled, which is not the paper's chain", of_other))
+    texts = [f"{of[name]} {name} ({readings.get(name, NOT_TESTABLE)})" for name, of in shares.items()]
     reason = (
         f"In the train model, pulled at its first block only, the laws agree from all {states} sampled states at "
-        f"{100 * share:.1f} % of the values of a with {a}."
+        f"{'; at '.join(texts)}, of the values of a with {a}."
     )
-    changes = [f"they disagree {at_values(grid, known & ~right)}"] if len(wrong) else []
-    if not known.all():
-        changes.append(f"unknown {at_values(grid, ~known)}")
-    return Verdict(by_share(share, loose_share), reason, measured, "; ".join(changes))
+    verdict, own = by_readings(readings)
+    return Verdict(verdict, reason, measured, "; ".join(changes), readings, own)
 
 
 def _for_all_states(agrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return where it is known whether laws agree from all states, and where they agree; answers : (states, a)."""
     # One state that disagrees decides; to say that all agree, all have to be known.
-    return (agrees >= 0).all(axis=0) | (agrees == 0).any(axis=0), (agrees == 1).all(axis=0)
+    return (agrees >= 0).all(axis=0) | (agrees == Answer.NO).any(axis=0), (agrees == Answer.YES).all(axis=0)
 
 
 def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
@@ -80,7 +100,7 @@ def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> 
     right = ((one == MotionKind.PERIODIC) & sticks).all(axis=1)
     grid = found["a"].values
     share = known_share(right, known, loose_share, f"the motion of one block is unknown {at_values(grid, ~known)}")
-    measured = [Measured("share of a at which one block sticks and slips periodically", share)]
+    measured = [Measured("share of a at which one block sticks and slips periodically", share.value)]
     two = np.isin(found["kind"].sel(chain="train").transpose("a", ...).values.reshape(len(grid), -1), CHAOS)
     evidences = [("the train of two blocks", grid, two)]
     if "agreement" in evidence.summaries:
@@ -93,8 +113,9 @@ def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> 
             measured.append(Measured(f"smallest a with chaos of {name}", values[chaos.any(axis=1)][0]))
     chaotic = sum(int(chaos.sum()) for *_, chaos in evidences)
     reason = (
-        f"One block sticks and slips periodically under both laws at {100 * share:.1f} % of the values of a with {a}; "
+        f"One block sticks and slips periodically under both laws at {share} of the values of a with {a}; "
         f"{chaotic or 'no'} motions of two or three blocks are chaotic there."
     )
     changes = [f"one block is not periodic {at_values(grid, known & ~right)}"] if (known & ~right).any() else []
-    return Verdict(by_share(share, loose_share) if chaotic else FAILS, reason, measured, "; ".join(changes))
+    own = verdict_of({"one block": share}, loose_share)
+    return Verdict(own if chaotic else FAILS, reason, measured, "; ".join(changes))

@@ -97,5 +97,7 @@ def _compared(evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
                 pair = {key: one[key].values[[0, i + 1]] for key in ("mean_distance", "mean_distance_error", "kind")}
                 both = {**pair, **{key: value[i] for key, value in told.items()}}
                 compare(both, one["a"].values, agreement[THRESHOLD], agreement)
-        changed[name] = dataset.assign_attrs({key: agreement[key] for key in (*AGREEMENT, THRESHOLD)})
+        prefix = "agreement_" if name == "two_blocks" else ""
+        about = {f"{prefix}{key}": agreement[key] for key in AGREEMENT}
+        changed[name] = dataset.assign_attrs({**about, THRESHOLD: agreement[THRESHOLD]})
     return replace(evidence, summaries={**evidence.summaries, **changed})

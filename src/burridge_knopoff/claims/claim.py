@@ -10,7 +10,18 @@ from typing import Any, get_type_hints
 
 import numpy as np
 
-from burridge_knopoff.claims import blocks, history, kinds, laws, locking, model, motion, section, synchronization
+from burridge_knopoff.claims import (
+    blocks,
+    history,
+    kinds,
+    laws,
+    locking,
+    model,
+    motion,
+    section,
+    solvers,
+    synchronization,
+)
 from burridge_knopoff.claims.margins import PARTS
 from burridge_knopoff.claims.verdict import Range, Verdict
 from burridge_knopoff.model import ranges
@@ -31,6 +42,7 @@ TOPICS = {
     "motion": motion,
     "model": model,
     "laws": laws,
+    "solvers": solvers,
     "blocks": blocks,
 }
 
@@ -76,7 +88,7 @@ CLAIMS = Named(
 _NUMBER, _NAME, _SHARE = Number(-ranges.HUGE, ranges.HUGE), Text("one name"), Number(0.0, 1.0, above=True)
 #: Ranges of judges' parameters by name; other parameters are checked by their type.
 _BY_NAME: Mapping[str, ranges.Range] = {
-    "a": Keys({name: Field(_NUMBER, "one end", FOLLOWS) for name in _RANGE}),
+    **dict.fromkeys(("a", "synchrony"), Keys({name: Field(_NUMBER, "one end", FOLLOWS) for name in _RANGE})),
     "laws": Several(OneOf(PAPER_LAWS), 1, distinct=True),
     "part": OneOf(PARTS),
     "law": OneOf(PAPER_LAWS),

@@ -12,13 +12,16 @@ from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     CONVENTION,
     FAILS,
+    NOT_TESTABLE,
     READING,
     Measured,
     Range,
+    Share,
     Verdict,
     at_values,
     by_share,
     shares_text,
+    verdict_of,
     worst,
 )
 
@@ -71,6 +74,17 @@ def by_readings(verdicts: Mapping[str, str]) -> tuple[str, str]:
     return (READING if _divided(verdicts) else own), own
 
 
+def shares_by_readings(shares: Mapping[str, Mapping[str, Share]], loose: float) -> dict[str, str]:
+    """Return the verdict under each reading for its worst share; a reading that is open is left out.
+
+    Raises NotTestableError if all of them are.
+    """
+    found = {reading: judge_shares(of_one, loose)[0] for reading, of_one in shares.items()}
+    if not any(found.values()):
+        verdict_of(next(iter(shares.values())), loose)
+    return {reading: verdict for reading, verdict in found.items() if verdict}
+
+
 def _divided(verdicts: Mapping[str, str]) -> bool:
     fails = [verdict == FAILS for verdict in verdicts.values()]
     return any(fails) and not all(fails)
@@ -98,8 +112,9 @@ def of_rounded_states(evidence: Evidence, initial: Sequence[str], laws: Sequence
     return texts
 
 
-def judge_shares(shares: Mapping[str, float], loose: float) -> tuple[str, str]:
-    """Return (the verdict for the worst share, the shares as text); ("", "") without shares."""
+def judge_shares(shares: Mapping[str, Share], loose: float) -> tuple[str, str]:
+    """Return (the verdict for the worst share, the shares as text); no verdict, "", if there is none or it is open."""
     if not shares:
         return "", ""
-    return worst(by_share(share, loose) for share in shares.values()), shares_text(shares)
+    verdict = worst(by_share(share, loose) for share in shares.values())
+    return ("" if verdict == NOT_TESTABLE else verdict), shares_text(shares)

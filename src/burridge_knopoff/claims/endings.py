@@ -8,8 +8,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import judge_shares
-from burridge_knopoff.claims.verdict import HOLDS, LOOSELY, Measured, NotTestableError, Range
+from burridge_knopoff.claims.verdict import (
+    HOLDS,
+    LOOSELY,
+    Measured,
+    NotTestableError,
+    Range,
+    share_of,
+    shares_text,
+    verdict_of,
+)
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.study.formatting import span
 
@@ -46,8 +54,8 @@ class Endings:
     slips : amplitudes at which every velocity is positive at the start, whatever the phases
     inside : values of a that are judged
 
-    Raises NotTestableError if phases.nc has no states, or too few, for this fraction, and if at every amplitude some
-    velocity is negative.
+    Raises NotTestableError if phases.nc has no states, or too few, for this fraction, if at every amplitude some
+    velocity is negative, and if the values of a are too few.
     """
 
     def __init__(self, phases: xarray.Dataset, inner_share: float, criteria: Criteria) -> None:
@@ -69,9 +77,8 @@ class Endings:
         # Judge all laws, the values of a inside the range, and the amplitudes without backward slip.
         self.cells = np.ix_(np.arange(len(self.laws)), self.inside, self.slips)
         cells = zip(self.laws, self.right[self.cells], strict=True)
-        own, self.shares = judge_shares(
-            {law: float(cell.all(axis=1).mean()) for law, cell in cells}, criteria.loose_share
-        )
+        shares = {law: share_of(cell.all(axis=1)) for law, cell in cells}
+        self.shares, own = shares_text(shares), verdict_of(shares, criteria.loose_share)
         self.verdict = LOOSELY if own == HOLDS and not self.right[:, self.inside].all() else own
 
     @property

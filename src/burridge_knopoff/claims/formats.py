@@ -70,14 +70,14 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
             "",
             f"### {topic.capitalize()}",
             "",
-            "| claim | verdict | why | where it changes | what would turn it | figure |",
+            "| claim | verdict | why | where it changes | what would change it | figure |",
             "|---|---|---|---|---|---|",
         ]
         for claim in claims:
             figure = f"[{claim['figure']}]({figures}/{claim['figure']}.png)" if claim["figure"] else ""
             own = f" (here: {claim['own']})" if claim["own"] != claim["verdict"] else ""
             judged = f"**{claim['verdict']}**{own}"
-            turning = "; ".join(claim["turns"]) or "nothing that was tried"
+            turning = "; ".join(claim["turns"]) or "no other choice that was tried"
             depends = f" Depends on {', '.join(claim['depends_on'])}." if claim["depends_on"] else ""
             statement = f"{claim['statement']} *{claim['place']}*{depends}"
             cells = [statement, judged, claim["reason"], claim["changes"], turning]

@@ -18,9 +18,13 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Range,
+    Share,
     Verdict,
     at_values,
     is_decided,
+    share_of,
+    shares_text,
+    verdict_of,
     worst,
 )
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -40,8 +44,8 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
     for law in PAPER_LAWS:
         found = attractors.sel(law=law)
         count = _coexisting(found, samples)
-        shares[law] = float((count > 1).mean())
-        measured.append(Measured(f"share of a with more than one attractor, {law}", shares[law]))
+        shares[law] = share_of(count > 1)
+        measured.append(Measured(f"share of a with more than one attractor, {law}", shares[law].value))
         measured.append(Measured(f"most attractors that coexist, {law}", float(count.max())))
         fraction = found["basin_fraction"].values[(found["branch"].values == 0) & (found["basin_count"].values > 0)]
         if len(fraction):
@@ -49,27 +53,8 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
             measured.append(Measured(f"largest basin fraction of synchrony, {law}", float(fraction.max())))
         if not (count > 1).all():
             single.append(f"at most one attractor {at_values(found['a'].values, count <= 1)} ({law})")
-    verdict, text = judge_shares(shares, loose_share)
-    reason = f"More than one attractor is reached at {text} of the values of a with {a}."
-    return Verdict(verdict, reason, measured, "; ".join(single))
-
-
-def one_attractor(evidence: Evidence, a: Range, samples: int, loose_share: float) -> Verdict:
-    """Judge whether exactly one attractor exists at each a of a range, so that history is irrelevant, under both laws.
-
-    Attractors are counted as in `coexistence`.
-    """
-    attractors = evidence.choose(evidence.own_attractors(), a)
-    shares, measured, several = {}, [], []
-    for law in PAPER_LAWS:
-        count = _coexisting(attractors.sel(law=law), samples)
-        shares[law] = float((count == 1).mean())
-        measured.append(Measured(f"share of a with one attractor, {law}", shares[law]))
-        if (count > 1).any():
-            several.append(f"more than one {at_values(attractors['a'].values, count > 1)} ({law})")
-    verdict, text = judge_shares(shares, loose_share)
-    reason = f"Exactly one attractor is reached at {text} of the values of a with {a}."
-    return Verdict(verdict, reason, measured, "; ".join(several))
+    reason = f"More than one attractor is reached at {shares_text(shares)} of the values of a with {a}."
+    return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(single))
 
 
 def _coexisting(found: xarray.Dataset, samples: int) -> np.ndarray:
@@ -91,8 +76,8 @@ def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, 
         known = np.isfinite(one) & np.isfinite(other)
         if not is_decided(one != other, known, loose_share):
             raise NotTestableError(f"too few runs under the {law} law completed at {a}")
-        shares[law] = float((one != other)[known].mean())
-        if shares[law] < 1.0:
+        shares[law] = share_of((one != other)[known])
+        if shares[law].value < 1.0:
             same.append(f"no difference {at_values(first['a'].values, known & (one == other))} ({law})")
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
@@ -101,11 +86,13 @@ def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, 
         differ = {law: _outcomes(False, loose_share, *pair) for law, pair in pairs.items()}
         return judge_shares({law: share for law, share in differ.items() if share is not None}, loose_share)
 
-    own, text = judge_shares(shares, loose_share)
+    own = verdict_of(shares, loose_share)
     reason = (
-        f"One of {initial[0]} and {initial[1]} synchronizes and the other does not at {text} of the values with {a}."
+        f"One of {initial[0]} and {initial[1]} synchronizes and the other does not at {shares_text(shares)} of the "
+        f"values of a with {a}."
     )
-    measured = [Measured(f"share of a at which the outcome differs, {law}", share) for law, share in shares.items()]
+    named = shares.items()
+    measured = [Measured(f"share of a at which the outcome differs, {law}", share.value) for law, share in named]
     return under_conventions(evidence, own, reason, measured, same, labels)
 
 
@@ -118,8 +105,8 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
         known = np.isfinite(one) & np.isfinite(other)
         if not is_decided(one == other, known, loose_share):
             raise NotTestableError(f"too few runs from {name} completed at {a}")
-        shares[name] = float((one == other)[known].mean())
-        if shares[name] < 1.0:
+        shares[name] = share_of((one == other)[known])
+        if shares[name].value < 1.0:
             differing.append(f"the outcomes from {name} differ {at_values(runs['a'].values, known & (one != other))}")
 
     def labels(attractors: xarray.Dataset) -> tuple[str, str]:
@@ -128,17 +115,19 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
         same = {state: _outcomes(True, loose_share, *pair) for state, pair in pairs.items()}
         return judge_shares({state: share for state, share in same.items() if share is not None}, loose_share)
 
-    own, text = judge_shares(shares, loose_share)
-    reason = f"Both laws have the same outcome, synchrony or none, at {text} of the values of a with {a}."
-    measured = [Measured(f"share of a with the same outcome, {name}", share) for name, share in shares.items()]
+    own = verdict_of(shares, loose_share)
+    reason = (
+        f"Both laws have the same outcome, synchrony or none, at {shares_text(shares)} of the values of a with {a}."
+    )
+    measured = [Measured(f"share of a with the same outcome, {name}", share.value) for name, share in shares.items()]
     return under_conventions(evidence, own, reason, measured, differing, labels)
 
 
-def _outcomes(same: bool, loose: float, one: xarray.DataArray, other: xarray.DataArray) -> float | None:
+def _outcomes(same: bool, loose: float, one: xarray.DataArray, other: xarray.DataArray) -> Share | None:
     """Return the fraction of a at which both branches synchronize, or neither (same), or one does; None if unknown."""
     known = ((one >= 0) & (other >= 0)).values
     right = (((one == 0) == (other == 0)) == same).values
-    return float(right[known].mean()) if is_decided(right, known, loose) else None
+    return share_of(right[known]) if is_decided(right, known, loose) else None
 
 
 def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:

@@ -8,20 +8,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from burridge_knopoff.attractors.lookup import reached
-from burridge_knopoff.claims.conventions import judge_shares, under_conventions
+from burridge_knopoff.claims.conventions import by_readings, judge_shares, shares_by_readings, under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
+    NOT_TESTABLE,
     Measured,
     NotTestableError,
     Range,
+    Share,
     Verdict,
     at_values,
     by_interval,
-    by_share,
     is_decided,
     known_share,
+    share_of,
+    shares_text,
+    verdict_of,
     worst,
 )
 from burridge_knopoff.motion.kind import (
@@ -74,7 +78,7 @@ def all_of_kind(
             unknown = f"the kind of motion from {state} under the {law} law is unknown {at_values(grid, ~known)}"
             name = f"{law}, {state}"
             shares[name] = known_share(right, known, loose_share, unknown)
-            measured.append(Measured(f"share of a with {what} motion, {name}", shares[name]))
+            measured.append(Measured(f"share of a with {what} motion, {name}", shares[name].value))
             if not right[known].all():
                 exceptions.append(f"other motion {at_values(grid, known & ~right)} ({name})")
             if not known.all():
@@ -93,11 +97,11 @@ def all_of_kind(
                 known, kind = kinds_reached(evidence.choose(attractors, a), state, law)
                 right = np.isin(kind, allowed)
                 if is_decided(right, known, loose_share):
-                    found[f"{law}, {state}"] = float(right[known].mean())
+                    found[f"{law}, {state}"] = share_of(right[known])
         return judge_shares(found, loose_share)
 
-    own, text = judge_shares(shares, loose_share)
-    reason = f"The motion is {what} at {text} of the values of a with {a}."
+    own = verdict_of(shares, loose_share)
+    reason = f"The motion is {what} at {shares_text(shares)} of the values of a with {a}."
     # Periodic and quasiperiodic together are regular motion, however the two are divided.
     if ("periodic" in kinds) != ("quasiperiodic" in kinds):
         longest = evidence.config["motion"]["longest_period"]
@@ -105,13 +109,49 @@ def all_of_kind(
     return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
 
-def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
-    """Judge whether, in a range of a, runs without synchrony are never periodic: all periodic runs are synchronized."""
-    shares, measured, exceptions = {}, [], []
+def periodic_is_synchronized(
+    evidence: Evidence, initial: Sequence[str], a: Range, synchrony: Range, points: int, loose_share: float
+) -> Verdict:
+    """Judge whether runs without synchrony are never periodic: all periodic runs are synchronized.
+
+    Periodic may mean all motion that repeats within `motion.longest_period`, in the range a. Or it may mean motion
+    whose section W = 0 is a line, as the paper calls it, where it finds synchrony: more points than `points` are a
+    cloud, which it takes for quasiperiodic or chaotic motion.
+
+    synchrony : range of a in which the paper finds synchrony
+    """
+    longest = evidence.config["motion"]["longest_period"]
+    first = f"with {a} that repeat within {longest:g} time units"
+    second = f"with {synchrony} whose section is no cloud"
+    everything, changes = _synchronized_shares(evidence, initial, a, np.inf, loose_share)
+    shares = {first: everything, second: _synchronized_shares(evidence, initial, synchrony, points, loose_share)[0]}
+    readings = shares_by_readings(shares, loose_share)
+    measured = [
+        Measured(f"share of the periodic runs {reading} that are synchronized, {name}", share.value)
+        for reading, of_runs in shares.items()
+        for name, share in of_runs.items()
+    ]
+    texts = [f"{shares_text(of)} of those {name} ({readings.get(name, NOT_TESTABLE)})" for name, of in shares.items()]
+    reason = f"Of the periodic runs are synchronized: {'; '.join(texts)}."
+    verdict, own = by_readings(readings)
+    reason = f"Of the periodic runs are synchronized: {'; '.join(texts)}."
+    return Verdict(verdict, reason, measured, "; ".join(changes), readings, own)
+
+
+def _synchronized_shares(
+    evidence: Evidence, initial: Sequence[str], a: Range, most: float, loose_share: float
+) -> tuple[dict[str, Share], list[str]]:
+    """Return the synchronized fraction of periodic runs with at most so many section points, and where others are.
+
+    Raises NotTestableError if no run is periodic, or runs of unknown kind decide.
+    """
+    shares, exceptions = {}, []
     for law in PAPER_LAWS:
         for state in initial:
             grid, kind = _kinds(evidence, state, law, a)
-            periodic = np.isin(kind, (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC))
+            count = evidence.choose(evidence.of_state("lyapunov", state), a).sel(law=law)["section_period"].values
+            other = (kind == MotionKind.PERIODIC) & (count <= most)
+            periodic = other | (kind == MotionKind.SYNCHRONIZED)
             if not periodic.any():
                 continue
             # A run of unknown kind may be periodic without synchrony.
@@ -121,17 +161,13 @@ def periodic_is_synchronized(evidence: Evidence, initial: Sequence[str], a: Rang
             name = f"{law}, {state}"
             right = kind[may_be] == MotionKind.SYNCHRONIZED
             shares[name] = known_share(right, periodic[may_be], loose_share, unknown)
-            measured.append(Measured(f"share of periodic runs that are synchronized, {name}", shares[name]))
-            if shares[name] < 1.0:
-                exceptions.append(f"periodic without synchrony {at_values(grid, kind == MotionKind.PERIODIC)} ({name})")
+            if other.any():
+                exceptions.append(f"periodic without synchrony {at_values(grid, other)} ({name})")
             if (may_be & ~periodic).any():
                 exceptions.append(f"unknown {where} ({name})")
     if not shares:
         raise NotTestableError(f"no run is periodic with {a}")
-    verdict, text = judge_shares(shares, loose_share)
-    longest = evidence.config["motion"]["longest_period"]
-    reason = f"Of the runs with {a} that repeat within {longest:g} time units, {text} are synchronized."
-    return Verdict(verdict, reason, measured, "; ".join(exceptions))
+    return shares, exceptions
 
 
 def onset_of_chaos(
@@ -194,16 +230,16 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
     zero = zero_exponents(exponent, error, settings)
     unknown = f"the Lyapunov exponents of the run from {initial} are unknown {at_values(runs['a'].values, ~known)}"
     share = known_share(zero, known, loose_share, unknown)
+    own = verdict_of({law: share}, loose_share)
     largest = int(np.nanargmax(np.where(known, np.abs(exponent), np.nan)))
     measured = [
-        Measured("share of a at which it cannot be told from 0", share),
+        Measured("share of a at which it cannot be told from 0", share.value),
         Measured(f"largest in modulus, at a = {runs['a'].values[largest]:g}", exponent[largest], error[largest]),
     ]
     reason = (
-        f"The largest exponent from {initial} ({law}) cannot be told from 0 at {100 * share:.1f} % of the values of a "
-        f"with {a}."
+        f"The largest exponent from {initial} ({law}) cannot be told from 0 at {share} of the values of a with {a}."
     )
-    changes = [f"not 0 {at_values(runs['a'].values, known & ~zero)}"] if share < 1.0 else []
+    changes = [f"not 0 {at_values(runs['a'].values, known & ~zero)}"] if share.value < 1.0 else []
     if not known.all():
         changes.append(f"unknown {at_values(runs['a'].values, ~known)}")
 
@@ -213,9 +249,9 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
         regular = np.isin(kind, (MotionKind.SYNCHRONIZED, *REGULAR))
         if not is_decided(regular, there, loose_share):
             return "", ""
-        return judge_shares({law: float(regular[there].mean())}, loose_share)
+        return judge_shares({law: share_of(regular[there])}, loose_share)
 
-    return under_conventions(evidence, by_share(share, loose_share), reason, measured, changes, labels)
+    return under_conventions(evidence, own, reason, measured, changes, labels)
 
 
 def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) -> Verdict:

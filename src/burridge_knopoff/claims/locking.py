@@ -7,23 +7,27 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.claims.conventions import by_readings, shares_by_readings
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.verdict import (
+    NOT_TESTABLE,
     Measured,
     NotTestableError,
     Range,
+    Share,
     Verdict,
     at_values,
     by_share,
     share_is_decided,
-    worst,
+    share_of,
+    shares_text,
+    verdict_of,
 )
 from burridge_knopoff.continuation.branch_changes import Change
-from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.kind import CHAOS, REGULAR, MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries.plateaux import locked_share, plateaux
+from burridge_knopoff.summaries.plateaux import plateaux
 
 if TYPE_CHECKING:
     import xarray
@@ -32,10 +36,14 @@ TORUS = "quasiperiodic motion, or chaos too weak to tell from it,"
 UNFOLLOWED = "a closed orbit too long to be followed, or a torus beside it,"
 
 
-def branch_locked(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
+def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: float) -> Verdict:
     """Judge whether the unsynchronized motion, branch 1, is locked at all a of a range, under both laws.
 
-    The rotation number decides. The end blocks always have equal frequencies, since the motion is its own mirror image.
+    The end blocks may be locked to each other: they then keep one frequency, in antiphase, if the mass of one of them
+    becomes 1 + `detuning` times as large. At equal masses their equal frequencies would show nothing, since the motion
+    is its own mirror image. Or they may be locked to the middle block: the rotation number decides, which is then a
+    ratio of whole numbers, constant in a.
+
     The fraction of a is taken over the values of the grid; plateaux are also known between the added values. A value
     with an unknown kind of motion counts as neither.
 
@@ -43,19 +51,32 @@ def branch_locked(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
     """
     evidence.check_blocks()
     rotation = evidence.summary("rotation")
-    verdicts, measured, shares, where = [], [], [], []
+    if detuning not in rotation["detuning"].values:
+        raise NotTestableError(f"rotation.nc has no motion with a detuning of {detuning:g}")
+    resolution = 1.0 / rotation.attrs["detuned_window"]
+    end_blocks = f"the end blocks to each other, with {100 * detuning:g} % more mass of one,"
+    middle = "the end blocks to the middle block"
+    shares: dict[str, dict[str, Share]] = {end_blocks: {}, middle: {}}
+    measured, where = [], []
     for law in PAPER_LAWS:
         found = rotation.sel(law=law)
         inside = a.choose(found["a"].values)
-        share, low, high = locked_share(found, inside)
         known = inside & (found["in_grid"].values == 1) & (found["locked"].values >= 0)
         if known.sum() < LEAST_VALUES:
             raise NotTestableError(f"branch 1 is regular motion at fewer than {LEAST_VALUES} values of a ({law})")
-        verdicts.append(by_share(share, loose_share))
-        shares.append(f"{100 * share:.1f} % ({law}; 95 % Wilson interval {100 * low:.1f} to {100 * high:.1f} %)")
+        grid = found["a"].values[known]
+        detuned = found.sel(detuning=detuning).isel(value=known)
+        apart = np.abs(detuned["detuned_frequency"].values[:, -1] - detuned["detuned_frequency"].values[:, 0])
+        together = (apart <= resolution) & (detuned["detuned_correlation"].values < 0.0)
+        shares[end_blocks][law] = share_of(together)
+        if np.isfinite(apart).any():
+            measured.append(Measured(f"largest difference of their frequencies, {law}", float(np.nanmax(apart))))
+        if not together.all():
+            where.append(f"the end blocks are not locked to each other {at_values(grid, ~together)} ({law})")
+        locked = found["locked"].values[known] == 1
+        shares[middle][law] = share_of(locked)
         number = found["rotation_number"].values[inside]
         measured += [
-            Measured(f"share of a at which branch 1 is locked, {law}", share),
             Measured(f"smallest rotation number, {law}", float(np.nanmin(number))),
             Measured(f"largest rotation number, {law}", float(np.nanmax(number))),
         ]
@@ -68,14 +89,16 @@ def branch_locked(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
             where.append(
                 f"the widest plateau, {widest.ratio}, reaches from a = {widest.first:.5g} to {widest.last:.5g} ({law})"
             )
-        if share:
-            where.append(f"locked {at_values(found['a'].values[known], found['locked'].values[known] == 1)} ({law})")
-    reason = (
-        f"Branch 1 is locked at {', '.join(shares)} of the values of a with {a}: its rotation number there is a "
-        "ratio of whole numbers and constant in a. The equal frequencies of its end blocks show no locking: they "
-        "follow from its mirror symmetry."
-    )
-    return Verdict(worst(verdicts), reason, measured, "; ".join(where))
+        if locked.any():
+            where.append(f"locked to the middle block {at_values(grid, locked)} ({law})")
+    for reading, of_laws in shares.items():
+        name = f"share of a at which branch 1 is locked, {reading}"
+        measured += [Measured(f"{name}, {law}", share.value) for law, share in of_laws.items()]
+    readings = shares_by_readings(shares, loose_share)
+    texts = [f"{r} at {shares_text(s)} ({readings.get(r, NOT_TESTABLE)})" for r, s in shares.items()]
+    reason = f"Branch 1 is locked: {'; '.join(texts)}, of the values of a with {a}."
+    verdict, own = by_readings(readings)
+    return Verdict(verdict, reason, measured, "; ".join(where), readings, own)
 
 
 def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
@@ -94,7 +117,9 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
     evidence.check_blocks()
     bifurcations = evidence.summary("bifurcations")
     laws = bifurcations.attrs["laws"].split()
-    verdicts, measured, texts, others = [], [], [], []
+    resolution = evidence.summary("refined").attrs["refine_resolution"]
+    shares: dict[str, Share] = {}
+    measured, texts, others = [], [], []
     for name in PAPER_LAWS:
         if name not in laws:
             raise NotTestableError(f"the study has no {name} law")
@@ -113,22 +138,20 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         if not places:
             raise NotTestableError(f"no branch of attractors becomes chaotic under the {name} law")
         count = Counter(places.values())
-        share = count[""] / len(places)
-        if not share_is_decided(count[""], len(places) - count[TORUS], len(places), loose_share):
+        least, most = (Share(hits, len(places)) for hits in (count[""], len(places) - count[TORUS]))
+        if by_share(most, loose_share) == NOT_TESTABLE:
+            raise NotTestableError(
+                f"a closed orbit comes before chaos at {least.hits} to {most.hits} of {len(places)} places ({name}), "
+                f"and the 95 % interval of that share reaches {most.interval[1]:.2f}: whether it is {loose_share:g} is "
+                f"not resolved with changes along a located within {resolution:g}"
+            )
+        if not share_is_decided(least.hits, most.hits, len(places), loose_share):
             raise NotTestableError(
                 f"before chaos there is {UNFOLLOWED} at {count[UNFOLLOWED]} of {len(places)} places ({name})"
             )
-        possible = len(places) - count[TORUS]
-        most = fraction_interval(possible, len(places))[2]
-        if share < loose_share <= most:
-            raise NotTestableError(
-                f"a closed orbit comes before chaos at {count['']} to {possible} of {len(places)} places ({name}), and "
-                f"the 95 % interval of that share reaches {most:.2f}: whether it is {loose_share:g} is not resolved "
-                f"with changes along a located within {evidence.summary('refined').attrs['refine_resolution']:g}"
-            )
-        verdicts.append(by_share(share, loose_share))
-        texts.append(f"{count['']} of {len(places)} ({name})")
-        measured.append(Measured(f"share of the beginnings of chaos at which a closed orbit ends, {name}", share))
+        shares[name] = least
+        texts.append(f"{least.hits} of {len(places)} ({name})")
+        measured.append(Measured(f"share of the beginnings of chaos at which a closed orbit ends, {name}", least.value))
         ends = Counter(int(bifurcations["kind"].values[k]) for k in np.flatnonzero(onset))
         for kind, often in sorted(ends.items()):
             measured.append(Measured(f"bifurcations there, {BifurcationKind(kind).name.lower()}, {name}", often))
@@ -142,7 +165,7 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         "Where a branch of attractors becomes chaotic as a grows, a closed orbit precedes chaos, not a torus: "
         f"{', '.join(texts)}."
     )
-    return Verdict(worst(verdicts), reason, measured, "; ".join(others))
+    return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(others))
 
 
 def _doubt(before: int, bifurcation: int) -> str:

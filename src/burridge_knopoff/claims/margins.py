@@ -2,9 +2,9 @@
 
 A tolerance is a choice. A reader should see which other sensible choices would change a verdict, or leave too little
 data to judge. Tried are: a tolerance of the claim or of the study within a factor of two; every second value of a; the
-neighbour of a named value of a; one compared value of a less; and other amplitudes of the inner blocks, levels of J, or
-parts of the runs for which there are data. If the claim depends on convention or reading, the verdicts under each count
-as well.
+neighbour of a named value of a; one compared value of a less; and other amplitudes of the inner blocks, detunings,
+levels of J, or parts of the runs for which there are data. If the claim depends on convention or reading, the verdicts
+under each count as well.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FACTOR = 2.0
 SHARES = ("share", "loose_share", "correlation")
 
 # Parameters with data for a few values only, and the summary whose coordinate lists these.
-LISTED = {"inner_share": "phases", "level": "mean_distance"}
+LISTED = {"inner_share": "phases", "level": "mean_distance", "detuning": "rotation"}
 
 #: The parts of a run that can judge a claim: the averaging window, or the whole run with its transient.
 PARTS = ("window", "run")

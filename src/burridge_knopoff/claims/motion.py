@@ -17,12 +17,14 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Range,
+    Share,
     Verdict,
     at_values,
-    by_share,
     by_value,
     known_share,
+    share_of,
     shares_text,
+    verdict_of,
     worst,
 )
 from burridge_knopoff.laws import law_of
@@ -32,7 +34,7 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 if TYPE_CHECKING:
     import xarray
 
-#: The two readings of a stick-slip cycle.
+#: The readings of a stick-slip cycle.
 ONE_BLOCK, ANY_BLOCK = "from stop to stop of one block", "from a stop of any block to the next one"
 
 
@@ -63,7 +65,7 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
             for law in laws:
                 known, rate = reached(attractors.sel(a=[at]), state, law, "stop_rate")
                 if known[0]:
-                    found[f"{law}, {state}"] = float((rate[0] > 0.0).all())
+                    found[f"{law}, {state}"] = Share(int((rate[0] > 0.0).all()), 1)
         return judge_shares(found, 1.0)
 
     return under_conventions(evidence, worst(verdicts), reason, measured, never, labels)
@@ -82,11 +84,13 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
     evidence.check_blocks()
     equilibrium = evidence.choose(evidence.summary("equilibrium"), a)
     attractors = evidence.choose(evidence.summary("attractors"), a)
-    shares, every, measured = {}, {}, []
+    shares: dict[str, Share] = {}
+    every: dict[str, Share] = {}
+    measured = []
     for law in PAPER_LAWS:
         real = equilibrium["eigenvalue"].sel(law=law, part="real").values
         slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in equilibrium["a"].values])
-        shares[f"values of a, {law}"] = float((real > 0.0).all(axis=-1).mean())
+        shares[f"values of a, {law}"] = share_of((real > 0.0).all(axis=-1))
         measured += [
             Measured(f"smallest real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).min())),
             Measured(f"largest real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).max())),
@@ -96,10 +100,10 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
         if not there.any():
             raise NotTestableError(f"no attractor is known under the {law} law with {a}")
         stops = found["stop_rate"].values[there] > 0.0
-        shares[f"attractors, {law}"], every[law] = float(stops.any(axis=-1).mean()), float(stops.all(axis=-1).mean())
+        shares[f"attractors, {law}"], every[law] = share_of(stops.any(axis=-1)), share_of(stops.all(axis=-1))
         measured += [
-            Measured(f"share of attractors in which some block stops, {law}", shares[f"attractors, {law}"]),
-            Measured(f"share of attractors in which every block stops, {law}", every[law]),
+            Measured(f"share of attractors in which some block stops, {law}", shares[f"attractors, {law}"].value),
+            Measured(f"share of attractors in which every block stops, {law}", every[law].value),
         ]
     modes = equilibrium.sizes["mode"]
     reason = (
@@ -107,8 +111,8 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
         f"each attractor: true at {shares_text(shares)} with {a}. Every block stops in {shares_text(every)} of the "
         "attractors."
     )
-    changes = "it does not hold for every block" if min(every.values()) < 1.0 else ""
-    return Verdict(worst(by_share(share, loose_share) for share in shares.values()), reason, measured, changes)
+    changes = "it does not hold for every block" if any(share.value < 1.0 for share in every.values()) else ""
+    return Verdict(verdict_of(shares, loose_share), reason, measured, changes)
 
 
 def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation: float) -> Verdict:
@@ -158,15 +162,19 @@ def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: 
         where = at_values(runs["a"].values, opposed & ~known)
         unknown = f"whether the run from {initial} under the {law} law is on its attractor is unknown {where}"
         shares[law] = known_share((settled == 1)[opposed], known[opposed], loose_share, unknown)
-        measured.append(Measured(f"share of the runs in antiphase that are on their attractor, {law}", shares[law]))
+        measured.append(
+            Measured(f"share of the runs in antiphase that are on their attractor, {law}", shares[law].value)
+        )
         measured.append(Measured(f"values of a with a run in antiphase, {law}", float(known.sum())))
-        if shares[law] < 1.0:
+        if shares[law].value < 1.0:
             passing.append(f"transient {at_values(runs['a'].values, known & (settled == 0))} ({law})")
         if not known[opposed].all():
             passing.append(f"unknown {where} ({law})")
-    verdict, text = judge_shares(shares, loose_share)
-    reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase, {text} stay in antiphase."
-    return Verdict(verdict, reason, measured, "; ".join(passing))
+    reason = (
+        f"Of the runs from {initial} with {a} whose end blocks move in antiphase, {shares_text(shares)} stay in "
+        "antiphase."
+    )
+    return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(passing))
 
 
 def half_frequency(
@@ -214,16 +222,26 @@ def half_frequency(
 
 
 def cycle_time(
-    evidence: Evidence, initial: Sequence[str], a: Range, low: float, high: float, tolerance: float, loose: float
+    evidence: Evidence,
+    initial: Sequence[str],
+    a: Range,
+    shown: float,
+    low: float,
+    high: float,
+    tolerance: float,
+    loose: float,
 ) -> Verdict:
     """Judge whether the time of a stick-slip cycle lies between two values, in runs of both laws, by medians over a.
 
+    shown : the a of the paper's figures of single runs
     tolerance, loose : how far outside it may lie for the claim to hold, and to hold loosely
 
-    A cycle may be read as the time between two stops of one block, or as the time between a stop of any block and the
-    next stop of any block, which is the inverse of the total rate of stops.
+    A cycle may be read as the time between two stops of one block; as the time between a stop of any block and the next
+    stop of any block, which is the inverse of the total rate of stops; or as the time between two stops of the middle
+    block in the figure of the last state, where it is the shortest cycle to be seen.
     """
-    readings: dict[str, dict[str, np.ndarray]] = {ONE_BLOCK: {}, ANY_BLOCK: {}}
+    middle = f"from stop to stop of the middle block, from {initial[-1]} at a = {shown:g}"
+    readings: dict[str, dict[str, np.ndarray]] = {ONE_BLOCK: {}, ANY_BLOCK: {}, middle: {}}
     for state in initial:
         runs = evidence.choose(evidence.of_state("stick_slip", state), a)
         for law in PAPER_LAWS:
@@ -232,17 +250,21 @@ def cycle_time(
                 readings[ONE_BLOCK][f"block {block}, {law}, {state}"] = finite(one["cycle_time"].sel(block=block))
             stops = finite(one["stop_rate"].sum(dim="block", skipna=False))
             readings[ANY_BLOCK][f"{law}, {state}"] = 1.0 / stops[stops > 0.0]
+            if state == initial[-1] and shown in one["a"].values:
+                readings[middle][law] = finite(one["cycle_time"].sel(a=shown)[one.sizes["block"] // 2])
     verdicts, measured, texts = {}, [], []
     for reading, times in readings.items():
         medians = {name: float(np.median(part)) for name, part in times.items() if len(part)}
         if not medians:
-            raise NotTestableError(f"no block stops twice in a run with {a}")
+            continue
         verdicts[reading] = worst(
             by_value(max(low - median, median - high, 0.0), 0.0, tolerance, loose) for median in medians.values()
         )
         measured += [Measured(f"median time {reading}, {name}", median) for name, median in medians.items()]
         least, most = (f"{f(medians.values()):.2f}" for f in (min, max))
         texts.append(f"{span(least, most)} {reading} ({verdicts[reading]})")
+    if ONE_BLOCK not in verdicts:
+        raise NotTestableError(f"no block stops twice in a run with {a}")
     verdict, own = by_readings(verdicts)
     reason = f"The median time with {a} is {'; '.join(texts)}. The claim says {low:g} to {high:g}."
     return Verdict(verdict, reason, measured, "", verdicts, own)

@@ -18,9 +18,10 @@ from burridge_knopoff.claims.verdict import (
     Verdict,
     at_values,
     by_interval,
-    by_share,
     is_decided,
     known_share,
+    share_of,
+    verdict_of,
 )
 from burridge_knopoff.motion.kind import MotionKind
 
@@ -40,14 +41,12 @@ def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loos
     one = period == 1
     unknown = f"the section of the run from {initial} is unknown {at_values(grid, ~known)}"
     share = known_share(one, known, loose_share, unknown)
-    measured = [Measured("share of a with one section point", share)]
-    reason = (
-        f"The section of runs from {initial} ({law}) is one point at {100 * share:.1f} % of the values of a with {a}."
-    )
-    changes = [f"more than one {at_values(grid, known & ~one)}"] if share < 1.0 else []
+    measured = [Measured("share of a with one section point", share.value)]
+    reason = f"The section of runs from {initial} ({law}) is one point at {share} of the values of a with {a}."
+    changes = [f"more than one {at_values(grid, known & ~one)}"] if share.value < 1.0 else []
     if not known.all():
         changes.append(f"unknown {at_values(grid, ~known)}")
-    return Verdict(by_share(share, loose_share), reason, measured, "; ".join(changes))
+    return Verdict(verdict_of({law: share}, loose_share), reason, measured, "; ".join(changes))
 
 
 def cloud_at_lower_velocities(
@@ -70,17 +69,18 @@ def cloud_at_lower_velocities(
     pairs = [known[k] and not empty[k] for k in range(len(grid))]
     lower = np.array([both and other.mean() < one.mean() for both, one, other in zip(pairs, line, cloud, strict=True)])
     entirely = np.array([both and other.max() < one.min() for both, one, other in zip(pairs, line, cloud, strict=True)])
-    share = float((many & lower)[known].mean())
+    share = share_of((many & lower)[known])
+    own = verdict_of({law: share}, loose_share)
     measured = [
         Measured(f"share of a with more than {points} section points from {initial[1]}", float(many[known].mean())),
         Measured("share of a with their mean W' below that of " + initial[0], float(lower[known].mean())),
         Measured("share of a with all of them below it", float(entirely[known].mean())),
     ]
     reason = (
-        f"From {initial[1]} ({law}) the section is a cloud at lower velocities than from {initial[0]} at "
-        f"{100 * share:.1f} % of the values of a with {a}."
+        f"From {initial[1]} ({law}) the section is a cloud at lower velocities than from {initial[0]} at {share} of "
+        f"the values of a with {a}."
     )
-    exceptions = [f"no lower cloud {at_values(grid, known & ~(many & lower))}"] if share < 1.0 else []
+    exceptions = [f"no lower cloud {at_values(grid, known & ~(many & lower))}"] if share.value < 1.0 else []
     if (known & empty).any():
         exceptions.append(f"no point at all {at_values(grid, known & empty)}")
 
@@ -92,11 +92,11 @@ def cloud_at_lower_velocities(
         right = (second > points) & (below < above)
         if not is_decided(right, seen, loose_share):
             return "", ""
-        verdict, text = judge_shares({law: float(right[seen].mean())}, loose_share)
+        verdict, text = judge_shares({law: share_of(right[seen])}, loose_share)
         none = seen & (second == 0)
         return verdict, text + (f", no point at all {at_values(found['a'].values, none)}" if none.any() else "")
 
-    return under_conventions(evidence, by_share(share, loose_share), reason, measured, exceptions, labels)
+    return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
 
 def cloud_not_periodic(
@@ -116,16 +116,17 @@ def cloud_not_periodic(
     known, right = kind != MotionKind.UNDETERMINED, ~np.isin(kind, CLOSED)
     unknown = f"the kind of motion from {initial} under the {law} law is unknown {at_values(grid[many], ~known)}"
     share = known_share(right, known, loose_share, unknown)
+    own = verdict_of({law: share}, loose_share)
     measured = [
         Measured("values of a with a cloud", float(many.sum())),
-        Measured("share of them with quasiperiodic or chaotic motion", share),
+        Measured("share of them with quasiperiodic or chaotic motion", share.value),
     ]
     longest = evidence.config["motion"]["longest_period"]
     reason = (
         f"From {initial} ({law}) the section is a cloud at {many.sum()} of the {len(grid)} values of a with {a}; at "
-        f"{100 * share:.1f} % of them the motion does not repeat within {longest:g} time units, or is chaotic."
+        f"{share} of them the motion does not repeat within {longest:g} time units, or is chaotic."
     )
-    exceptions = [f"periodic {at_values(grid[many], known & ~right)}"] if share < 1.0 else []
+    exceptions = [f"periodic {at_values(grid[many], known & ~right)}"] if share.value < 1.0 else []
     if not known.all():
         exceptions.append(f"unknown {at_values(grid[many], ~known)}")
 
@@ -136,10 +137,10 @@ def cloud_not_periodic(
         known, right = kind[there][seen] != MotionKind.UNDETERMINED, ~np.isin(kind[there][seen], CLOSED)
         if not is_decided(right, known, loose_share):
             return "", ""
-        verdict, text = judge_shares({law: float(right[known].mean())}, loose_share)
+        verdict, text = judge_shares({law: share_of(right[known])}, loose_share)
         return verdict, f"{text} of {seen.sum()} values with a cloud"
 
-    return under_conventions(evidence, by_share(share, loose_share), reason, measured, exceptions, labels)
+    return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
 
 def line_returns(

@@ -22,6 +22,9 @@ from burridge_knopoff.claims.verdict import (
     by_interval,
     by_value,
     is_decided,
+    share_of,
+    shares_text,
+    verdict_of,
     worst,
 )
 from burridge_knopoff.study.formatting import with_error
@@ -44,8 +47,8 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
         known, right = np.isfinite(state), state == synchronized
         if not is_decided(right, known, loose_share):
             raise NotTestableError(f"too few runs from {initial} under the {law} law completed at {a}")
-        shares[law] = float(right[known].mean())
-        measured.append(Measured(f"share of a with {outcome[synchronized]}, {law}", shares[law]))
+        shares[law] = share_of(right[known])
+        measured.append(Measured(f"share of a with {outcome[synchronized]}, {law}", shares[law].value))
         mean = runs["mean_distance"].sel(law=law).values[right]
         if len(mean):
             extreme, name = (mean.max(), "largest") if synchronized else (mean.min(), "smallest")
@@ -60,11 +63,11 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
             branch = evidence.choose(attractors, a)["initial_branch"].sel(initial=initial, law=law).values
             known, right = branch >= 0, (branch == 0) == synchronized
             if is_decided(right, known, loose_share):
-                found[law] = float(right[known].mean())
+                found[law] = share_of(right[known])
         return judge_shares(found, loose_share)
 
-    own, text = judge_shares(shares, loose_share)
-    reason = f"There is {outcome[synchronized]} from {initial} at {text} of the values of a with {a}."
+    own = verdict_of(shares, loose_share)
+    reason = f"There is {outcome[synchronized]} from {initial} at {shares_text(shares)} of the values of a with {a}."
     return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
 
@@ -98,6 +101,28 @@ def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, toleranc
     return Verdict(worst(verdicts), reason, measured)
 
 
+def beginning_of_synchrony(evidence: Evidence, initial: str, claimed: float, tolerance: float, loose: float) -> Verdict:
+    """Judge the smallest a with synchrony from an initial state, under both laws, by the attractor reached.
+
+    It lies between this value of the grid and the one before, or 0, where friction is constant.
+    """
+    evidence.check_state(initial)
+    attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
+    verdicts, measured, texts = [], [], []
+    for law in PAPER_LAWS:
+        branch = attractors["initial_branch"].sel(law=law, initial=initial).values
+        grid, synchronized = np.append(0.0, attractors["a"].values[branch >= 0]), branch[branch >= 0] == 0
+        if not synchronized.any():
+            raise NotTestableError(f"no a with synchrony from {initial} is known, {law} law")
+        first = int(np.argmax(synchronized))
+        low, high = float(grid[first]), float(grid[first + 1])
+        verdicts.append(by_interval(low, high, claimed, tolerance, loose))
+        measured.append(Measured(f"smallest a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
+        texts.append(f"between {low:g} and {high:g} ({law})")
+    reason = f"The smallest a with synchrony from {initial} lies {'; '.join(texts)}; the claim says {claimed:g}."
+    return Verdict(worst(verdicts), reason, measured)
+
+
 def _edge(grid: np.ndarray, synchronized: np.ndarray) -> tuple[float, float]:
     """Return the neighbours in the grid between which synchrony ends; NaN if it does not end inside the grid."""
     index = np.flatnonzero(synchronized)
@@ -128,6 +153,34 @@ def mean_distance_at(
 
     reason = f"⟨J⟩ from {initial} at a = {at:g} is {' and '.join(texts)}; the claim says {claimed:g}."
     return under_conventions(evidence, worst(verdicts), reason, measured, [], labels)
+
+
+def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -> Verdict:
+    """Judge whether J fluctuates stationarily and does not vanish: the run is on its attractor, which is no synchrony.
+
+    On an attractor all means are stationary; that of J has the error of its batch means.
+    """
+    run = evidence.at(evidence.of_state("mean_distance", initial), at).sel(law=law)
+    mean, error, synchronized = (run[name].item() for name in ("mean_distance", "mean_distance_error", "synchronized"))
+    settled = evidence.at(evidence.of_state("agreement", initial), at)["settled"].sel(law=law).item()
+    if not np.isfinite(mean):
+        raise NotTestableError(f"the run from {initial} at a = {at:g} under the {law} law did not complete")
+    if not settled >= 0:
+        raise NotTestableError(f"whether the run from {initial} at a = {at:g} is on its attractor is unknown")
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        known, branch = reached(attractors.sel(a=[at]), initial, law, "branch")
+        if not known[0]:
+            return "", ""
+        return (HOLDS, "no synchrony") if branch[0] else (FAILS, "synchrony, J = 0")
+
+    words = "is on its attractor" if settled else "is not on its attractor yet"
+    reason = (
+        f"The run from {initial} at a = {at:g} ({law}) {words}; the batches of its window give ⟨J⟩ = "
+        f"{with_error(mean, error)}."
+    )
+    own = HOLDS if settled and not synchronized else FAILS
+    return under_conventions(evidence, own, reason, [Measured("⟨J⟩", mean, error)], [], labels)
 
 
 def distance_vanishes(

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from burridge_knopoff.model.sampling import fraction_interval
+
 HOLDS = "holds"
 LOOSELY = "holds loosely"
 CONVENTION = "depends on convention"
@@ -22,7 +24,7 @@ VERDICTS = (HOLDS, LOOSELY, CONVENTION, READING, FAILS, NOT_TESTABLE)
 MOST_SPANS = 8
 
 # The verdicts that a rule can give, from best to worst.
-_RANK = (HOLDS, LOOSELY, FAILS)
+_RANK = (HOLDS, LOOSELY, NOT_TESTABLE, FAILS)
 
 
 class NotTestableError(Exception):
@@ -102,18 +104,56 @@ class Range:
         return chosen
 
 
+@dataclass(frozen=True)
+class Share:
+    """A fraction as a count: so many of `count` values are as claimed."""
+
+    hits: int
+    count: int
+
+    @property
+    def value(self) -> float:
+        """The fraction."""
+        return self.hits / self.count
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """The ends of its 95 % Wilson interval."""
+        return fraction_interval(self.hits, self.count)[1:]
+
+    def __str__(self) -> str:
+        return f"{100 * self.value:.1f} %"
+
+
+def share_of(right: np.ndarray) -> Share:
+    """Return the fraction of true values, shape (n,)."""
+    return Share(int(np.count_nonzero(right)), len(right))
+
+
 def worst(verdicts: Iterable[str]) -> str:
-    """Return the worst of the verdicts holds, holds loosely and fails."""
+    """Return the worst of the verdicts holds, holds loosely, not testable and fails.
+
+    One that fails decides; one that cannot be tested leaves the others open.
+    """
     return max(verdicts, key=_RANK.index)
 
 
-def by_share(share: float, loose: float) -> str:
-    """Judge «for all»: it holds if all do, and loosely from the fraction `loose` on."""
-    return HOLDS if share == 1.0 else LOOSELY if share >= loose else FAILS
+def by_share(share: Share, loose: float) -> str:
+    """Judge «for all» from a sample: the one rule for every fraction.
+
+    It holds if all values are as claimed, and loosely from the fraction `loose` on. It fails if the 95 % Wilson
+    interval of the fraction lies below `loose`; if the interval reaches `loose` the values are too few to say so: not
+    testable.
+    """
+    if share.hits == share.count:
+        return HOLDS
+    if share.value >= loose:
+        return LOOSELY
+    return FAILS if share.interval[1] < loose else NOT_TESTABLE
 
 
 def is_decided(right: np.ndarray, known: np.ndarray, loose: float) -> bool:
-    """Tell whether «for all» is decided whatever the unknown values are; False if none is known. Shapes (n,)."""
+    """Return whether «for all» is decided whatever the unknown values are; False if none is known. Shapes (n,)."""
     if not known.any():
         return False
     return share_is_decided(int((right & known).sum()), int((right | ~known).sum()), len(right), loose)
@@ -121,23 +161,40 @@ def is_decided(right: np.ndarray, known: np.ndarray, loose: float) -> bool:
 
 def share_is_decided(least: int, most: int, count: int, loose: float) -> bool:
     """The same from bounds on the number of true values."""
-    worst_case, best_case = (by_share(right / count, loose) for right in (least, most))
-    return (worst_case == FAILS) == (best_case == FAILS)
+    worst_case, best_case = (by_share(Share(hits, count), loose) for hits in (least, most))
+    return worst_case == best_case or {worst_case, best_case} == {HOLDS, LOOSELY}
 
 
-def known_share(right: np.ndarray, known: np.ndarray, loose: float, unknown: str) -> float:
+def known_share(right: np.ndarray, known: np.ndarray, loose: float, unknown: str) -> Share:
     """Return the true fraction of the known values, for `by_share`; both arrays have shape (n,).
 
     Raises NotTestableError, with `unknown` as its reason, if the unknown values decide.
     """
     if not is_decided(right, known, loose):
         raise NotTestableError(unknown)
-    return float(right[known].mean())
+    return share_of(right[known])
 
 
-def shares_text(shares: Mapping[str, float]) -> str:
+def shares_text(shares: Mapping[str, Share]) -> str:
     """Return fractions as text: «97.0 % (linearized), 100.0 % (nonlinear)»."""
-    return ", ".join(f"{100 * share:.1f} % ({name})" for name, share in shares.items())
+    return ", ".join(f"{share} ({name})" for name, share in shares.items())
+
+
+def verdict_of(shares: Mapping[str, Share], loose: float) -> str:
+    """Return the verdict for the worst of some named fractions, by `by_share`.
+
+    Raises NotTestableError if it is open, with the fraction and its interval.
+    """
+    verdicts = {name: by_share(share, loose) for name, share in shares.items()}
+    found = worst(verdicts.values())
+    if found == NOT_TESTABLE:
+        name = next(name for name, verdict in verdicts.items() if verdict == NOT_TESTABLE)
+        share = shares[name]
+        raise NotTestableError(
+            f"it is so at {share.hits} of {share.count} ({name}), and the 95 % interval of that share reaches "
+            f"{share.interval[1]:.2f}: whether it is {loose:g} is not resolved"
+        )
+    return found
 
 
 def by_value(value: float, claimed: float, tolerance: float, loose: float) -> str:

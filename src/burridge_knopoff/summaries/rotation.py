@@ -1,7 +1,9 @@
-"""The rotation number of branch 1 over (law, a), at all values of `refined`, and which part of a is locked.
+"""How the blocks of branch 1 are locked: its rotation number over (law, a), and its frequencies under detuning.
 
-Branch 1 is the motion without synchrony that `plus` reaches at a = 0.08. By mirror symmetry its end blocks have one
-frequency at every a; whether it is locked is shown by its rotation number (`motion.rotation`).
+Branch 1 is the motion without synchrony that `plus` reaches at a = 0.08. Whether its end blocks are locked to the
+middle one is shown by its rotation number (`motion.rotation`), at all values of `refined`. Whether they are locked to
+each other is shown where mirror symmetry does not make their frequencies equal: with another mass of the last block
+(`summaries.detuning`), at the values of the grid.
 """
 
 from __future__ import annotations
@@ -16,13 +18,19 @@ from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
 from burridge_knopoff.motion.rotation import rotation_number
+from burridge_knopoff.summaries.detuning import TRANSIENT, WINDOW, detuned_motion
 
+TITLE = "Rotation number of branch 1, and its frequencies after detuning"
 BRANCH = 1
 
 #: Time for which the motion is followed at each a: the error is then below 1e-5 as a rule, on closed orbits far less.
 FOLLOWED = 1000.0
 
+#: Detunings, small and large, that are tried on branch 1.
+DETUNINGS = (0.1, 0.3, 0.8)
+
 _VALUE = ("law", "value")
+_DETUNED = (*_VALUE, "detuning")
 VARIABLES = {
     "a": Variable(_VALUE, "f8", "friction parameter a, ascending; NaN beyond the last value of a law"),
     "in_grid": Variable(_VALUE, "i1", "whether a is in the grid of the study", YES_OR_NO),
@@ -36,7 +44,19 @@ VARIABLES = {
     "locked": Variable(
         _VALUE, "i1", "whether the motion is a closed orbit", flag("i1", {-1: "unknown", 0: "no", 1: "yes"})
     ),
+    "detuned_frequency": Variable(
+        (*_DETUNED, "block"),
+        "f8",
+        "frequency, in cycles per unit time, of the highest peak of the spectrum of U' after detuning",
+        {"comment": "NaN beyond the grid of the study, and where there is no such motion or no peak"},
+    ),
+    "detuned_correlation": Variable(
+        _DETUNED, "f8", "Pearson correlation of the velocities U' of the end blocks after detuning"
+    ),
 }
+DETUNING = Variable(
+    ("detuning",), "f8", "by how much the mass of the last block is larger, as a fraction of it", coordinate=True
+)
 
 
 def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Dataset:
@@ -44,9 +64,10 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
 
     refined : the summary of that name; models : one for each of its laws, at any a
     """
-    shape = (refined.sizes["law"], refined.sizes["value"])
+    sizes = {**refined.sizes, "detuning": len(DETUNINGS)}
     values = {
-        name: np.full(shape, -1 if item.dtype == "i1" else np.nan, item.dtype) for name, item in VARIABLES.items()
+        name: np.full([sizes[key] for key in item.dimensions], -1 if item.dtype == "i1" else np.nan, item.dtype)
+        for name, item in VARIABLES.items()
     }
     values["a"], values["in_grid"] = refined["a"].values, refined["in_grid"].values
     # Of a mirror pair, into which the branch parts where the middle block makes an odd number of turns, one is enough.
@@ -59,6 +80,23 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
         start = ChainState(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         values["rotation_number"][at], values["rotation_error"][at] = rotation_number(model, start, FOLLOWED)
         values["locked"][at] = one["kind"].item() == MotionKind.PERIODIC
-    attributes = {"branch": BRANCH, "duration": FOLLOWED, "history": "snakemake, from refined.nc"}
-    coordinates = {"law": refined["law"].variable}
-    return summary("Rotation number of branch 1", VARIABLES, values, coordinates, attributes, module=__name__)
+        if not values["in_grid"][at]:
+            continue
+        for k, detuning in enumerate(DETUNINGS):
+            found = detuned_motion(model, start, detuning)
+            values["detuned_frequency"][*at, k], values["detuned_correlation"][*at, k] = found
+    attributes = {
+        "branch": BRANCH,
+        "duration": FOLLOWED,
+        "detuned_transient": TRANSIENT,
+        "detuned_window": WINDOW,
+        "history": "snakemake, from refined.nc",
+    }
+    coordinates = {
+        "law": refined["law"].variable,
+        "detuning": ("detuning", np.array(DETUNINGS), DETUNING.all_attributes()),
+        "block": refined["block"].variable,
+    }
+    return summary(
+        "Rotation number and detuning of branch 1", VARIABLES, values, coordinates, attributes, module=__name__
+    )

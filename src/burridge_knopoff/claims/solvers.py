@@ -1,0 +1,166 @@
+"""Claims on the solvers of the equations: whether their solutions agree, and what they cost."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from burridge_knopoff.claims.conventions import judge_shares, under_conventions
+from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.kinds import kinds_reached
+from burridge_knopoff.claims.verdict import (
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    Measured,
+    NotTestableError,
+    Range,
+    Verdict,
+    at_values,
+    is_decided,
+    known_share,
+    share_of,
+    shares_text,
+    verdict_of,
+)
+from burridge_knopoff.motion.kind import MotionKind, same_result
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.study.paper import PAPER_LAWS
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def solutions_agree(
+    evidence: Evidence, initial: Sequence[str], a: Range, relative: float, loose_share: float
+) -> Verdict:
+    """Judge whether the map, the numerical solution of the linearized law, and that of the nonlinear law agree.
+
+    Solvers of one law agree at a point, a state and an a at which all of them were tried, if their ⟨J⟩ differs from
+    that of the study's solver by no more than the fraction `relative`, three standard errors, or the threshold of
+    synchronization. The laws agree at an a if both lead to synchrony, both to other regular motion, or both to chaos,
+    which are the paper's results: the runs of the whole grid show it. loose_share : fraction of points, and of the
+    values of a, from which the claim holds loosely
+    """
+    solved, measured, apart = _solved(evidence, initial, a, relative)
+    shares = {"solvers": share_of(np.array(solved))}
+    for state in initial:
+        runs = evidence.choose(evidence.of_state("agreement", state), a)
+        kinds = runs["kind"].sel(law=list(PAPER_LAWS)).values
+        known = ~(np.isnan(kinds) | (kinds == MotionKind.UNDETERMINED)).any(axis=0)
+        same, where = same_result(*kinds), f"the kind of motion from {state} is unknown"
+        shares[f"laws, {state}"] = known_share(same, known, loose_share, where)
+        if (known & ~same).any():
+            apart.append(f"the laws differ {at_values(runs['a'].values, known & ~same)} ({state})")
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        """Judge as if the solvers agreed at the same points under every convention."""
+        found = {"solvers": shares["solvers"]}
+        for state in initial:
+            inside = evidence.choose(attractors, a)
+            (there, one), (also, other) = (kinds_reached(inside, state, law) for law in PAPER_LAWS)
+            known, same = there & also, same_result(one, other)
+            if not is_decided(same, known, loose_share):
+                return "", ""
+            found[f"laws, {state}"] = share_of(same[known])
+        return judge_shares(found, loose_share)
+
+    own = verdict_of(shares, loose_share)
+    laws = shares_text({state: shares[f"laws, {state}"] for state in initial})
+    reason = (
+        f"The solvers of each law agree on ⟨J⟩ at {sum(solved)} of {len(solved)} points (states and a), and the laws "
+        f"have the same result, synchrony, other regular motion or chaos, at {laws} of the values of a with {a}."
+    )
+    numbers = [Measured(f"share with agreement of the {name}", share.value) for name, share in shares.items()]
+    return under_conventions(evidence, own, reason, [*numbers, *measured], apart, labels)
+
+
+def _solved(
+    evidence: Evidence, initial: Sequence[str], a: Range, relative: float
+) -> tuple[list[bool], list[Measured], list[str]]:
+    """Return whether the solvers agree at each point, the largest differences, and where they differ, in words.
+
+    Raises NotTestableError if no point was completed by all solvers.
+    """
+    solved, measured, apart = [], [], []
+    threshold = evidence.summary("agreement").attrs["synchronization_threshold"]
+    for state in initial:
+        evidence.check_state(state)
+        solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), a, least=1)
+        for value in solvers["a"].values:
+            found = solvers.sel(a=value)
+            mean, difference, error = (
+                found[name].values for name in ("mean_distance", "difference", "difference_error")
+            )
+            there = np.isfinite(difference)
+            # A solver that cannot do a law has not failed.
+            if (found["status"].values > Status.COMPLETED).any() or (there.sum(axis=-1) < 2).all():
+                continue
+            allowed = np.maximum.reduce(
+                [relative * np.abs(mean), 3.0 * np.nan_to_num(error), np.full_like(mean, threshold)]
+            )
+            solved.append(bool((np.abs(difference) <= allowed)[there].all()))
+            largest = float(np.abs(difference[there]).max())
+            measured.append(Measured(f"largest |Δ⟨J⟩| between solvers, {state}, a = {value:g}", largest))
+            if not solved[-1]:
+                apart.append(f"the solvers differ at a = {value:g} ({state})")
+    if not solved:
+        raise NotTestableError("there is no point at which all solvers completed")
+    return solved, measured, apart
+
+
+def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) -> Verdict:
+    """Judge whether the map needs far fewer steps per unit time than integration with a fixed step.
+
+    steps : the paper's time steps per unit time
+    much, loose : ratio of these to the steps of the map from which the claim holds, and from which it holds loosely. It
+        also holds only loosely if other solvers of the differential equations need fewer than `much` times its steps
+    A step of the map is a solution between two events, or part of one; it costs some tens of Runge-Kutta steps.
+    """
+    evidence.check_blocks()
+    found = evidence.summary("solvers").sel(law="linearized")
+    if "map" not in found["solver"].values:
+        raise NotTestableError("the study has no run with the solver map")
+    rate = (found["step_count"] / found["end_time"]).where(found["step_count"] >= 0)
+    own = rate.sel(solver="map").values
+    own = own[np.isfinite(own)]
+    if not len(own):
+        raise NotTestableError("no run with the solver map completed")
+    ratio = steps / float(own.max())
+    measured = [
+        Measured("largest number of steps of the map per unit time", float(own.max())),
+        Measured("ratio of the paper's steps to these", ratio),
+    ]
+    # Other solvers of the linearized equations, with the steps that their accuracy requires rather than the paper's.
+    taken = {
+        name: float(np.nanmax(rate.sel(solver=name)))
+        for name in ("series", "rk4")
+        if name in found["solver"].values and np.isfinite(rate.sel(solver=name)).any()
+    }
+    measured += [Measured(f"largest number of steps of {name} per unit time", number) for name, number in taken.items()]
+    if "rk4" in taken:
+        error = np.abs(found["difference"].sel(solver="rk4").values)
+        measured.append(Measured("largest |Δ⟨J⟩| of rk4 at that step", float(np.nanmax(error))))
+
+    def judged(times: float) -> str:
+        return HOLDS if times >= much else LOOSELY if times >= loose else FAILS
+
+    others = {name: number / float(own.max()) for name, number in taken.items()}
+    changes = [
+        f"compared with {name}, which takes {taken[name]:.4g} steps per unit time: {judged(times)} ({_more(times)})"
+        for name, times in others.items()
+        if judged(times) != judged(ratio)
+    ]
+    verdict = LOOSELY if judged(ratio) == HOLDS and changes else judged(ratio)
+    reason = (
+        f"The map takes at most {own.max():.2f} steps per unit time, the paper's time stepping {steps:,.0f}, "
+        f"about {float(f'{ratio:.1g}'):,.0f} times as many."
+    )
+    return Verdict(verdict, reason, measured, "; ".join(changes))
+
+
+def _more(times: float) -> str:
+    """Describe a ratio of steps: «no more steps», «20 times as many»."""
+    return f"{times:.4g} times as many" if f"{times:.4g}" != "1" else "no more steps"
