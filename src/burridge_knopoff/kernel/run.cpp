@@ -402,8 +402,10 @@ void Run::observe(Group &group, double to) {
         observer.average(start, from, to);
     }
     if (in_window) {
-        const double crossing = group.section < 0 ? EventSearch<Blocks>::UNCERTAIN
-                                                  : group.search.crossing_within(group.series, to, group.section);
+        double crossing = EventSearch<Blocks>::UNCERTAIN;
+        if (group.section >= 0) crossing = group.search.crossing_within(group.series, to, group.section);
+        // The first part of a piece may have had this crossing, by another bit.
+        if (from > 0.0 && crossing != EventSearch<Blocks>::NONE) crossing = EventSearch<Blocks>::UNCERTAIN;
         if (observer.side == 0 || crossing != EventSearch<Blocks>::NONE) {
             if (observer.side == 0 || crossing == EventSearch<Blocks>::UNCERTAIN)
                 group.load_sum(polynomial, first, last);
