@@ -83,6 +83,7 @@ def test_without_a_terminal(finished):
     assert re.fullmatch("(about .*|a few seconds) left", time)
     assert "at least" not in finished.output
     assert {"points 16", "attractors 3", "basins 10", "phases 3", "claims 1", "report 1"} <= set(stages.split(", "))
+    assert "curves" not in stages
     assert sum(int(count) for count in re.findall(r"\d+", stages)) == int(total)
     progress = [line for line in lines if re.search(rf"all \d+ of {total} \(\d+ %\)", line)]
     # Snakemake's own last lines come before those of the study; 9.22 tells no time.
@@ -156,6 +157,10 @@ def test_no_defect_of_the_last_lines_fails_a_run(copy):
     output = copy.ok("summary", "figures", "-R", "figure_equilibrium", "--rerun-triggers", "params")
     assert "study tiny: done in" in output
     assert "results/tiny/summary/mean_distance.nc: cannot be read" in output
+
+
+def test_the_stage_of_a_figure_is_called_figures(study):
+    assert re.search(r"^1 job: figures 1; ", study.ok("results/tiny/figures/sketch.png"), re.MULTILINE)
 
 
 def test_without_hooks(study):

@@ -14,19 +14,19 @@ OF_PAPER = [figure for figure in DESCRIPTIONS if figure.paper]
 PLAN.first = [f"figure_{figure.name}" for figure in OF_PAPER]
 
 
+# Without the figures of the optional stage. As the first rule of the file that only gathers it names the stage of all.
+rule figures:
+    """Draw all figures except that of longer chains."""
+    input:
+        pictures([figure for figure in DESCRIPTIONS if "chains" not in figure.inputs]),
+
+
 rule curves:
     """Draw the figures of the paper."""
     input:
         pictures(OF_PAPER),
     message:
         f"the figures of the paper are in {FIGURES}"
-
-
-# Without the figures of the optional stage.
-rule figures:
-    """Draw all figures except that of longer chains."""
-    input:
-        pictures([figure for figure in DESCRIPTIONS if "chains" not in figure.inputs]),
 
 
 for figure in DESCRIPTIONS:
