@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.report.tables import branch_table
 from burridge_knopoff.summaries import all_laws
 from burridge_knopoff.summaries.all_laws import named_alike, with_branches_between
 from tests.summaries.continued import SETTINGS
@@ -71,6 +72,16 @@ def test_the_largest_basin_fraction_is_one_where_the_branch_exists(one_law):
     assert all_laws.digest(found).splitlines()[1].endswith("largest basin fraction 0.000 (a = 0.05)")
     found["branch"][0, 0] = [0, -1]
     assert all_laws.digest(found).splitlines()[1].endswith("largest basin fraction 0.000 (a = 0.1)")
+
+
+def test_of_equal_basin_fractions_text_and_report_name_the_first(one_law):
+    """0.1 + 0.2 is more than 0.3 in floating point."""
+    found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
+    found["basin_fraction"][0] = np.array([[0.6, 0.3], [0.1, 0.2], [np.nan, np.nan]])
+    found["basin_count"][0] = np.array([[6, 3], [1, 2], [-1, -1]])
+    found["sample_count"][0] = 10
+    assert all_laws.digest(found).splitlines()[1].endswith("largest basin fraction 0.300 (a = 0.05)")
+    assert [row["fraction"] for row in branch_table(found)] == ["0.600 (a = 0.05)", "0.300 (a = 0.05)"]
 
 
 def test_a_branch_between_has_a_number_of_its_own():

@@ -17,6 +17,19 @@ def branch_names(dataset: xarray.Dataset) -> dict[int, str]:
     return dict(zip(dataset["branch_number"].values.tolist(), map(str, dataset["branch_name"].values), strict=True))
 
 
+def largest_basin_fraction(attractors: xarray.Dataset, branch: int) -> tuple[float, float]:
+    """Return (fraction, a) of the largest basin of a branch, its sides counted together; of equal ones the first.
+
+    attractors : of one law
+    """
+    slots = attractors["branch"].values == branch
+    there = slots.any(axis=1)
+    # Sums of equal fractions differ by rounding.
+    fraction = np.where(slots, attractors["basin_fraction"].values, 0.0).sum(axis=1)[there].round(12)
+    largest = int(fraction.argmax())
+    return float(fraction[largest]), float(attractors["a"].values[there][largest])
+
+
 def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return (known, values) of a variable on the attractors that an initial state reaches.
 

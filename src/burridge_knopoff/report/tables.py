@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.attractors.lookup import branch_names
+from burridge_knopoff.attractors.lookup import branch_names, largest_basin_fraction
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.study.formatting import span, text, with_error
@@ -22,16 +22,14 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
     a = attractors["a"].values
     for law in attractors["law"].values:
         one = attractors.sel(law=law)
-        samples = one["sample_count"].values
-        drawn = bool(samples.any())
+        drawn = bool(one["sample_count"].any())
         branch = one["branch"].values
         for number in sorted({int(n) for n in np.unique(branch) if n >= 0}):
             members = branch == number
             there = members.any(axis=1)
             where = a[there]
             distance = one["mean_distance"].values[members]
-            fraction = np.where(members, one["basin_count"].values, 0).sum(axis=1) / np.maximum(samples, 1)
-            largest = int(fraction[there].argmax())
+            fraction, at = largest_basin_fraction(one, number)
             rows.append(
                 {
                     "law": str(law),
@@ -40,7 +38,7 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
                     "values": f"{len(where)} of {len(a)}",
                     "distance": span(f"{distance.min():.4f}", f"{distance.max():.4f}"),
                     "kinds": ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[members])),
-                    "fraction": f"{fraction[there][largest]:.3f} (a = {text(where[largest])})" if drawn else "–",
+                    "fraction": f"{fraction:.3f} (a = {text(at)})" if drawn else "–",
                 }
             )
     return rows

@@ -23,9 +23,8 @@ _LOG = logging.getLogger(__name__)
 def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Callable[..., list[Any]]]:
     """Yield a function `each` that maps a function over one or several sequences, in several processes at once.
 
-    folder : cache of the results for later runs, see `running.cache`; None for no cache. At the end, cached results
-    that
-        no call has asked for are deleted
+    folder : cache of the results for later runs, see `running.cache`; None for no cache. Cached results that no call
+        has asked for are deleted at the end
 
     `each(what, function, *sequences)` returns the list of results and logs how long the calls took, in seconds; calls
     in a row with the same `what` are logged together. Function, items and results have to be picklable. A call must not

@@ -14,7 +14,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.attractors.labels import UNDETERMINED
-from burridge_knopoff.attractors.lookup import branch_names
+from burridge_knopoff.attractors.lookup import branch_names, largest_basin_fraction
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import NAMES, missing, name_branches
 from burridge_knopoff.continuation.law_homotopy import joined
@@ -144,8 +144,8 @@ def digest(dataset: xarray.Dataset) -> str:
             kinds = ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[slots]))
             there = slots.any(axis=1)
             where = a[there]
-            share = np.where(slots, one["basin_fraction"].values, 0.0).sum(axis=1)[there]
-            largest = f"largest basin fraction {share.max():.3f} (a = {where[share.argmax()]:g})"
+            fraction, at = largest_basin_fraction(one, number)
+            largest = f"largest basin fraction {fraction:.3f} (a = {at:g})"
             name = names[int(number)]
             ends, means = span(f"{where[0]:g}", f"{where[-1]:g}"), span(f"{mean.min():.4f}", f"{mean.max():.4f}")
             lines.append(
