@@ -34,10 +34,17 @@ TARGETS = [
 ]
 
 
+#: Settings of matplotlib in the folder of the study, which would break its figures or change them; see also MPLBACKEND.
+OWN_SETTINGS = "text.usetex: True\nsavefig.bbox: tight\naxes.spines.top: False\nfigure.autolayout: True\n"
+
+
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
     study = Study(tmp_path_factory.mktemp("quakes"), CATALOGUE)
-    study.ok(*TARGETS)
+    (study.folder / "matplotlibrc").write_text(OWN_SETTINGS)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
+        study.ok(*TARGETS)
     return study
 
 

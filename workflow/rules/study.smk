@@ -52,6 +52,8 @@ IMPORTED = Path(workflow.main_snakefile).resolve() not in SNAKEFILES
 CONFIG_FILE = [*workflow.configfiles, workflow.main_snakefile][0]
 # One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Jobs draw into files. A notebook names a backend that need not be installed here; matplotlib would not load.
+os.environ.pop("MPLBACKEND", None)
 
 if refusal := refused_call(ROOT, workflow.configfiles):
     sys.exit(refusal)

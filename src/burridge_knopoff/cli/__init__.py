@@ -76,6 +76,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # File names may contain characters that the terminal cannot encode.
         sys.stdout.reconfigure(errors="backslashreplace")
+    # Pictures go to files. A notebook names a backend that need not be installed here; matplotlib would not load.
+    os.environ.pop("MPLBACKEND", None)
     given = join_signed(sys.argv[1:] if arguments is None else arguments)
     parser = build_parser(next((word for word in given if not word.startswith("-")), ""))
     options = parser.parse_args(given)

@@ -14,7 +14,7 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
-from burridge_knopoff.figures.style import PAGE, begin_at_zero, label_panels, say_nothing, styled
+from burridge_knopoff.figures.style import PAGE, StyledFigure, begin_at_zero, label_panels, say_nothing, styled
 
 MAGNITUDE = r"magnitude $\ln M$"
 INTERVAL = r"interval $\Delta\tau$"
@@ -101,7 +101,7 @@ def add_magnitudes(figure: Figure, norm: Normalize, panels: list[Axes]) -> None:
 @styled
 def draw_run(run: xarray.Dataset) -> Figure:
     """Draw everything about one run, a summary at one law and a."""
-    figure = Figure(figsize=(PAGE, 5.4), layout="constrained")
+    figure = StyledFigure(figsize=(PAGE, 5.4), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1.15, 1.0))
     slips, recurrence = figure.add_subplot(grid[:2, 0]), figure.add_subplot(grid[2, 0])
     others = [figure.add_subplot(grid[row, 1]) for row in range(3)]

@@ -12,7 +12,7 @@ import matplotlib as mpl
 import numpy as np
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.backend_bases import get_registered_canvas_class
+from matplotlib.backend_bases import RendererBase, get_registered_canvas_class
 from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
@@ -43,7 +43,9 @@ MARKERS = ("o", "x", "s", "^", "D", "v", "+")
 # Typical number of letters of a title in an inch.
 LETTERS = 17
 
+# Complete, so that a user's own settings have no effect. Only the choice of a backend stays the user's.
 STYLE: Any = {
+    **{key: value for key, value in mpl.rcParamsDefault.items() if key != "backend"},
     "font.family": "serif",
     "font.serif": ["STIXGeneral"],
     "mathtext.fontset": "stix",
@@ -61,6 +63,16 @@ STYLE: Any = {
     "savefig.dpi": 300,
     "pdf.fonttype": 42,
 }
+
+
+class StyledFigure(Figure):
+    """A figure that is drawn in the common look wherever a user shows or saves it."""
+
+    def draw(self, renderer: RendererBase) -> None:
+        """Draw it."""
+        # Ticks, among others, are made as they are drawn.
+        with mpl.rc_context(STYLE):
+            super().draw(renderer)
 
 
 def styled(draw: Callable[Arguments, Figure]) -> Callable[Arguments, Figure]:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from burridge_knopoff.dataset.point import to_dataset
 from burridge_knopoff.library.catalogue import Catalogue, record_events
-from burridge_knopoff.library.plot import plot_run
 from burridge_knopoff.running.settings import DURATION, TIME
 from burridge_knopoff.running.trajectory import Trajectory
 
@@ -28,6 +27,9 @@ class Run(Trajectory):
 
     def plot(self) -> Figure:
         """Return a figure of J(τ) and of the velocities U_i'(τ) in the last part of the run."""
+        # Imported here, so that a run without a picture does not load matplotlib.
+        from burridge_knopoff.figures.single_run import plot_run
+
         return plot_run(self)
 
     def to_dataset(self) -> xarray.Dataset:

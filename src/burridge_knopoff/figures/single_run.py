@@ -2,22 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.figure import Figure
 
+from burridge_knopoff.figures.style import PAGE, StyledFigure, say, styled
 from burridge_knopoff.running.trajectory import Trajectory
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-
+@styled
 def plot_run(run: Trajectory) -> Figure:
     """Return a figure of J(τ), with the averaging window shaded, above the recorded velocities U_i'(τ)."""
-    # Imported here, so that a run without a picture does not load matplotlib.
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(7.0, 4.5), layout="constrained")
+    figure = StyledFigure(figsize=(PAGE, 4.5), layout="constrained")
     distance, velocity = figure.subplots(2)
     distance.plot(run.time, run.distance, linewidth=0.8)
     window = run.begin_time + run.settings.transient
@@ -25,7 +20,9 @@ def plot_run(run: Trajectory) -> Figure:
     distance.set(xlabel=r"$\tau$", ylabel=r"$J(\tau)$", ylim=(0.0, None))
     for block, values in enumerate(np.transpose(run.velocity), 1):
         velocity.plot(run.trajectory_time, values, linewidth=1.0, label=f"block {block}")
-    velocity.set(xlabel=r"$\tau$", ylabel=r"$U_i'(\tau)$")
+    velocity.set(xlabel=r"$\tau$", ylabel="$U_i$′")
+    if not run.velocity.size:
+        say(velocity, "no velocities were kept")
     # A legend of more blocks would cover the curves.
     if run.model.blocks <= 8:
         figure.legend(loc="outside lower center", ncols=run.model.blocks + 1)
