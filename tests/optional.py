@@ -13,7 +13,10 @@ import pytest
 from playwright.sync_api import Browser, Playwright
 
 SETTINGS = {
+    "BK_ARM64": "paths of a C++ compiler for arm64 and of an emulator, with a colon between them (Debian: "
+    "g++-aarch64-linux-gnu, qemu-user)",
     "BK_CHROMIUM": "path of a Chromium (Debian: chromium)",
+    "BK_CLANG": "path of clang++, or of several, with a colon between them (Debian: clang)",
     "BK_NCDUMP": "path of ncdump (Debian: netcdf-bin)",
     "BK_SLURM": "folders of the programs of Slurm and munge, for example /usr/bin:/usr/sbin (Debian: slurm-wlm, munge)",
 }

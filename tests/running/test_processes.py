@@ -30,6 +30,12 @@ def test_results_come_in_order(processes, caplog):
     assert caplog.messages[0].startswith("sums: 30, 0.0 s, the longest 0.0 s")
 
 
+def test_where_the_system_forbids_fork_this_process_does_all_the_work(monkeypatch):
+    monkeypatch.setattr("sys.platform", "darwin")
+    with shared_out(3) as each:
+        assert each("sums", told, [1, 2], [10, 20]) == [(11, os.getpid()), (22, os.getpid())]
+
+
 @pytest.mark.parametrize("processes", [1, 3])
 def test_an_error_is_that_of_the_call(processes):
     with shared_out(processes) as each, pytest.raises(ValueError, match="7: not allowed"):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -22,6 +23,8 @@ _LOG = logging.getLogger(__name__)
 @contextmanager
 def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Callable[..., list[Any]]]:
     """Yield a function `each` that maps a function over one or several sequences, in several processes at once.
+
+    On macOS this process does all the work.
 
     folder : cache of the results for later runs, see `running.cache`; None for no cache. Cached results that no call
         has asked for are deleted at the end
@@ -45,10 +48,10 @@ def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Cal
         taken.extend((seconds, was_read) for _, seconds, _, was_read in done)
         return [result for result, *_ in done]
 
-    if processes == 1:
+    # macOS forbids fork once libraries have threads, and a fresh interpreter would run the caller's script again.
+    if processes == 1 or sys.platform == "darwin":
         yield partial(each, map)
     else:
-        # A fresh interpreter would run the caller's script again.
         with ProcessPoolExecutor(processes, get_context("fork"), _end_with_parent) as pool:
             yield partial(each, pool.map)
     _log(last, taken)

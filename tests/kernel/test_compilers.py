@@ -1,0 +1,126 @@
+"""Other compilers and processors: the kernel that they make finds the bits that the installed kernel finds."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, law_of
+from burridge_knopoff.kernel._core import Catalogue, Exponents
+from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, LEVELS
+from burridge_knopoff.provenance.kernel_build import KERNEL
+from burridge_knopoff.provenance.processor import compiled_to, lacking
+from burridge_knopoff.running.ensemble import new_ensemble
+from burridge_knopoff.running.kernel_model import kernel_model
+from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.values import MOST_NUMBERS
+from tests.optional import needs, setting
+
+SOURCE = Path(__file__).with_name("bits.cpp")
+EDGES, TIMES, STEP, COUNT = np.array([5.0, 20.0, 40.0]), np.array([7.0, 30.0]), 0.01, 11
+# The last one moves in groups.
+CHAINS = Chain(3), Chain(grid=(4, 3), coupling=2.0, mass=1.5), Chain(5, ends="ring"), Chain(26)
+# Without exp, log and fractional powers, whose last bit depends on the C library.
+LAWS = (
+    law_of("linearized", 0.2),
+    law_of("nonlinear", 0.3),
+    law_of("carlson_langer", 3.0),
+    FormulaLaw(0.3, "(1+a*u)**-2"),
+)
+CASES = [
+    Model(chain, law, contact=contact)
+    for chain in CHAINS
+    for law, contact in zip(LAWS, ("one_sided", "symmetric") * 2, strict=True)
+]
+RUN = """status, x, U', event times, events, J, positions, velocities, integral of J, crossing times, crossings, speeds,
+forces, times of slip events, moments, energies""".replace("\n", " ").split(", ")
+MANY = "positions", "velocities", "ends"
+NAMES = [*RUN, "growth", *(f"{name} by rk4" for name in RUN), *(f"{name} of many" for name in MANY)]
+
+
+def starts(model):
+    """Return positions, velocities and which blocks stick, of one state and of many."""
+    generator = np.random.default_rng(model.blocks)
+    stuck = generator.random(model.blocks) < 0.3
+    shapes = model.blocks, (COUNT, model.blocks)
+    return stuck, *((generator.uniform(-0.9, 0.3, shape), generator.uniform(0.0, 0.2, shape)) for shape in shapes)
+
+
+def exponents_of(model):
+    """Return two exponents, or none of a long chain, which then moves in groups."""
+    return Exponents(model.blocks, 2 if model.blocks < 20 else 0, 0.0, EDGES)
+
+
+def case(model, monkeypatch):
+    """Return what `bits.cpp` reads: settings, model, states."""
+    monkeypatch.setattr("burridge_knopoff.running.kernel_model.KernelModel", dict)
+    *arrays, value, slope, linear, rate, steepest, v, symmetric = kernel_model(model).values()
+    monkeypatch.undo()
+    stuck, one, many = starts(model)
+    settings = [exponents_of(model).matrix().shape[1], COUNT, STEP]
+    numbers = [value, slope, linear, rate, steepest, v, symmetric]
+    return settings, *arrays, numbers, EDGES, TIMES, *one, stuck, *many
+
+
+def found_here(model):
+    """Return what the installed kernel finds."""
+    stuck, (position, velocity), many = starts(model)
+    for solver in ("series", "rk4"):
+        observer = new_observer(model, EDGES, TIMES, TIMES)
+        exponents, catalogue = exponents_of(model), Catalogue(model.blocks, 0.0, False, MOST_NUMBERS)
+        made = {"observer": observer, "exponents": exponents, "catalogue": catalogue}
+        runner = Runner(model, solver, step=STEP, keep_events=True, **made)
+        runner.begin(ChainState(position, np.where(stuck, 0.0, velocity), stuck))
+        yield [int(runner.run())]
+        yield from runner.kernel.values()[:2]
+        yield from (runner.log.events.times(), runner.log.events.values())
+        found, events = observer.results(), catalogue.take()
+        measured = "distance position velocity batch_integral crossing_time crossing highest_speed lowest_force"
+        yield from (found[name] for name in measured.split())
+        yield from (events[name] for name in ("time", "moment", "energy_released"))
+        if solver == "series":
+            yield exponents.results()["growth"]
+    found = new_ensemble(model).run(*many, np.zeros((COUNT, model.blocks), dtype=bool), TIMES.tolist())
+    yield from (found[name] for name in ("position", "velocity", "end"))
+
+
+def rows_of(content):
+    numbers = np.frombuffer(content)
+    while len(numbers):
+        after = 1 + int(numbers[0])
+        yield numbers[1:after]
+        numbers = numbers[after:]
+
+
+def check(compile_with, run_with, folder, monkeypatch):
+    """Compile the kernel without Python, and require that it finds what the installed one finds."""
+    program = folder / "bits"
+    command = [*compile_with, *COMPILER_FLAGS, f"-I{KERNEL}", str(SOURCE), "-o", str(program)]
+    subprocess.run(command, check=True)
+    cases = [np.ravel(row).astype(float) for model in CASES for row in case(model, monkeypatch)]
+    given = b"".join(np.append(len(row), row).tobytes() for row in cases)
+    done = subprocess.run([*run_with, program], input=given, stdout=subprocess.PIPE, check=True)
+    found = rows_of(done.stdout)
+    for model in CASES:
+        for name, expected in zip(NAMES, found_here(model), strict=True):
+            bits = np.ravel(expected).astype(float).tobytes()
+            assert next(found).tobytes() == bits, f"{name}: {model}"
+    assert next(found, None) is None
+
+
+@needs("BK_CLANG")
+@pytest.mark.parametrize("lanes", LEVELS)
+@pytest.mark.parametrize("clang", setting("BK_CLANG").split(os.pathsep))
+def test_clang_makes_the_same_bits(clang, lanes, tmp_path, monkeypatch):
+    # Where the processor lacks so wide instructions, narrower ones do.
+    own = [flag for flag in LEVELS.values() if not lacking(compiled_to([flag]))]
+    flag = LEVELS[lanes] if LEVELS[lanes] in own else own[-1]
+    check([clang, flag, f"-DBK_LANES={lanes}"], [], tmp_path, monkeypatch)
+
+
+@needs("BK_ARM64")
+def test_an_arm64_processor_makes_the_same_bits(tmp_path, monkeypatch):
+    compiler, *emulator = setting("BK_ARM64").split(os.pathsep)
+    check([compiler, "-static"], emulator, tmp_path, monkeypatch)
