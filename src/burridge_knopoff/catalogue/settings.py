@@ -33,7 +33,7 @@ class CatalogueSettings:
     low: Annotated[
         float | None,
         MAGNITUDE,
-        "smallest magnitude in the fit of the slope; by default the most frequent one of several blocks",
+        "smallest magnitude in the fit of the slope; by default a bin above the most frequent one of several blocks",
     ] = None
     high: Annotated[
         float | None,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from burridge_knopoff.catalogue.settings import CatalogueSettings
+from burridge_knopoff.catalogue.slope import format_p_value
 from burridge_knopoff.cli.options import add, add_model, add_state, command_of, model_of, said_of, settings_of, state_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
@@ -56,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
         names = ("slope", "slope_error", "slope_low", "slope_high", "slope_count", "slope_p_value")
         slope, error, low, high, fitted, p_value = (found[name].item() for name in names)
         where = f"{fitted} events from {low:g} to {high:g}"
-        fit = f"{plain(with_error(slope, error))}, p = {p_value:.2g}, of" if slope == slope else "none:"
+        fit = f"{plain(with_error(slope, error))}, {format_p_value(p_value)}, of" if slope == slope else "none:"
         print(f"slope       {fit} {where}")
     if options.out:
         write_summary(events.assign_attrs(history=command_of(options)), options.out)

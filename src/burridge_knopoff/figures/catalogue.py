@@ -14,8 +14,8 @@ INPUTS = ("catalogue",)
 CAPTION = """\
 Slip events of the catalogues, for each friction law and up to six values of a. Top: rate of events per unit of time and
 of magnitude, the natural logarithm of the moment M. Each broad line is the rate exp(−b ln M) that was fitted by maximum
-likelihood in its range; the legend has the slope b with its standard error, and the probability p that events of such a
-distribution differ from it by as much. Middle: mean number of slipping blocks of the events of a magnitude. Bottom:
+likelihood in its range; the legend has the slope b with its standard error, and the probability p that a catalogue of
+such a distribution differs from its own fit by as much. Middle: mean number of slipping blocks of the events of a magnitude. Bottom:
 intervals since the event in which the epicentre slipped last, as shares in logarithmic bins.
 """
 
