@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model, law_of
 from burridge_knopoff.catalogue.events import record_events
 from tests.kernel.test_catalogue import at_rest
+from tests.refused import refused
 
 MODEL = Model(Chain(30, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
 
@@ -63,3 +64,32 @@ def test_ends_and_intervals(ends):
             known += 1
             assert found.interval[k] == pytest.approx(found.time[k] - found.time[before[-1]], rel=1e-12)
     assert known > 0.7 * len(found.time)
+
+
+def test_the_largest_slip_may_be_backward():
+    """A block ahead of the driver slips back."""
+    model = Model(Chain(1, pulling=1.0), law_of("nonlinear", 0.3), 0.1, "symmetric")
+    ahead = ChainState(1.5 - model.sliding_offset, np.zeros(1), np.ones(1, dtype=bool))
+    found = record_events(model, ahead, 5.0)
+    assert found.moment[0] < -0.5
+    assert found.largest_slip[0] == -found.moment[0]
+
+
+def test_windows_that_there_are_not():
+    start = record_events(MODEL, at_rest(MODEL), 50.0).final
+    for end in (-5.0, 50.0):
+        with refused(f"end: got {end}, expected a time after the start (50)"):
+            record_events(MODEL, start, end)
+    for begin in (60.0, 70.0):
+        with refused(f"end: got 60.0, expected a time after begin ({begin:g})"):
+            record_events(MODEL, start, 60.0, begin=begin)
+
+
+def test_all_events_count_unless_a_beginning_is_given():
+    """Nothing depends on where the clock begins, below 0 neither."""
+    start = at_rest(MODEL)
+    early = ChainState(start.position, start.velocity, start.stuck, -1000.0)
+    found, shifted = record_events(MODEL, start, 200.0), record_events(MODEL, early, -800.0)
+    assert len(shifted.time) > 100
+    # Before chaos amplifies the rounding of the clock.
+    assert np.allclose(shifted.time[:20] + 1000.0, found.time[:20], rtol=0.0, atol=1e-9)

@@ -1,6 +1,7 @@
 """Catalogues in Python: of a run that continues, as a Dataset, as a picture, and of runs that end early."""
 
 import numpy as np
+import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, law_of, record_events, simulate
 from burridge_knopoff.model.initial import PAPER_STATES
@@ -58,6 +59,32 @@ def test_a_run_that_ends_early_has_no_rates():
     assert summary["status"].item() == found.status
     assert np.isnan(summary["event_rate"]).all()
     assert np.isnan(summary["slope"]).all()
+
+
+@pytest.mark.parametrize("form", ["grid", "network"])
+def test_recurrence_on_grids_and_networks(form, tmp_path):
+    """An event of blocks 2 and 5 does not contain 3 and 4: only profiles tell which blocks an event has."""
+    if form == "network":
+        (tmp_path / "star.txt").write_text("".join(f"1 {k} 9\n" for k in range(2, 10)))
+        chain = Chain(springs=str(tmp_path / "star.txt"), pulling=1)
+    else:
+        chain = Chain(grid=(4, 3), coupling=9, pulling=1)
+    model = Model(chain, law_of("carlson_langer", 3.0), v=0.01)
+    catalogues = [record_events(model, at_rest(model), 600.0, profiles=profiles) for profiles in (True, False)]
+    known, unknown = (
+        summarize([found.to_dataset()], ["carlson_langer"], [3.0]).isel(law=0, a=0) for found in catalogues
+    )
+    events = catalogues[0]
+    parts = np.split(events.slip_block, events.slip_end[:-1])
+    for block in range(1, chain.blocks + 1):
+        gaps = np.diff([time for time, part in zip(events.time, parts, strict=True) if block in part])
+        assert known["block_event_count"].sel(block=block) == len(gaps) + 1
+        assert known["recurrence"].sel(block=block).item() == pytest.approx(gaps.mean())
+    assert known["block_event_count"].sum() == events.blocks.sum() < (events.last_block - events.first_block + 1).sum()
+    assert (unknown["block_event_count"] == -1).all()
+    assert np.isnan(unknown["recurrence"]).all()
+    said = [text.get_text() for panel in catalogues[1].plot().axes for text in panel.texts]
+    assert "known only with profiles" in said
 
 
 def test_without_events():

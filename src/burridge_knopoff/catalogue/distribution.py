@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 #: Width of the bins of magnitudes and of logarithms of intervals, and their edges.
@@ -20,15 +22,16 @@ def fit_range(
 
     magnitude, moment, blocks : of the events, shape (events,)
 
-    The range begins with the bin of the most frequent events of several blocks: below it the rate shows that the chain
-    consists of blocks. It ends below the rarest bin between there and the bin that releases most moment, that of the
+    The range begins one bin above the most frequent events of several blocks. Below, the rate shows that the chain
+    consists of blocks, and at its maximum it is still bending (J. Woessner and S. Wiemer, Bull. Seismol. Soc. Am. 95
+    (2005) 684). The range ends below the rarest bin between there and the bin that releases most moment, that of the
     largest events: in many chains this is a gap. The ends are equal, or NaN, if there is no such range.
     """
     several = magnitude[blocks > 1]
     if not len(several):
         return (np.nan if low is None else low), (np.nan if high is None else high)
     if low is None:
-        low = float(EDGES[np.histogram(several, EDGES)[0].argmax()])
+        low = float(EDGES[np.histogram(several, EDGES)[0].argmax() + 1])
     if high is None:
         count, released = (np.histogram(magnitude, EDGES, weights=weights)[0] for weights in (None, moment))
         between = np.flatnonzero(EDGES[: released.argmax() + 1] >= low)
@@ -38,27 +41,36 @@ def fit_range(
     return low, high
 
 
+def covered_blocks(first_block: np.ndarray, last_block: np.ndarray, blocks: int) -> list[np.ndarray]:
+    """Return the blocks (1 …) of each event in a row or a ring: all from its first to its last.
+
+    first_block, last_block : of the events, shape (events,); over the joint of a ring the first is above the last
+    """
+    length = (last_block - first_block) % blocks + 1
+    return [(first - 1 + np.arange(count)) % blocks + 1 for first, count in zip(first_block, length, strict=True)]
+
+
 def recurrence(
-    time: np.ndarray, first_block: np.ndarray, last_block: np.ndarray, blocks: int
+    time: np.ndarray, members: Sequence[np.ndarray], blocks: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return for each block how many events contain it, and mean and standard deviation of the intervals between them.
 
-    time, first_block, last_block : of the events in their order, shape (events,); an event contains all blocks from its
-        first to its last, in a ring also over the joint, where the first is above the last
+    time : of the events in their order, shape (events,); members : the blocks (1 …) of each event
 
-    Returns three arrays of shape (blocks,); NaN for blocks of too few events.
+    Returns three arrays of shape (blocks,); NaN for blocks of too few events. Mean and variance are updated by each
+    interval: B. P. Welford, Technometrics 4 (1962) 419.
     """
-    count, squares = np.zeros(blocks, dtype=int), np.zeros(blocks)
-    first, before = np.full(blocks, np.nan), np.full(blocks, np.nan)
-    for at, low, high in zip(time.tolist(), (first_block - 1).tolist(), last_block.tolist(), strict=True):
-        for part in (slice(low, high),) if low < high else (slice(low, blocks), slice(high)):
-            gap = at - before[part]
-            before[part] = at
-            count[part] += 1
-            squares[part] += np.nan_to_num(gap * gap)
-            first[part] = np.where(np.isnan(first[part]), at, first[part])
-    gaps = np.maximum(count - 1, 0)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        mean = (before - first) / gaps
-        spread = np.sqrt(np.maximum(squares / gaps - mean**2, 0.0))
-    return count, mean, np.where(gaps > 1, spread, np.nan)
+    count, before = np.zeros(blocks, dtype=int), np.full(blocks, np.nan)
+    mean, squares = np.zeros(blocks), np.zeros(blocks)
+    for at, several in zip(time.tolist(), members, strict=True):
+        part = several - 1
+        again = part[count[part] > 0]
+        gap = at - before[again]
+        deviation = gap - mean[again]
+        mean[again] += deviation / count[again]
+        squares[again] += deviation * (gap - mean[again])
+        count[part] += 1
+        before[part] = at
+    gaps = np.maximum(count - 1, 1)
+    spread = np.where(count > 2, np.sqrt(squares / gaps), np.nan)
+    return count, np.where(count > 1, mean, np.nan), spread

@@ -80,7 +80,7 @@ def record_events(
     start: ChainState,
     end: float,
     *,
-    begin: float = 0.0,
+    begin: float | None = None,
     profiles: bool = False,
     loading: str = "steady",
     solver: str = "series",
@@ -89,7 +89,7 @@ def record_events(
     """Return the slip events of a run that begin after a time and end before its end.
 
     start, end : state at the start of the run, and τ of its end
-    begin : events that begin earlier are left out; the intervals know of them
+    begin : events that begin earlier are left out, by default none; the intervals know of them
     profiles : whether the slip of every block is kept
     loading : steady: the driver moves at the velocity v | quasistatic: it stands while any block slips, and goes on to
         the next threshold when all stick. Then τ is the displacement of the driver over v, and the slip clock runs
@@ -100,11 +100,18 @@ def record_events(
 
     Blocks that slip at the start of the run belong to no event until they have stopped.
 
-    Raises ValueError, one line, for an unknown solver, a step that is not above 0, map for a model without a closed
-    form, more than MOST_EVENTS events, and quasi-static loading of friction that does not drop as slip begins.
+    Raises ValueError, one line, for an end that is not after `start` and `begin`, an unknown solver, a step that is not
+    above 0, map for a model without a closed form, more than MOST_EVENTS events, and quasi-static loading of friction
+    that does not drop as slip begins.
     """
     instance_of(model, Model, "model")
-    end, begin = TIMES.form(end, "end"), TIMES.form(begin, "begin")
+    instance_of(start, ChainState, "start")
+    begin = TIMES.least if begin is None else TIMES.form(begin, "begin")
+    end = TIMES.form(end, "end")
+    if end <= start.time:
+        raise refusal("end", end, f"a time after the start ({start.time:g})")
+    if end <= begin:
+        raise refusal("end", end, f"a time after begin ({begin:g})")
     profiles = TrueOrFalse().form(profiles, "profiles")
     solver = OneOf((*SOLVERS, "euler")).form(solver, "solver")
     if not real_number(step) > 0.0:

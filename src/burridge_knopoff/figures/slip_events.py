@@ -14,7 +14,8 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
-from burridge_knopoff.figures.style import PAGE, StyledFigure, begin_at_zero, label_panels, say_nothing, styled
+from burridge_knopoff.catalogue.slope import format_p_value
+from burridge_knopoff.figures.style import PAGE, StyledFigure, begin_at_zero, label_panels, say, say_nothing, styled
 
 MAGNITUDE = r"magnitude $\ln M$"
 INTERVAL = r"interval $\Delta\tau$"
@@ -78,6 +79,10 @@ def draw_map(panel: Axes, run: xarray.Dataset, norm: Normalize) -> None:
 
 def draw_recurrence(panel: Axes, run: xarray.Dataset, color: str) -> None:
     """Draw the mean time between events that contain a block, with its standard deviation."""
+    if (run["block_event_count"] < 0).any():
+        say(panel, "known only with profiles")
+        panel.set(xlabel="block", yticks=[])
+        return
     block, mean, spread = (run[name].values for name in ("block", "recurrence", "recurrence_spread"))
     panel.fill_between(block, np.maximum(mean - spread, 0.0), mean + spread, color=color, alpha=0.2, linewidth=0)
     panel.plot(block, mean, color=color, marker="." if len(block) < 40 else "")
@@ -122,4 +127,4 @@ def slope_words(run: xarray.Dataset) -> str:
     if not np.isfinite(b):
         return "no slope"
     digits = max(0, min(6, 1 - int(np.floor(np.log10(error))))) if error > 0.0 else 2
-    return rf"$b={b:.{digits}f}\pm{error:.{digits}f}$, " + (rf"$p={p:.2f}$" if p >= 0.005 else "$p<0.005$")
+    return rf"$b={b:.{digits}f}\pm{error:.{digits}f}$, ${format_p_value(p).replace(' ', '')}$"

@@ -248,7 +248,7 @@ class Catalogue {
                 block.last_start = event.load.time;
             }
             moment += slip[i];
-            largest = std::max(largest, slip[i]);
+            largest = std::max(largest, std::fabs(slip[i]));
             // The spring force falls by (K slip)_i.
             drop -= springs.pull(slip.data(), i);
         }

@@ -47,7 +47,8 @@ class Catalogue(SlipEvents):
     def slope(self, low: float | None = None, high: float | None = None) -> Slope:
         """Return the slope of the magnitudes from `low` to `high`; see `fit_slope`.
 
-        By default from the most frequent magnitude of several blocks to the rarest below the one that releases most.
+        By default from a bin above the most frequent magnitude of several blocks to the rarest one below that which
+        releases most moment.
         """
         return fit_slope(self.magnitude, *fit_range(self.magnitude, self.moment, self.blocks, low, high))
 
@@ -72,7 +73,7 @@ def record_events(
     start: ChainState,
     end: float,
     *,
-    begin: float = 0.0,
+    begin: float | None = None,
     profiles: bool = False,
     loading: str = "steady",
     solver: str = "series",
@@ -82,7 +83,7 @@ def record_events(
 
     model, start : what moves, and its state at the start, as of `Model.begin` or the `final` of another run; end : τ of
         the end of the run
-    begin : events that begin earlier are left out; the intervals know of them
+    begin : events that begin earlier are left out, by default none; the intervals know of them
     profiles : whether the slip of every block is kept
     loading : steady: the driver always moves | quasistatic: it stands while any block slips, and loads to the next slip
         when all rest
@@ -101,5 +102,5 @@ def record_events(
     found = events.record_events(
         model, start, end, begin=begin, profiles=profiles, loading=loading, solver=solver, step=step
     )
-    begin = max(begin, start.time)
+    begin = start.time if begin is None else max(begin, start.time)
     return Catalogue(**vars(found), model=model, begin_time=begin, end_time=end, loading=loading, solver=solver)

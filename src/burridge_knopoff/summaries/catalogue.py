@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.catalogue.distribution import EDGES, WIDTH, fit_range, recurrence
+from burridge_knopoff.catalogue.distribution import EDGES, WIDTH, covered_blocks, fit_range, recurrence
 from burridge_knopoff.catalogue.slope import fit_slope
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import axes, summary
@@ -38,13 +38,16 @@ VARIABLES = {
     "slope_high": _V(_RUN, "f8", "largest magnitude in the fit"),
     "slope_count": _V(_RUN, "i8", "number of events in the fit"),
     "slope_p_value": _V(
-        _RUN, "f8", "probability that a catalogue of this distribution differs from it by as much (Kolmogorov-Smirnov)"
+        _RUN,
+        "f8",
+        "probability that a catalogue of this distribution differs from its own fit by as much",
+        {"comment": "Kolmogorov-Smirnov distance, parametric bootstrap"},
     ),
     "magnitude_count": _V(_MAGNITUDE, "i8", "number of events in a bin of magnitudes"),
     "magnitude_rate": _V(_MAGNITUDE, "f8", "events per unit of time tau and of magnitude"),
     "mean_extent": _V(_MAGNITUDE, "f8", "mean number of slipping blocks of the events in a bin of magnitudes"),
     "interval_count": _V(_INTERVAL, "i8", "number of events whose interval lies in a bin"),
-    "block_event_count": _V(_BLOCK, "i8", "number of events that contain a block"),
+    "block_event_count": _V(_BLOCK, "i8", "number of events that contain a block", {"comment": "-1 unknown"}),
     "recurrence": _V(_BLOCK, "f8", "mean time tau between events that contain a block"),
     "recurrence_spread": _V(_BLOCK, "f8", "standard deviation of this time"),
     "shown_time": _V(_SHOWN, "f8", "time tau of one of the last events, NaN if there are fewer"),
@@ -116,7 +119,12 @@ def _one(catalogue: xarray.Dataset, low: float | None, high: float | None) -> di
     with np.errstate(divide="ignore", invalid="ignore"):
         mean_extent = covered / count
         among, _ = np.histogram(np.log(interval), EDGES)
-    containing, mean, spread = recurrence(time, first, last, catalogue.attrs["blocks"])
+    number = catalogue.attrs["blocks"]
+    members = _members(catalogue)
+    if members is None:
+        containing, mean, spread = np.full(number, -1), *np.full((2, number), np.nan)
+    else:
+        containing, mean, spread = recurrence(time, members, number)
     return {
         "status": catalogue["status"].item(),
         "event_count": len(time),
@@ -135,6 +143,15 @@ def _one(catalogue: xarray.Dataset, low: float | None, high: float | None) -> di
         "shown_first_block": _last(first, 0),
         "shown_last_block": _last(last, 0),
     }
+
+
+def _members(catalogue: xarray.Dataset) -> Sequence[np.ndarray] | None:
+    """Return the blocks of each event; None if unknown, on a grid or network without profiles."""
+    if "slip_block" in catalogue:
+        return np.split(catalogue["slip_block"].values, np.cumsum(catalogue["blocks"].values)[:-1])
+    if catalogue.sizes["event"] and {"chain_grid", "chain_springs"} & set(catalogue.attrs):
+        return None
+    return covered_blocks(catalogue["first_block"].values, catalogue["last_block"].values, catalogue.attrs["blocks"])
 
 
 def _last(values: np.ndarray, none: float) -> np.ndarray:
