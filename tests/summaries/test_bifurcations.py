@@ -1,5 +1,7 @@
 """The list of bifurcations: every beginning, end and change of a branch has an entry, on any grid of a."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -16,11 +18,13 @@ from burridge_knopoff import (
     multipliers,
     synchronized_orbit,
 )
+from burridge_knopoff.continuation.bifurcations import entries
 from burridge_knopoff.continuation.branch_changes import Change, branch_changes
 from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, _closed
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.summaries import bifurcations
 from burridge_knopoff.summaries.bifurcations import VARIABLES, _branches_of_segments, _rounded, digest, merge, one_law
 
 # Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
@@ -189,6 +193,22 @@ def test_the_values_beside_a_bifurcation_are_those_of_the_attractors(found, grid
     shifted = at_all_values(grid)
     shifted["a"] = shifted["a"] * (1.0 + 1e-15)
     assert np.isin(shifted["a"].values[2], one_law(MODEL, grid, shifted)["grid_high"].values)
+
+
+def test_only_what_is_written_orders_the_rows(grid, found, monkeypatch):
+    """Further digits differ between linear-algebra libraries; several bifurcations have the same a."""
+    a = found["a"].values
+    assert (np.diff(a) >= 0.0).all()
+    assert (np.diff(a) == 0.0).any()
+
+    def otherwise(*arguments):
+        listed = list(enumerate(entries(*arguments)))[::-1]
+        for number, entry in listed:
+            moved = entry.bifurcation and replace(entry.bifurcation, value=entry.bifurcation.value - 1e-13 * number)
+            yield replace(entry, bifurcation=moved)
+
+    monkeypatch.setattr(bifurcations, "entries", otherwise)
+    xr.testing.assert_identical(one_law(MODEL, grid, at_all_values(grid)), found)
 
 
 def test_numbers_are_rounded(found):

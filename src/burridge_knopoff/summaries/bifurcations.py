@@ -93,7 +93,7 @@ def one_law(
     one = refined.load()
     changes = branch_changes(attractors, one)
     orbits = followed(model, one, changes, processes, folder)
-    for entry in sorted(entries(one, changes, orbits), key=lambda entry: (entry.a, entry.change)):
+    for entry in entries(one, changes, orbits):
         _append_bifurcation(values, entry, blocks)
     branches = _branches_of_segments(orbits, one["branch"].values)
     for index, (branch, segment_) in enumerate(zip(branches, orbits.segments, strict=True)):
@@ -110,6 +110,7 @@ def one_law(
     }
     for name, shape in shapes.items():
         rounded[name] = rounded[name].reshape(shape)
+    rounded |= _in_order({name: rounded[name] for name, item in VARIABLES.items() if "bifurcation" in item.dimensions})
     head = {"v": model.v, "contact": model.contact}
     return _dataset([str(attractors["law"].item())], rounded, attractors["block"].variable, head)
 
@@ -203,6 +204,17 @@ def _append_bifurcation(values: dict[str, list[Any]], entry: Entry, blocks: int)
     for name, point in (("multiplier", bifurcation.at if bifurcation else None), ("multiplier_beyond", after)):
         largest = complex(point.multipliers.whole[0]) if point else complex(np.nan, np.nan)
         values[name] += [largest.real, abs(largest.imag)]
+
+
+def _in_order(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return bifurcations by their a, then by their change, then by all else that is written of them.
+
+    Only what is written decides: further digits differ between linear-algebra libraries.
+    """
+    count = len(rows["a"])
+    keys = [column for name in ("a", "change", *rows) for column in rows[name].reshape(count, -1).T] if count else []
+    order = np.lexsort(keys[::-1]) if keys else np.arange(0)
+    return {name: values[order] for name, values in rows.items()}
 
 
 def _branches_of_segments(orbits: FollowedOrbits, branch: np.ndarray) -> list[int]:
