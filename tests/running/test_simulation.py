@@ -156,6 +156,20 @@ def test_perturbations_align_no_longer_than_the_transient_lasts():
     assert one.lyapunov_error.tolist() == other.lyapunov_error.tolist()
 
 
+@pytest.mark.parametrize(
+    ("law", "a", "initial"), [("linearized", 0.05, "plus"), ("linearized", 0.01, "minus"), ("nonlinear", 0.025, "plus")]
+)
+def test_exponents_are_in_descending_order_with_their_errors_and_batches(law, a, initial):
+    """On tori, and in synchrony, two exponents differ by less than their errors."""
+    run = simulate(law, a, initial)
+    assert (np.diff(run.lyapunov_exponent) <= 0.0).all()
+    batch = run.batch_lyapunov_exponent
+    assert batch.mean(axis=0) == pytest.approx(run.lyapunov_exponent, abs=5e-6)
+    scatter = batch.std(axis=0, ddof=1) / np.sqrt(len(batch))
+    resolution = np.sqrt(run.lyapunov_error**2 - scatter**2)
+    assert resolution == pytest.approx(np.full(3, resolution[0]))
+
+
 @pytest.mark.parametrize(("law", "solver"), [("linearized", "series"), ("linearized", "map"), ("nonlinear", "series")])
 @pytest.mark.parametrize("time", [37.0, 50.0, 61.3])
 def test_a_run_that_continues_is_the_whole_run(law, solver, time):

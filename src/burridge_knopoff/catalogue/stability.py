@@ -92,7 +92,8 @@ def event_exponents(
         share = np.histogram(time, np.linspace(begin, end, BATCHES + 1))[0] / events
         scatter = growth - mean * (share * events)[:, None]
         error = np.sqrt(BATCHES / (BATCHES - 1) * np.sum(scatter**2, axis=0)) / events
-    return EventExponents(mean, np.where(np.isfinite(mean), error, 0.0), events, status)
+    order = np.argsort(-mean, kind="stable")
+    return EventExponents(mean[order], np.where(np.isfinite(mean), error, 0.0)[order], events, status)
 
 
 def event_multipliers(model: Model, start: ChainState, end: float, *, loading: str = "quasistatic") -> np.ndarray:

@@ -56,6 +56,10 @@ class SteadyMotion:
     recurrence: float = 0.0
     left_for: ChainState | None = None
 
+    def __post_init__(self) -> None:
+        """Sort the exponents, which may come from several measurements."""
+        object.__setattr__(self, "exponent", -np.sort(-self.exponent))
+
     @property
     def words(self) -> str:
         """Kind of motion, period of a closed orbit, ⟨J⟩ and Lyapunov exponents, in a line."""

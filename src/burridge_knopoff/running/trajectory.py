@@ -141,7 +141,7 @@ def collect(
 
 
 def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str, Any]:
-    """Return the Lyapunov exponents, their errors and their batch values; NaN for those not computed.
+    """Return the Lyapunov exponents, the largest first, their errors and batch values; NaN for those not computed.
 
     For chaos the standard error of the batches is right; it falls as the square root of the window. In regular motion
     a perturbation may grow as a power of time. If it grows linearly, then after an alignment A and over a window T it
@@ -167,9 +167,11 @@ def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str,
             alignment = min(settings.lyapunov_alignment, settings.transient)
             resolution = math.log1p(duration.sum() / (1.0 + alignment)) / duration.sum()
             error[finite] = np.hypot(statistical, resolution)
+    # Vectors come in descending order of their growth, but within their errors neighbours may have changed places.
+    order = np.argsort(-mean, kind="stable")
     return {
-        "lyapunov_exponent": mean,
-        "lyapunov_error": error,
-        "batch_lyapunov_exponent": batch,
+        "lyapunov_exponent": mean[order],
+        "lyapunov_error": error[order],
+        "batch_lyapunov_exponent": batch[:, order],
         "lyapunov_infinite_count": infinite,
     }
