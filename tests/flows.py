@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from burridge_knopoff import Chain, Model, Symmetry, find_periodic_orbit, law_of, multipliers
 from burridge_knopoff.kernel._core import Exponents
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState
@@ -14,6 +15,16 @@ SYMMETRIC = InitialState("symmetric", (-0.99, -0.993, -0.99), (0.1, 0.101, 0.1))
 def wave(blocks, amplitude=0.1):
     """Return a state in which no two blocks are alike."""
     return InitialState("wave", tuple(-0.9 + amplitude * np.sin(1.0 + 2.0 * np.arange(blocks))), (0.1,) * blocks)
+
+
+def weakly_repelling():
+    """Return a periodic orbit embedded in weak chaos, with multiplier -1.054: to leave it takes thousands of time units."""
+    model = Model(Chain(3), law_of("linearized", 0.1325))
+    position = np.array([-0.86490860, -0.66580172, -0.83500781]) - model.sliding_offset
+    near = ChainState(position, np.array([0.23419014, 0.16806155, 0.21475228]), np.zeros(3, dtype=bool))
+    orbit = find_periodic_orbit(model, near, 74.6583856, Symmetry.ASYMMETRIC)
+    assert (orbit.stop_counts, round(multipliers(orbit).whole[0].real, 4)) == ((13, 13, 6), -1.0536)
+    return orbit
 
 
 def listed(run):

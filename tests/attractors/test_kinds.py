@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, find_attractors, law_of, simulate
+from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSettings, find_attractors, law_of, simulate
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.kind import motion_of_run
 from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from tests.flows import weakly_repelling
 
 
 @pytest.mark.parametrize(
@@ -47,6 +48,15 @@ def test_what_drifts_more_slowly_than_it_is_followed_is_no_attractor(law, a, cou
     listed = [item.motion.mean_distance for item in found]
     assert listed == ([] if mean is None else [pytest.approx(mean, abs=3e-6)])
     assert set(labels.tolist()) <= {-1, 0}
+
+
+def test_a_state_on_an_orbit_that_repels_reaches_the_chaos_around_it():
+    orbit = weakly_repelling()
+    position = tuple(orbit.reference.position + orbit.model.sliding_offset)
+    start = InitialState("near", position, tuple(orbit.reference.velocity))
+    found, labels = find_attractors(orbit.model, SearchSettings(samples=0), starts=[start])
+    assert [item.motion.kind.name for item in found] == ["CHAOTIC", "CHAOTIC"]
+    assert labels.tolist() in ([0], [1])
 
 
 def test_chaos_with_end_blocks_that_move_as_one_is_a_kind_of_its_own():

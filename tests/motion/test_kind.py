@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, MotionKind, law_of, simulate
+from burridge_knopoff import Chain, ChainState, Model, MotionKind, law_of, simulate
 from burridge_knopoff.motion.kind import Motion, motion_of, motion_of_run, words_of
 from burridge_knopoff.motion.period import period_of, repetition, section_period
 from burridge_knopoff.motion.settings import MOTION
+from tests.flows import weakly_repelling
 
 QUASIPERIODIC = np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(2000))
 
@@ -237,6 +238,39 @@ def test_motion_under_a_slow_driver_is_smaller_and_slower(name):
 )
 def test_an_orbit_that_repels(period, exponents, error, unstable):
     assert told(0.1, period, exponents, error).unstable is unstable
+
+
+@pytest.mark.parametrize(
+    ("growth", "kind"),
+    [
+        # Turn by turn: an orbit that repels, one that attracts, and a distance that is only rounding.
+        (1.01, MotionKind.UNDETERMINED),
+        (-1.01, MotionKind.UNDETERMINED),
+        (0.99, MotionKind.PERIODIC),
+        (-0.99, MotionKind.PERIODIC),
+        (1.001, MotionKind.PERIODIC),
+    ],
+)
+def test_what_leaves_an_orbit_is_not_periodic(growth, kind):
+    """However near it passes: of a run whose turns diverge one does not know where it goes."""
+    size = 1e-12 if growth == 1.001 else 1e-7
+    away = size * float(growth) ** (np.arange(700.0) - (700.0 if abs(growth) > 1.0 else 0.0))
+    run = run_of(0.2 + np.repeat(away, 3) + np.tile([0.0, 0.3, 0.1], 700), np.zeros((2100, 3)), first_event=np.inf)
+    exponents = {"lyapunov_exponent": np.array([4e-4, 1e-4]), "lyapunov_error": np.full(2, 3e-4)}
+    assert motion_of(run | exponents, 0.1, MOTION).kind == kind
+    strong = {"lyapunov_exponent": np.array([0.02, 1e-4]), "lyapunov_error": np.full(2, 3e-4)}
+    expected = kind if kind == MotionKind.PERIODIC else MotionKind.CHAOTIC
+    assert motion_of(run | strong, 0.1, MOTION).kind == expected
+
+
+@pytest.mark.parametrize("away", [1e-11, 1e-10])
+def test_weak_chaos_next_to_an_orbit_that_repels_is_not_periodic(away):
+    """The run repeats to 1e-6 throughout; its largest exponent, 7e-4, is within its error."""
+    orbit = weakly_repelling()
+    start = orbit.reference
+    run = simulate(orbit.model, ChainState(start.position + away, start.velocity, start.stuck))
+    assert section_period(vars(run), MOTION) == 13
+    assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.UNDETERMINED
 
 
 def test_uniform_sliding_that_attracts_is_no_periodic_motion():

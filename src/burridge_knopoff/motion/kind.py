@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.motion.period import period_of
+from burridge_knopoff.motion.period import period_of, turns_diverge
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.status import Status
 
@@ -130,7 +130,8 @@ def motion_of(run: Mapping[str, Any], mean_distance: float, settings: MotionSett
     mean_distance : ⟨J⟩; the end blocks move as one where it is below the synchronization threshold
 
     Closed if the section points repeat, even where an exponent is positive: a symmetric state stays on an orbit that
-    repels all others (`unstable`), and chaos may have ended within the window. Chaotic if the largest exponent is above
+    repels all others (`unstable`), and chaos may have ended within the window. A run whose turns diverge is
+    leaving such an orbit and does not show where it goes: it is undetermined unless an exponent shows chaos. Chaotic if the largest exponent is above
     `chaotic_exponent` and above its error. Otherwise the largest must be 0, that of the flow; then the motion is closed
     if its states repeat or if the next exponent is negative, and quasiperiodic if that one is 0 as well and the errors
     are small; but end blocks that move as one hardly ever move on a torus, so that there it has to be 0 within one
@@ -139,7 +140,11 @@ def motion_of(run: Mapping[str, Any], mean_distance: float, settings: MotionSett
     uniform sliding that attracts, of which no exponent is 0 and the section points are rounding.
     """
     exponents = run["lyapunov_exponent"], run["lyapunov_error"]
-    return motion_with(*period_of(run, settings), mean_distance, *exponents, settings)
+    points, period = period_of(run, settings)
+    if points and turns_diverge(run, points, settings):
+        found = motion_with(0, math.nan, mean_distance, *exponents, settings)
+        return found if found.kind in CHAOS else Motion(MotionKind.UNDETERMINED)
+    return motion_with(points, period, mean_distance, *exponents, settings)
 
 
 def motion_with(

@@ -19,6 +19,12 @@ REPETITIONS = 3
 # How much nearer the turns of a period are to each other than those of any shorter one.
 FAR_BETTER = 0.1
 
+# Turns diverge if their distance in the last of so many parts of a run is larger than in another part by this factor,
+# and larger than this share of the tolerance.
+PARTS = 8
+DIVERGENCE = 2.0
+ROUNDING = 1e-5
+
 #: What a period is read from, by the names of point files.
 SECTION = (
     *("crossing_velocity", "crossing_time", "crossing_direction"),
@@ -50,6 +56,22 @@ def period_of(run: Mapping[str, np.ndarray], settings: MotionSettings) -> tuple[
     length = orbit_length(states, settings.period_tolerance, len(states))
     time = run["event_time"][own]
     return 0, float(time[-1] - time[-1 - length]) if length < len(states) else math.nan
+
+
+def turns_diverge(run: Mapping[str, np.ndarray], points: int, settings: MotionSettings) -> bool:
+    """Return whether successive turns of a run diverge: it is leaving a periodic orbit that repels.
+
+    run, points : that repeats after so many section points
+
+    Turns approach each other, down to rounding, if the orbit attracts. In weak chaos a run may pass so near a weakly
+    repelling orbit that it repeats within the tolerance for the whole window.
+    """
+    velocity = run["crossing_velocity"][run["crossing_direction"] > 0]
+    apart = np.abs(velocity[points:] - velocity[:-points])
+    if len(apart) < PARTS * points:
+        return False
+    largest = [part.max() for part in np.array_split(apart, PARTS)]
+    return bool(largest[-1] > max(ROUNDING * settings.period_tolerance, DIVERGENCE * min(largest)))
 
 
 def section_period(run: Mapping[str, np.ndarray], settings: MotionSettings) -> int:
