@@ -38,7 +38,7 @@ def settled(model=PAPER):
 
 
 def at_rest(model=ROUGH):
-    position = (-0.5, -0.9, -0.6, -0.8, -0.7)
+    position = (-0.62, -0.65, -0.63, -0.66, -0.64)
     return model.begin(InitialState("rest", position, 0.0), "tested")
 
 

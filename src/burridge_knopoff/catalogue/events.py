@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -10,13 +11,17 @@ from burridge_knopoff.kernel._core import Catalogue
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number, OneOf, TrueOrFalse
 from burridge_knopoff.running.runner import STEPPING, Runner, new_observer
-from burridge_knopoff.running.settings import SOLVERS
+from burridge_knopoff.running.settings import SOLVERS, check_step
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_number, refusal
 
 #: Most events, and most slips in profiles, that a run keeps.
 MOST_EVENTS = MOST_NUMBERS / 10
 TIMES = Number(-1e15, 1e15)
+
+#: Limit on a fixed step times the highest frequency: a tenth of the shortest period. It is longer than that of a run,
+#: as what a step does to a catalogue is worth a look.
+LONGEST_STEP = 0.2 * math.pi
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +106,7 @@ def record_events(
     Blocks that slip at the start of the run belong to no event until they have stopped.
 
     Raises ValueError, one line, for an end that is not after `start` and `begin`, an unknown solver, a step that is not
-    above 0, map for a model without a closed form, more than MOST_EVENTS events, and quasi-static loading of friction
+    above 0, is longer than a tenth of the shortest period of the chain or makes too many steps, map for a model without a closed form, more than MOST_EVENTS events, and quasi-static loading of friction
     that does not drop as slip begins.
     """
     instance_of(model, Model, "model")
@@ -117,6 +122,8 @@ def record_events(
     if not real_number(step) > 0.0:
         raise refusal("step", step, "a number above 0")
     stepping = solver in STEPPING
+    if stepping:
+        check_step(step, LONGEST_STEP, end - start.time, model.chain)
     observer = new_observer(model, [end, end], section_only=True) if stepping else None
     catalogue = Catalogue(model.blocks, begin, profiles, MOST_EVENTS)
     runner = Runner(model, solver, step=step, observer=observer, catalogue=catalogue, loading=loading)
