@@ -93,12 +93,22 @@ def _flags(path: Path, name: str) -> Counter[str]:
         return Counter(meanings[value] for value in variable[:].flat)
 
 
-def _incomplete(path: Path) -> list[str]:
+def _incomplete(path: Path, what: str = "points") -> list[str]:
     counts = _flags(path, "status")
     total, completed = counts.total(), counts.pop("completed", 0)
     reasons = ", ".join(f"{name} {count}" for name, count in sorted(counts.items()))
     words = f"{total - completed} of {total} did not complete: {reasons} (status in {path})"
-    return [f"points: {words if reasons else f'all {total} completed'}"]
+    return [f"{what}: {words if reasons else f'all {total} completed'}"]
+
+
+def _catalogues(path: Path) -> list[str]:
+    import netCDF4
+
+    with netCDF4.Dataset(path) as dataset:
+        count = np.asarray(dataset["event_count"][:])
+    empty = int((count == 0).sum())
+    words = f"catalogues: {empty} of {count.size} without events (event_count in {path})"
+    return [*_incomplete(path, "catalogues"), *([words] if empty else [])]
 
 
 def _undetermined(path: Path, kind: str = "kind") -> list[str]:
@@ -113,5 +123,6 @@ _READERS: dict[str, tuple[str, Callable[[Path], list[str]]]] = {
     "mean_distance": ("summary/mean_distance.nc", _incomplete),
     "grid": ("summary/grid.nc", lambda path: [*_incomplete(path), *_undetermined(path, "run_kind")]),
     "agreement": ("summary/agreement.nc", _undetermined),
+    "catalogue": ("summary/catalogue.nc", _catalogues),
     "report": ("report.html", lambda path: [f"report: {path}"]),
 }

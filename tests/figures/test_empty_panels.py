@@ -4,15 +4,23 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from burridge_knopoff import Chain, InitialState, Model, law_of, record_events, simulate
 from burridge_knopoff.figures import (
     agreement,
     basin_fractions,
     bifurcation_diagram,
+    catalogue,
     distance,
+    grid_distance,
     lyapunov,
+    mean_distance,
+    motion,
+    slip_map,
     stick_slip,
     windows,
 )
+from burridge_knopoff.figures.slip_events import draw_run
+from burridge_knopoff.summaries.catalogue import summarize
 from tests.figures.test_windows import refined
 
 GRID = {"law": ["linearized", "nonlinear"], "initial": ["symmetric"], "a": [0.1, 0.2]}
@@ -139,3 +147,50 @@ def test_cycles_of_runs_without_stops_say_so(stuck, said):
         velocity_correlation=(tuple(GRID), np.full((2, 1, 2), np.nan)),
     )
     assert words(stick_slip.draw(run, "nonlinear")) == said
+
+
+def chain_events(a: float, end: float) -> xr.Dataset:
+    """Return a catalogue of three blocks: at a = 1.9, where friction turns into a push, they reach any speed."""
+    model = Model(Chain(3), law_of("linearized", a), v=0.1, contact="symmetric")
+    return record_events(model, model.begin(InitialState("own", (-0.9, -0.8, -1.0), 0.1)), end).to_dataset()
+
+
+def all_words(figure):
+    return " ".join(text.get_text() for panel in figure.axes for text in panel.texts)
+
+
+def test_a_catalogue_without_events_is_a_sentence():
+    short = summarize([chain_events(0.1, 2.0)], ["linearized"], [0.1])
+    diverged = summarize([chain_events(1.9, 1000.0)], ["linearized"], [1.9])
+    for found in (short, diverged):
+        for figure in (
+            *(catalogue.draw(found), slip_map.draw(found, "linearized")),
+            draw_run(found.isel(law=0, a=0)),
+        ):
+            figure.draw_without_rendering()
+            assert not any(panel.axison for panel in figure.axes)
+            assert "No slip event began and ended" in all_words(figure)
+            assert ("a=1.9$: the run did not complete (diverged)" in all_words(figure)) == (found is diverged)
+
+
+def test_a_catalogue_that_diverged_is_named_among_others():
+    found = summarize([chain_events(0.1, 200.0), chain_events(1.9, 1000.0)], ["linearized"], [0.1, 1.9])
+    figure = catalogue.draw(found)
+    (legend,) = [panel.get_legend() for panel in figure.axes if panel.get_legend()]
+    assert [text.get_text() for text in legend.get_texts()][1] == "$a=1.9$: diverged"
+    titles = {panel.get_title(loc="left"): panel for panel in slip_map.draw(found, "linearized").axes}
+    empty = [panel for title, panel in titles.items() if "a=1.9$, diverged" in title]
+    assert [(panel.axison, panel.texts[0].get_text()) for panel in empty] == [(False, "no events")] * 2
+
+
+def test_the_motion_of_a_run_that_diverged_says_so():
+    run = simulate("linearized", 1.9, "minus", contact="symmetric", transient=0.0, window=1000.0)
+    said = "the run did not complete:\ndiverged at $\\tau=22.48$"
+    for panels in (motion.draw({"minus": run.to_dataset()}).axes[:2], run.plot().axes[1:]):
+        assert [(panel.axison, panel.texts[0].get_text()) for panel in panels] == [(False, said)] * len(panels)
+
+
+def test_runs_of_which_none_completed():
+    values = dict.fromkeys(("mean_distance", "mean_distance_error"), (tuple(GRID), np.full((2, 1, 2), np.nan)))
+    assert words(mean_distance.draw(xr.Dataset(values, GRID))) == [["no run completed"]] * 2
+    assert words(grid_distance.draw(xr.Dataset(values, GRID))) == [["no run completed"]] * 2

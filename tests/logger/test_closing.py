@@ -71,6 +71,17 @@ def test_a_whole_study():
     assert lines(*done(POINT), wanted=["simulate"]) == ["study paper: done in 1 s", f"made: {POINT}"]
 
 
+def test_catalogues_that_did_not_complete_or_have_no_events():
+    path = FOLDER / "catalogue.nc"
+    status = np.array([[0, 3, 0]], dtype="i1")
+    found = xr.Dataset({"status": (("law", "a"), status, flag("i1", STATUSES))})
+    found.assign(event_count=(("law", "a"), [[7, 0, 0]])).to_netcdf(path)
+    assert lines(wanted=["catalogue"])[2:] == [
+        f"catalogues: 1 of 3 did not complete: diverged 1 (status in {path})",
+        f"catalogues: 2 of 3 without events (event_count in {path})",
+    ]
+
+
 def test_no_claim_that_can_be_judged_and_all_points_completed():
     reason = "Not testable here: the paper's driver has v = 0.1, that of the study v = 0.2."
     claims = [{"name": f"claim_{n}", "verdict": "not testable", "reason": reason} for n in range(5)]

@@ -146,3 +146,31 @@ def test_without_the_section_there_is_no_stage(study):
     assert "catalogue" not in plan
     assert "slip_map" not in plan
     study.config.write_text(CATALOGUE)
+
+
+#: At a = 1.9 friction turns into a push, and the blocks reach any speed; two units of time are too few for an event.
+RUNAWAY = """
+study: runaway
+a: [0.1, 1.9]
+laws: {linearized: {}}
+initial: {own: {position: [-0.9, -0.8, -1.0], velocity: 0.1}}
+contact: symmetric
+transient: 10
+window: 20
+batches: 2
+lyapunov_exponents: 0
+without: [attractors, solvers, two_blocks, claims]
+catalogue: {transient: 0, window: 300}
+"""
+
+
+def test_a_catalogue_whose_run_diverged_is_a_failure(tmp_path, capsys):
+    study = Study(tmp_path / "study", RUNAWAY)
+    said = study.ok()
+    summary = "results/runaway/summary/catalogue.nc"
+    assert f"catalogues: 1 of 2 did not complete: diverged 1 (status in {summary})\n" in said
+    assert f"catalogues: 1 of 2 without events (event_count in {summary})\n" in said
+    results = study.folder / "results/runaway"
+    assert main(["check", str(results)]) == 3
+    path = results / "catalogues/linearized/a1.9000.nc"
+    assert f"failed   {path}: ended with status diverged\n" in capsys.readouterr().out

@@ -13,6 +13,7 @@ from burridge_knopoff.check.leftovers import leftovers, run_files, study_files, 
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.provenance.record import NAME, remake_command
 from burridge_knopoff.provenance.seal import BadFile, check_seal
+from burridge_knopoff.running.status import ENDS
 from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.study.job_log import last_words
 from burridge_knopoff.study.recorded import recorded_study
@@ -144,9 +145,16 @@ def _points(results: Path, study: Study) -> dict[Path, tuple[str, Path]]:
 def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
     """Return the problem with the point file of a run (or with another file, without a command), or None."""
     try:
-        if not command:
-            open_summary(path) if path.suffix == ".nc" else check_seal(path)
-        elif (status := check_run(path, command)) != "completed":
+        if command:
+            status = check_run(path, command)
+        elif path.suffix == ".nc":
+            ended = open_summary(path).get("status")
+            # A catalogue is of a single run.
+            status = "completed" if ended is None or ended.dims else ENDS[ended.item()]
+        else:
+            check_seal(path)
+            return None
+        if status != "completed":
             return Finding("failed", path, f"ended with status {status}")
     except BadFile as error:
         reason = error.reason if error.path == path else f"was made from {error.path}, which is {error.kind}"

@@ -5,7 +5,14 @@ from __future__ import annotations
 import xarray
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.slip_events import draw_extent, draw_interval, draw_rate, slope_words
+from burridge_knopoff.figures.slip_events import (
+    draw_extent,
+    draw_interval,
+    draw_rate,
+    no_events,
+    say_without,
+    slope_words,
+)
 from burridge_knopoff.figures.style import color, evenly_spaced, label_panels, new_figure, page_width, styled
 
 TITLE = "Slip events"
@@ -15,8 +22,9 @@ CAPTION = """\
 Slip events of the catalogues, for each friction law and up to six values of a. Top: rate of events per unit of time and
 of magnitude, the natural logarithm of the moment M. Each broad line is the rate exp(−b ln M) that was fitted by maximum
 likelihood in its range; the legend has the slope b with its standard error, and the probability p that a catalogue of
-such a distribution differs from its own fit by as much. Middle: mean number of slipping blocks of the events of a magnitude. Bottom:
-intervals since the event in which the epicentre slipped last, as shares in logarithmic bins.
+such a distribution differs from its own fit by as much; of a run that did not complete, how it ended. Middle: mean
+number of slipping blocks of the events of a magnitude. Bottom: intervals since the event in which the epicentre slipped
+last, as shares in logarithmic bins.
 """
 
 #: Most values of a that are shown.
@@ -26,6 +34,8 @@ MOST = 6
 @styled
 def draw(catalogue: xarray.Dataset) -> Figure:
     """Draw rates, extents and intervals, a column for each law, a colour for each a."""
+    if (sentence := no_events(catalogue)) is not None:
+        return sentence
     laws, chosen = catalogue["law"].values, evenly_spaced(catalogue.sizes["a"], MOST)
     figure, panels = new_figure(page_width(len(laws)), 7.5, rows=3, columns=len(laws), share_columns=False)
     for column, law in enumerate(laws):
@@ -37,6 +47,8 @@ def draw(catalogue: xarray.Dataset) -> Figure:
             draw_interval(interval, run, color(number))
             rate.plot([], [], color=color(number), label=f"$a={run['a'].item():g}$: {slope_words(run)}")
         rate.legend(handlelength=1.2)
+        for panel, name in ((rate, "magnitude_rate"), (extent, "mean_extent"), (interval, "interval_count")):
+            say_without(panel, catalogue.sel(law=law).isel(a=chosen), name)
         if column:
             for panel in (rate, extent, interval):
                 panel.set_ylabel("")

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.over_parameters import draw_panels
-from burridge_knopoff.figures.style import begin_at_zero, styled
+from burridge_knopoff.figures.style import begin_at_zero, say, styled
 
 TITLE = "⟨J⟩ over the parameters"
 CATEGORY = "Synchronization"
@@ -26,7 +26,10 @@ def draw(grid: xarray.Dataset) -> Figure:
     figure, panels, drawn = draw_panels(
         grid, r"$\langle J\rangle$", _curve, lambda one: one["mean_distance"].values, vmin=0.0, vmax=highest or 1.0
     )
-    if drawn is None:
+    if not np.isfinite(grid["mean_distance"].values).any():
+        for panel in panels:
+            say(panel, "no run completed")
+    elif drawn is None:
         begin_at_zero(panels[0])
     else:
         figure.colorbar(drawn, ax=panels, label=r"$\langle J\rangle$")

@@ -17,6 +17,7 @@ from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
     page_width,
+    say,
     show_all,
     styled,
 )
@@ -85,6 +86,8 @@ def _branches(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -
 
 
 def _runs(panel: Axes, runs: xarray.Dataset) -> None:
+    if runs["mean_distance"].isnull().all():
+        say(panel, "no run completed")
     for index, initial in enumerate(runs["initial"].values):
         run = runs.sel(initial=initial)
         panel.errorbar(

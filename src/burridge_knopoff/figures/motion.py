@@ -10,7 +10,8 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, say, say_nothing, styled
+from burridge_knopoff.figures.style import PAGE, color, label_panels, say_nothing, styled
+from burridge_knopoff.running.status import ENDS
 from burridge_knopoff.summaries.bifurcation_diagram import ROUNDING
 
 TITLE = "Motion from {initial}"
@@ -34,6 +35,9 @@ MOST_NAMED = 12
 # Coprime with the number of dashes, so that no pair of width and dash repeats before all have been used.
 SHADES = ("#7FB2DA", "#D55E00", "#000000", "#009E73", "#CC79A7", "#E69F00", "#0072B2")
 
+#: What the panels of the blocks show.
+NAMES = {"velocity": "velocities", "position": "positions"}
+
 # With fewer section points than this, they are drawn larger.
 FEW = 50
 
@@ -54,19 +58,35 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     draw_section(panels["section"], point)
     _section_times(panels["times"], point)
     figure.align_ylabels([panels["velocity"], panels["position"], panels["section"]])
-    blocks = len(point["block"])
-    if blocks <= 3:
+    curves, names = panels["velocity"].get_legend_handles_labels()
+    blocks = len(curves)
+    if 0 < blocks <= 3:
         panels["velocity"].legend(ncols=blocks, loc="lower right", bbox_to_anchor=(1.0, 0.98), borderpad=0.1)
-    elif blocks <= MOST_NAMED:
-        figure.legend(*panels["velocity"].get_legend_handles_labels(), ncols=min(blocks, 6), loc="outside lower center")
+    elif 3 < blocks <= MOST_NAMED:
+        figure.legend(curves, names, ncols=min(blocks, 6), loc="outside lower center")
     run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
     titles = (f"velocities: {run}", f"positions relative to the driver: {run}", "section points", "the same in time")
     label_panels(panels.values(), titles)
     return figure
 
 
+def ended_early(point: xarray.Dataset) -> str:
+    """Return when and how a run ended that did not complete; empty for one that did."""
+    return ended_words(ENDS[point["status"].item()], point["end_time"].item())
+
+
+def ended_words(status: str, time: float) -> str:
+    """Return how and when a run ended that did not complete; empty for one that did."""
+    if status == "completed":
+        return ""
+    return f"the run did not complete:\n{status.replace('_', ' ')} at $\\tau={time:.4g}$"
+
+
 def draw_blocks(panel: Axes, point: xarray.Dataset, name: str) -> None:
-    """Draw the velocity or position of every block in the recorded last part of a run."""
+    """Draw the velocity or position of every block in the recorded last part of a run, or say why there is none."""
+    if not np.isfinite(point[name].values).any():
+        say_nothing(panel, ended_early(point) or f"no {NAMES[name]} were kept")
+        return
     time = point["trajectory_time"].values
     for index, block in enumerate(point["block"].values):
         panel.plot(
@@ -83,7 +103,7 @@ def draw_section(panel: Axes, point: xarray.Dataset) -> None:
     """Draw W' at each upward crossing of W = 0 versus W' at the previous one."""
     _, upward = _upward(point)
     if len(upward) < 2:
-        say_nothing(panel, "$W$ crosses 0 upward\nless than twice in the window")
+        say_nothing(panel, ended_early(point) or "$W$ crosses 0 upward\nless than twice in the window")
         return
     panel.plot(upward[:-1], upward[1:], ".", **_look(upward))
     limits = _limits(upward)
@@ -93,10 +113,10 @@ def draw_section(panel: Axes, point: xarray.Dataset) -> None:
 
 def _section_times(panel: Axes, point: xarray.Dataset) -> None:
     time, upward = _upward(point)
-    panel.set(xlabel=r"$\tau$", ylabel="$W$′ at upward crossings")
     if len(upward) < 2:
-        say(panel, "no section points")
+        say_nothing(panel, "no section points")
         return
+    panel.set(xlabel=r"$\tau$", ylabel="$W$′ at upward crossings")
     panel.plot(time, upward, ".", **_look(upward))
     panel.set_ylim(_limits(upward))
 

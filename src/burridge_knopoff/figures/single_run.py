@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, StyledFigure, say, styled
+from burridge_knopoff.figures.motion import ended_words
+from burridge_knopoff.figures.style import PAGE, StyledFigure, say_nothing, styled
 from burridge_knopoff.running.trajectory import Trajectory
 
 
@@ -18,11 +19,12 @@ def plot_run(run: Trajectory) -> Figure:
     window = run.begin_time + run.settings.transient
     distance.axvspan(window, window + run.settings.window, color="0.93", zorder=0, label="averaging window")
     distance.set(xlabel=r"$\tau$", ylabel=r"$J(\tau)$", ylim=(0.0, None))
-    for block, values in enumerate(np.transpose(run.velocity), 1):
-        velocity.plot(run.trajectory_time, values, linewidth=1.0, label=f"block {block}")
     velocity.set(xlabel=r"$\tau$", ylabel="$U_i$′")
-    if not run.velocity.size:
-        say(velocity, "no velocities were kept")
+    if np.isfinite(run.velocity).any():
+        for block, values in enumerate(np.transpose(run.velocity), 1):
+            velocity.plot(run.trajectory_time, values, linewidth=1.0, label=f"block {block}")
+    else:
+        say_nothing(velocity, ended_words(run.status, run.end_time) or "no velocities were kept")
     # A legend of more blocks would cover the curves.
     if run.model.blocks <= 8:
         figure.legend(loc="outside lower center", ncols=run.model.blocks + 1)

@@ -15,11 +15,64 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator, NullFormatter
 
 from burridge_knopoff.catalogue.slope import format_p_value
-from burridge_knopoff.figures.style import PAGE, StyledFigure, begin_at_zero, label_panels, say, say_nothing, styled
+from burridge_knopoff.figures.style import (
+    PAGE,
+    StyledFigure,
+    begin_at_zero,
+    label_panels,
+    new_figure,
+    say,
+    say_nothing,
+    styled,
+)
+from burridge_knopoff.running.status import ENDS, Status
 
 MAGNITUDE = r"magnitude $\ln M$"
 INTERVAL = r"interval $\Delta\tau$"
 _MARKS: dict[str, Any] = {"marker": "o", "markersize": 2.6, "linewidth": 0.6}
+
+
+#: What a panel says that has nothing of a variable, although there are events.
+_WITHOUT = {
+    "magnitude_rate": "no rates: no run completed",
+    "mean_extent": "no events",
+    "interval_count": "no block starts two events",
+    "recurrence": "no block slips in two events",
+}
+#: Most runs without events whose ends are listed.
+_LISTED = 12
+
+
+def no_events(runs: xarray.Dataset) -> Figure | None:
+    """Return a figure that says that no run of a summary has events, and which did not complete; None if one has."""
+    if (runs["event_count"] > 0).any():
+        return None
+    begin, end = (runs.attrs[f"{name}_time"] for name in ("begin", "end"))
+    lines = [rf"No slip event began and ended between $\tau={begin:g}$ and $\tau={end:g}$."]
+    every = runs.expand_dims([name for name in ("law", "a") if name not in runs.dims])
+    for law in every["law"].values:
+        for a in every["a"].values:
+            if words := ending(every.sel(law=law, a=a)):
+                lines.append(f"{law} law, $a={a:g}$: the run did not complete ({words}).")
+    if len(lines) > _LISTED + 1:
+        lines[_LISTED:] = [f"… and {len(lines) - _LISTED} more runs that did not complete."]
+    figure, (panel,) = new_figure(PAGE, 1.2 + 0.17 * len(lines))
+    say_nothing(panel, "\n".join(lines))
+    return figure
+
+
+def ending(run: xarray.Dataset) -> str:
+    """Return how a run ended that did not complete; empty for one that did."""
+    status = run["status"].item()
+    return "" if status == Status.COMPLETED else ENDS[status].replace("_", " ")
+
+
+def say_without(panel: Axes, runs: xarray.Dataset, name: str) -> None:
+    """Leave a panel empty except for the reason if none of its runs has anything of a variable."""
+    if (runs["event_count"] == 0).all():
+        say_nothing(panel, "no events")
+    elif not (runs[name] > 0).any():
+        say_nothing(panel, _WITHOUT[name])
 
 
 def draw_rate(panel: Axes, run: xarray.Dataset, color: str) -> None:
@@ -68,7 +121,6 @@ def draw_map(panel: Axes, run: xarray.Dataset, norm: Normalize) -> None:
             bars.append([(low - 0.5, time), (high + 0.5, time)])
             magnitudes.append(magnitude)
     if not bars:
-        say_nothing(panel, "no events")
         return
     panel.add_collection(LineCollection(bars, array=np.array(magnitudes), norm=norm, cmap="viridis_r", linewidth=0.9))
     times = run["shown_time"].values[there]
@@ -92,10 +144,10 @@ def draw_recurrence(panel: Axes, run: xarray.Dataset, color: str) -> None:
 
 
 def magnitude_norm(runs: xarray.Dataset) -> Normalize:
-    """Return the scale of colours of the maps of some runs."""
+    """Return the scale of colours of the maps of some runs, of which one has events."""
     values = runs["shown_magnitude"].values
     finite = values[np.isfinite(values)]
-    return Normalize(finite.min(), finite.max()) if len(finite) else Normalize(0.0, 1.0)
+    return Normalize(finite.min(), finite.max())
 
 
 def add_magnitudes(figure: Figure, norm: Normalize, panels: list[Axes]) -> None:
@@ -106,6 +158,8 @@ def add_magnitudes(figure: Figure, norm: Normalize, panels: list[Axes]) -> None:
 @styled
 def draw_run(run: xarray.Dataset) -> Figure:
     """Draw everything about one run, a summary at one law and a."""
+    if (sentence := no_events(run)) is not None:
+        return sentence
     figure = StyledFigure(figsize=(PAGE, 5.4), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1.15, 1.0))
     slips, recurrence = figure.add_subplot(grid[:2, 0]), figure.add_subplot(grid[2, 0])
@@ -117,12 +171,22 @@ def draw_run(run: xarray.Dataset) -> Figure:
     recurrence.set_xlim(slips.get_xlim())
     for panel, draw in zip(others, (draw_rate, draw_extent, draw_interval), strict=True):
         draw(panel, run, "black")
-    label_panels([slips, recurrence, *others], ["slips", "recurrence", slope_words(run), "extent", "intervals"])
+    for panel, name in zip((*others, recurrence), _WITHOUT, strict=True):
+        say_without(panel, run, name)
+    words = ending(run)
+    label_panels(
+        [slips, recurrence, *others],
+        [f"slips{words and f', {words}'}", "recurrence", slope_words(run), "extent", "intervals"],
+    )
     return figure
 
 
 def slope_words(run: xarray.Dataset) -> str:
-    """Return slope, error and p-value of the fit for a legend; empty if there is no slope."""
+    """Return slope, error and p-value of the fit for a legend; how the run ended, or that there is none."""
+    if words := ending(run):
+        return words
+    if not run["event_count"]:
+        return "no events"
     b, error, p = (run[name].item() for name in ("slope", "slope_error", "slope_p_value"))
     if not np.isfinite(b):
         return "no slope"

@@ -5,7 +5,15 @@ from __future__ import annotations
 import xarray
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.slip_events import add_magnitudes, draw_map, draw_recurrence, magnitude_norm
+from burridge_knopoff.figures.slip_events import (
+    add_magnitudes,
+    draw_map,
+    draw_recurrence,
+    ending,
+    magnitude_norm,
+    no_events,
+    say_without,
+)
 from burridge_knopoff.figures.style import ACROSS, evenly_spaced, label_panels, page_width, styled
 
 TITLE = "Slips in space and time"
@@ -24,6 +32,8 @@ def draw(catalogue: xarray.Dataset, shown_law: str) -> Figure:
     """Draw the maps of slips of the last events, and the recurrence of each block, a column for each a."""
     chosen = evenly_spaced(catalogue.sizes["a"], ACROSS)
     runs = catalogue.sel(law=shown_law).isel(a=chosen)
+    if (sentence := no_events(runs)) is not None:
+        return sentence
     figure = Figure(figsize=(page_width(len(chosen)), 5.8), layout="constrained")
     panels = list(figure.subplots(2, len(chosen), sharex="col", squeeze=False, height_ratios=(3, 1)).flat)
     norm = magnitude_norm(runs)
@@ -31,10 +41,14 @@ def draw(catalogue: xarray.Dataset, shown_law: str) -> Figure:
         slips, recurrence = panels[column :: len(chosen)]
         draw_map(slips, runs.isel(a=column), norm)
         draw_recurrence(recurrence, runs.isel(a=column), "black")
+        say_without(slips, runs.isel(a=column), "mean_extent")
+        say_without(recurrence, runs.isel(a=column), "recurrence")
         slips.set_xlabel("")
         if column:
             slips.set_ylabel("")
             recurrence.set_ylabel("")
     add_magnitudes(figure, norm, panels[: len(chosen)])
-    label_panels(panels, [f"{name}, $a={a:g}$" for name in ("slips", "recurrence") for a in runs["a"].values])
+    parts = [runs.isel(a=column) for column in range(len(chosen))]
+    values = [", ".join(filter(None, (f"$a={run['a'].item():g}$", ending(run)))) for run in parts]
+    label_panels(panels, [f"{name}, {value}" for name in ("slips", "recurrence") for value in values])
     return figure

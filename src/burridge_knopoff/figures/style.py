@@ -100,7 +100,7 @@ def new_figure(
     empty : places without a panel, counted row by row
     """
     # Wide enough that the last tick label of a panel stays apart from the first of the next panel.
-    figure = Figure(figsize=(width, height), layout=ConstrainedLayoutEngine(wspace=0.04))
+    figure = StyledFigure(figsize=(width, height), layout=ConstrainedLayoutEngine(wspace=0.04))
     axes = figure.subplots(
         rows,
         columns,

@@ -14,7 +14,7 @@ from burridge_knopoff.figures.description import Description, figure_description
 from burridge_knopoff.figures.distance import FLOOR, linear_top
 from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_section
 from burridge_knopoff.figures.slip_events import draw_run
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, say_nothing, styled, write_figure
+from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled, write_figure
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.catalogue import summarize
@@ -102,11 +102,8 @@ def draw_point(point: xarray.Dataset) -> Figure:
     panels[1].set(yscale="log", ylim=(FLOOR, max(10.0, np.nanmax(distance, initial=0.0))))
     panels[1].legend(loc="lower right", handlelength=1.2)
     draw_section(panels[2], point)
-    if np.isfinite(point["velocity"].values).any():
-        draw_blocks(panels[3], point, "velocity")
-        panels[3].set(xlabel=r"$\tau$", ylabel="$U_i$′")
-    else:
-        say_nothing(panels[3], "no velocities were kept")
+    panels[3].set(xlabel=r"$\tau$", ylabel="$U_i$′")
+    draw_blocks(panels[3], point, "velocity")
     if panels[3].lines and point.sizes["block"] <= MOST_NAMED:
         figure.legend(*panels[3].get_legend_handles_labels(), ncols=6, loc="outside lower center")
     run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
