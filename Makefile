@@ -146,13 +146,13 @@ site: .venv/kernel .venv/site
 	$(BIN)/sphinx-build --fail-on-warning --fresh-env --quiet -c docs -d build/doctrees . build/site
 	@echo build/site/index.html
 
-# The figures of docs/ and the ledger in docs/claims.md, from the default study at a greater depth, with its verdicts at
-# both depths and with longer chains; the tables of keys; the tutorial as a notebook.
+# The ledger in docs/claims.md and the README, from the default study; the figures of docs/, from the same study at a
+# greater depth and with longer chains, whose verdicts are compared; the tables of keys; the tutorial as a notebook.
 docs: setup .venv/site
 	$(BIN)/snakemake -c2
 	$(BIN)/snakemake -c2 chains --configfile config/paper_fine.yaml
 	$(BIN)/snakemake -c2 --configfile config/paper_fine.yaml
-	$(BIN)/python docs/refresh.py results/paper_fine results/paper
+	$(BIN)/python docs/refresh.py results/paper results/paper_fine
 	$(BIN)/python docs/keys.py
 	$(BIN)/python docs/notebook.py
 

@@ -1,6 +1,7 @@
 """Update the ledger of claims and the figures of the documentation from finished studies: `make docs`.
 
-The first study is the one that docs/ is printed from. The second is the same study at the depth of `make`.
+The ledger, here and in the README, is that of the first study, which `make` runs. The second is the same study at
+a greater depth: the figures are its own, and its verdicts are compared.
 """
 
 from __future__ import annotations
@@ -36,23 +37,29 @@ def page(text: str, content: dict, depths: dict[str, dict]) -> str:
 
 
 def verdicts(content: dict) -> dict:
-    """Return the depth of a ledger and its verdicts, by the name of the claim."""
-    return {"depth": content["depth"], "verdicts": {claim["name"]: claim["verdict"] for claim in content["claims"]}}
+    """Return the depth of a ledger, and the verdicts and reasons by the name of the claim."""
+    claims = {claim["name"]: {key: claim[key] for key in ("verdict", "reason")} for claim in content["claims"]}
+    return {"depth": content["depth"], "claims": claims}
+
+
+def differing(depths: dict[str, dict]) -> dict[str, tuple[str, str]]:
+    """Return the claims of which the studies have different verdicts: {name: (verdict of the first, of the last)}."""
+    first, last = (study["claims"] for study in depths.values())
+    pairs = {name: (claim["verdict"], last[name]["verdict"]) for name, claim in first.items()}
+    return {name: pair for name, pair in pairs.items() if len({*pair}) > 1}
 
 
 def compared(depths: dict[str, dict]) -> str:
-    """Return a sentence that compares the verdicts at the second depth with those at the first."""
-    (fine, here), (name, there) = depths.items()
-    other = [
-        f"{claim}: {verdict}, not {here['verdicts'][claim]}"
-        for claim, verdict in there["verdicts"].items()
-        if verdict != here["verdicts"][claim]
-    ]
-    said = f"differ in {len(other)}: {'; '.join(other)}" if other else "are the same"
-    text = (
-        f"The tables are those of `config/{fine}.yaml`. All {len(there['verdicts'])} verdicts of `config/{name}.yaml` "
-        f"({there['depth']}) {said}."
-    )
+    """Return a sentence on the study of the tables, and on the verdicts of one that looks closer."""
+    name, *closer = depths
+    text = f"The tables are those of `config/{name}.yaml`."
+    for other in closer:
+        found = differing({name: depths[name], other: depths[other]})
+        listed = "; ".join(f"{claim}: {there}, not {here}" for claim, (here, there) in found.items())
+        said = f"differ in {len(found)}: {listed}" if found else "are the same"
+        text += (
+            f" All {len(depths[other]['claims'])} verdicts of `config/{other}.yaml` ({depths[other]['depth']}) {said}."
+        )
     return textwrap.fill(text, 120, break_on_hyphens=False)
 
 
@@ -88,10 +95,11 @@ def figure_names() -> set[str]:
     return {name for text in pages for name in re.findall(r"figures/(\w+)\.png", text.read_text(encoding="utf-8"))}
 
 
-def main(results: Path, default: Path) -> None:
-    """Copy the ledger and the figures of a study into docs/, and compare its verdicts with those of another depth."""
-    read = [json.loads((study / "summary/claims.json").read_text(encoding="utf-8")) for study in (results, default)]
-    content, depths = read[0], {one["study"]: verdicts(one) for one in read}
+def main(default: Path, *closer: Path) -> None:
+    """Write the ledger of a study into docs/ and the README, and copy the figures of the one that looks closest."""
+    studies = [json.loads((one / "summary/claims.json").read_text(encoding="utf-8")) for one in (default, *closer)]
+    content, depths = studies[0], {one["study"]: verdicts(one) for one in studies}
+    results = [default, *closer][-1]
     write_text(LEDGER, as_json(content))
     write_text(DEPTHS, as_json(depths))
     write_text(PAGE, page(PAGE.read_text(encoding="utf-8"), content, depths))

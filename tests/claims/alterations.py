@@ -532,6 +532,12 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("springs_and_masses_help", LOOSELY, slips(0.6)),
     ("springs_and_masses_help", HOLDS, slips(0.8)),
     ("laws_agree", FAILS, means_apart(lambda a: a > 0.055)),
+    # A small part of the largest ⟨J⟩ is no difference, however large a part it is of a small one.
+    ("laws_agree", HOLDS, alter("agreement", "difference", 0.01)),
+    ("laws_agree", FAILS, alter("agreement", "difference", 0.02)),
+    # All of one curve and nineteen values of the other, 41 of 44 points; 38 of 44 leave it open.
+    ("laws_agree", LOOSELY, means_apart(lambda a: (a > 0.08) & (a < 0.095), initial="plus")),
+    ("laws_agree", NOT_TESTABLE, means_apart(lambda a: (a > 0.072) & (a < 0.096), initial="plus")),
     ("laws_agree", LOOSELY, means_apart(ONE_OF_MANY, initial="plus")),
     ("laws_agree", NOT_TESTABLE, alter("agreement", "difference_error", 0.01, a=lambda a: a > 0.03, initial="plus")),
     ("laws_agree", HOLDS, alter("agreement", "difference_error", 0.01, a=ONE_OF_MANY)),
@@ -595,13 +601,13 @@ CASES: list[tuple[str, str, Alteration]] = [
     (
         "solutions_agree",
         HOLDS,
-        alter("agreement", "kind", PERIODIC, law="nonlinear", initial="plus", a=lambda a: a < 0.1),
+        alter("agreement", "kind", PERIODIC, law="nonlinear", initial="plus"),
     ),
-    # The laws are compared at every a: one of sixty is no exception to the rule.
+    # The laws are compared at every a: one of twenty-two is no exception to the rule.
     ("solutions_agree", LOOSELY, alter("agreement", "kind", CHAOTIC, law="nonlinear", a=ONE_OF_MANY)),
     # One of six points at which solvers differ is too little to say that they do.
     ("solutions_agree", NOT_TESTABLE, alter("solvers", "difference", 0.05, a=0.02, initial="plus", solver="rk4")),
-    ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED, a=lambda a: a > 0.2)),
+    ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED, a=lambda a: a > 0.05)),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", CHAOTIC, law="nonlinear"))),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", UNDETERMINED))),
     ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED)),

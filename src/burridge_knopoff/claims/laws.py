@@ -20,6 +20,7 @@ from burridge_knopoff.claims.verdict import (
     at_values,
     by_value,
     known_share,
+    share_of,
     shares_text,
     verdict_of,
 )
@@ -73,21 +74,27 @@ def _by_answers(
     a: Range,
     loose_share: float,
 ) -> Verdict:
-    """Return the verdict of a claim that the laws agree; answers : {initial state: (a, an Answer for each)}."""
-    shares, numbers, apart = {}, [], []
+    """Return the verdict of a claim that the laws agree, by the points of all states together, as a figure shows them.
+
+    answers : {initial state: (a, an Answer for each)}
+    """
+    shares, numbers, apart, unknown = {}, [], [], []
     for state, (grid, same) in answers.items():
-        known = same != Answer.UNDETERMINED
-        unknown = f"the laws could not be compared from {state} {at_values(grid, ~known)}"
-        shares[state] = known_share(same == Answer.YES, known, loose_share, unknown)
-        numbers.append(Measured(f"share of a at which the laws agree, {state}", shares[state].value))
-        differ = same == Answer.NO
+        known, differ = same != Answer.UNDETERMINED, same == Answer.NO
+        if known.any():
+            shares[state] = share_of((same == Answer.YES)[known])
+            numbers.append(Measured(f"share of a at which the laws agree, {state}", shares[state].value))
         if differ.any():
             numbers.append(Measured(f"smallest a at which they differ, {state}", float(grid[differ][0])))
             apart.append(f"they differ {at_values(grid, differ)} ({state})")
         if not known.all():
-            apart.append(f"unknown {at_values(grid, ~known)} ({state})")
-    reason = f"The laws agree {what} at {shares_text(shares)} of the values of a with {a}."
-    return Verdict(verdict_of(shares, loose_share), reason, [*numbers, *measured], "; ".join(apart))
+            unknown.append(f"unknown {at_values(grid, ~known)} ({state})")
+    same = np.concatenate([of_state for _, of_state in answers.values()])
+    reason = f"the laws could not be compared: {'; '.join(unknown)}"
+    share = known_share(same == Answer.YES, same != Answer.UNDETERMINED, loose_share, reason)
+    reason = f"The laws agree {what} at {share} of the points, states and values of a with {a}: {shares_text(shares)}."
+    verdict = verdict_of({"points": share}, loose_share)
+    return Verdict(verdict, reason, [*numbers, *measured], "; ".join([*apart, *unknown]))
 
 
 def linearization_justified(

@@ -41,10 +41,12 @@ def solutions_agree(
     Solvers of one law agree at a point, a state and an a at which all of them were tried, if their ⟨J⟩ differs from
     that of the study's solver by no more than the fraction `relative`, three standard errors, or the threshold of
     synchronization. The laws agree at an a if both lead to synchrony, both to other regular motion, or both to chaos,
-    which are the paper's results: the runs of the whole grid show it. loose_share : fraction of points, and of the
-    values of a, from which the claim holds loosely
+    which are the paper's results: the runs of the whole grid show it.
+
+    a : range in which the laws are to agree; solvers are compared wherever they were tried
+    loose_share : fraction of points, and of the values of a, from which the claim holds loosely
     """
-    solved, measured, apart = _solved(evidence, initial, a, relative)
+    solved, measured, apart = _solved(evidence, initial, relative)
     shares = {"solvers": share_of(np.array(solved))}
     for state in initial:
         runs = evidence.choose(evidence.of_state("agreement", state), a)
@@ -78,7 +80,7 @@ def solutions_agree(
 
 
 def _solved(
-    evidence: Evidence, initial: Sequence[str], a: Range, relative: float
+    evidence: Evidence, initial: Sequence[str], relative: float
 ) -> tuple[list[bool], list[Measured], list[str]]:
     """Return whether the solvers agree at each point, the largest differences, and where they differ, in words.
 
@@ -88,7 +90,7 @@ def _solved(
     threshold = evidence.summary("agreement").attrs["synchronization_threshold"]
     for state in initial:
         evidence.check_state(state)
-        solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), a, least=1)
+        solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), Range(above=0.0), least=1)
         for value in solvers["a"].values:
             found = solvers.sel(a=value)
             mean, difference, error = (
