@@ -1,7 +1,7 @@
 """The compilation of the kernel, which decides the numbers just as its sources do."""
 
 import os
-import platform
+import sysconfig
 
 #: Neither contraction to fused multiply-add nor reassociation: a compiler must not change a result.
 #: docs/performance.md explains on which machines results agree to the bit.
@@ -18,11 +18,14 @@ def vector_flags() -> dict[str, tuple[str, ...]]:
     """Return {folder in the kernel: flags that choose the vectors} of every module to compile, the narrowest first.
 
     By default there is one module, for this processor. BURRIDGE_KNOPOFF_LANES chooses the number of doubles in a
-    vector, or "all" for three modules, of which the widest that the processor runs is imported.
+    vector, or "all" for three modules, of which the widest that the processor runs is imported. Where Python is built
+    for other processors than x86-64, or for several at once as on macOS, there is one module without such flags, which
+    only compilers for x86-64 have.
 
     Raises ValueError if BURRIDGE_KNOPOFF_LANES is none of 2, 4, 8 and all.
     """
-    if platform.machine().lower() not in ("x86_64", "amd64"):
+    # What modules are compiled for, which need not be the machine that compiles them.
+    if not sysconfig.get_platform().endswith(("-x86_64", "-amd64")):
         return {"": ()}
     lanes = os.environ.get("BURRIDGE_KNOPOFF_LANES")
     if lanes is None:
