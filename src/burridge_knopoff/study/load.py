@@ -52,7 +52,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     # The config of a record names the file of springs with the digest of its content.
     is_new = isinstance(springs, str) and not has_digest(springs)
     # Any other name is refused below, with its key.
-    if isinstance(chain_keys, Mapping) and is_new and springs.isprintable():
+    if isinstance(chain_keys, Mapping) and is_new and f"{springs}".isprintable():
         config = {**config, "chain": {**chain_keys, "springs": display_path(folder / f"{springs}")}}
     config = given_grid(config)
     # Use the types of YAML: lists instead of tuples.
