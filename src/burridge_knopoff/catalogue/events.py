@@ -106,8 +106,9 @@ def record_events(
     Blocks that slip at the start of the run belong to no event until they have stopped.
 
     Raises ValueError, one line, for an end that is not after `start` and `begin`, an unknown solver, a step that is not
-    above 0, is longer than a tenth of the shortest period of the chain or makes too many steps, map for a model without a closed form, more than MOST_EVENTS events, and quasi-static loading of friction
-    that does not drop as slip begins.
+    above 0, longer than a tenth of the shortest period of the chain or too short for the run to end, map for a model
+    without a closed form, more than MOST_EVENTS events, and quasi-static loading of friction that does not drop as slip
+    begins.
     """
     instance_of(model, Model, "model")
     instance_of(start, ChainState, "start")
