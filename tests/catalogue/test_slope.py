@@ -58,11 +58,12 @@ def test_p_tells_a_rate_that_bends():
 
 @pytest.mark.parametrize("width", [0.1, 0.5])
 def test_rounded_magnitudes_take_a_range_of_whole_bins(width):
-    """Half a bin outside the first and the last centre; from the first centre on b is too low."""
+    """Half a bin outside the first and the last centre; b is too high between centres, too low a bin further out."""
     magnitude = drawn(0.81, -5.0, 5.0, 100_000, 1)
     rounded = width * np.round(magnitude / width)
     assert fit_slope(rounded, -2.0 - width / 2, 2.0 + width / 2).b == pytest.approx(0.81, abs=0.025)
-    assert fit_slope(rounded, -2.0 + 1e-9 - width, 2.0).b < 0.81 - 0.2 * width
+    assert fit_slope(rounded, -2.0, 2.0).b > 0.81 * (1.0 + 0.4 * width)
+    assert fit_slope(rounded, -2.0 + 1e-9 - width, 2.0).b < 0.81 * (1.0 - 0.4 * width)
 
 
 @pytest.mark.parametrize("b", [1000.0, -1000.0, 1e6])

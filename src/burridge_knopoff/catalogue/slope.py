@@ -52,7 +52,7 @@ def fit_slope(magnitude: np.ndarray, low: float, high: float = math.inf) -> Slop
     too lenient (Lilliefors). The range counts as given: p does not allow for one that was chosen by the same events.
 
     Magnitudes are real numbers. If they were rounded to bins, begin and end the range half a bin outside the first and
-    the last centre; beginning at a centre biases b (Utsu). p then tests the rounding, too.
+    the last centre; any other range biases b (Utsu). p then tests the rounding, too.
 
     Raises ValueError for fewer than FEWEST events in the range, if they are all of one magnitude or one is infinite,
     and for a range that does not begin at a finite magnitude.
