@@ -32,7 +32,7 @@ def run(options: argparse.Namespace) -> int:
         from burridge_knopoff.show.point import point_lines as lines_of
     else:
         from burridge_knopoff.show.summary import summary_lines as lines_of
-    # Refuse a file that cannot be drawn before printing anything about it.
-    drawn = [] if options.plot is None else ["", write_picture(result, options.plot)]
-    print("\n".join([*lines_of(result), *drawn]))
+    print("\n".join(lines_of(result)))
+    if options.plot is not None:
+        print(f"\n{write_picture(result, options.plot)}")
     return 0

@@ -158,6 +158,19 @@ def check_seal(path: str | Path, about: Mapping[str, Any] | None = None, *, any_
     return status
 
 
+def fit_together(path: str | Path, other: str | Path) -> bool:
+    """Return whether two intact files can be of one study: neither was made from another version of the other.
+
+    Nor from other versions of a common input. Files whose seals do not name their inputs are taken to fit.
+    """
+    abouts = [read_seal(each)[0] for each in (path, other)]
+    made_of = [{about["file"]: identity(canonical(about)), **about["inputs"]} for about in abouts if "inputs" in about]
+    if len(made_of) < 2:
+        return True
+    first, second = made_of
+    return all(first[name] == second[name] for name in first.keys() & second.keys())
+
+
 def _differing(found: Mapping[str, Any], expected: Mapping[str, Any]) -> list[str]:
     """Return the keys whose values differ."""
     keys = {**expected, **found}

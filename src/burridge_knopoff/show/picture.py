@@ -15,6 +15,7 @@ from burridge_knopoff.figures.distance import FLOOR, linear_top
 from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_section
 from burridge_knopoff.figures.slip_events import draw_run
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled, write_figure
+from burridge_knopoff.provenance.seal import fit_together
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.catalogue import summarize
@@ -47,14 +48,20 @@ def write_picture(result: Result, path: str | Path) -> str:
         law, a = result.data.attrs["law"], result.data["a"].item()
         write_figure(draw_run(summarize([result.data], [law], [a]).isel(law=0, a=0)), path)
         return f"{path}: slips in space and time, their recurrence, rates, extents and intervals"
+    if result.is_part:
+        summary = f"summary/{result.name}.nc"
+        whole = f": {result.study_path(summary)}" if summary in result.record.get("files", {}) else ""
+        raise ValueError(f"{result.path}: no figure shows a part of a summary, only the whole one{whole}")
     figure = _figure_of(result)
-    inputs = [result.data if name == result.name else _beside(result, name) for name in figure.inputs]
+    inputs = [result if name == result.name else _beside(result, name) for name in figure.inputs]
     module = import_module(f"burridge_knopoff.figures.{figure.name}")
     try:
-        drawn = module.draw(*inputs, **_from_study(result, figure))
-    except (AttributeError, KeyError, IndexError, ValueError) as error:
-        # Made by other sources, or only a part of a summary.
-        raise ValueError(f"{result.path}: the figure {figure.name} cannot show it ({error})") from None
+        drawn = module.draw(*(one.data for one in inputs), **_from_study(result, figure))
+    except (AttributeError, KeyError, IndexError, ValueError):
+        names = " with ".join(str(one.path) for one in inputs)
+        old = any(not one.of_these_sources for one in inputs)
+        reason = "made by other sources" if old else "not the results of one study"
+        raise ValueError(f"{names}: the figure {figure.name} cannot show them: {reason}") from None
     write_figure(drawn, path)
     return f"{path}: {figure.title_of({})}. {figure.caption_of({})}"
 
@@ -71,12 +78,18 @@ def _figure_of(result: Result) -> Description:
     return min(figures, key=lambda figure: (figure.name != result.name, len(figure.inputs)))
 
 
-def _beside(result: Result, name: str) -> xarray.Dataset:
+def _beside(result: Result, name: str) -> Result:
     """Return another summary that a figure needs, from the same folder."""
+    path = result.path.with_name(f"{name}.nc")
     try:
-        return open_result(result.path.with_name(f"{name}.nc")).data
+        other = open_result(path)
     except ValueError as error:
-        raise ValueError(f"{result.path}: its figure also needs {name}.nc: {error}") from None
+        known = f"summary/{name}.nc" in result.record.get("files", {})
+        reason = f": {error}" if path.exists() or known else ", which is not next to it"
+        raise ValueError(f"{result.path}: its figure also needs {name}.nc{reason}") from None
+    if not fit_together(result.path, path):
+        raise ValueError(f"{result.path}: its figure also needs {name}.nc, but {path} is of another study")
+    return other
 
 
 def _from_study(result: Result, figure: Description) -> dict[str, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -37,6 +38,22 @@ class Result:
         return set(POINT_VARIABLES) <= {str(name) for name in self.data.variables}
 
     @property
+    def is_part(self) -> bool:
+        """Whether it is a part of a summary: of one law, a tile of a map, or a chain of one length."""
+        of_study = self.study_name in self.record.get("files", {}) and not self.study_name.startswith("summary/")
+        return of_study or "law" in self.data.attrs
+
+    @property
+    def study_name(self) -> str:
+        """Its name in the results of its study; empty outside a study."""
+        return self.path.absolute().relative_to(self.study).as_posix() if self.study else ""
+
+    def study_path(self, name: str) -> Path:
+        """Return the path of another result of its study, written as that of the file."""
+        whole = (self.study or Path()) / name
+        return whole if self.path.is_absolute() else Path(os.path.relpath(whole))
+
+    @property
     def name(self) -> str:
         """Name of a summary, by which figures identify it, whatever the name of the file."""
         known = (name for variable, name in _BY_CONTENT.items() if variable in self.data)
@@ -55,9 +72,13 @@ class Result:
     def made_by(self) -> str:
         """The software that made the file, and whether the current sources are the same, in a line."""
         attributes = self.data.attrs
-        same = source_fingerprint(attributes["source_module"]) == attributes["source_fingerprint"]
         words = f"{attributes['software']}, {attributes['source_module']} {attributes['source_fingerprint']}"
-        return words if same else f"{words} (not the current sources)"
+        return words if self.of_these_sources else f"{words} (not the current sources)"
+
+    @property
+    def of_these_sources(self) -> bool:
+        """Whether the current sources made the file."""
+        return source_fingerprint(self.data.attrs["source_module"]) == self.data.attrs["source_fingerprint"]
 
 
 def open_result(path: str | Path) -> Result:
