@@ -4,6 +4,7 @@ import re
 import shlex
 import shutil
 import subprocess
+from glob import glob
 from itertools import pairwise
 
 import pytest
@@ -29,6 +30,8 @@ def folder(tmp_path_factory):
     given |= {"transient": 10, "window": 20, "batches": 2}
     study = run_study(results, given).study
     write_study_record(results, study.config, study.parameters, folder / "paper.yaml", given, "", {})
+    # As in the repository.
+    (folder / "results/README.md").touch()
     return folder
 
 
@@ -42,8 +45,8 @@ def test_the_examples_of_a_command_run(folder, command, monkeypatch, capsys):
                 main(example)
     for example in examples(command):
         capsys.readouterr()
-        if "results/*" in example:
-            example = [*example[:-1], "results/paper"]
+        if "results/*/" in example:
+            example = [*example[:-1], *glob("results/*/")]
         assert main(example) == 0, example
         said = capsys.readouterr()
         assert said.err == ""

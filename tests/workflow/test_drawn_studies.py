@@ -36,11 +36,24 @@ def blocks(count):
     return {"own": {"position": [-0.9, -1.1, -1.0, -0.95, -1.05, -0.9][:count], "velocity": [0.1] * count}}
 
 
+def states(count):
+    """Return some initial states of three blocks."""
+    return {f"s{k}": {"position": [-0.9, -1.0 - 0.02 * k, -1.0], "velocity": 0.1} for k in range(count)}
+
+
+#: Laws, of which a study has the first few.
+LAWS = {"linearized": {}, "nonlinear": {}, "own": {"formula": "exp(-a*u)"}, "stribeck": {}}
+
+
+def laws(count):
+    return dict(list(LAWS.items())[:count])
+
+
 #: What a key may be instead: values at an end of its range, and what changes most in a study.
 ENDS = {
     "a": [[0.0], [0.05, 0.2], [0.3]],
-    "initial": [{"minus": {}, "plus": {}}, blocks(2), blocks(3), blocks(4), blocks(6)],
-    "laws": [{"linearized": {}}, {"nonlinear": {}}, {"own": {"formula": "exp(-a*u)"}, "stribeck": {}}],
+    "initial": [{"minus": {}, "plus": {}}, blocks(2), blocks(3), blocks(4), blocks(6), *map(states, (3, 4, 5, 8))],
+    "laws": [*map(laws, (1, 2, 3, 4)), {"nonlinear": {}}, {"own": {"formula": "exp(-a*u)"}, "stribeck": {}}],
     "chain": [{"ends": "ring"}, {"coupling": 4.0, "pulling": 1.0}, {"threshold": 0.5}],
     "contact": ["symmetric"],
     "start": ["tested"],
@@ -59,10 +72,12 @@ ENDS = {
     "basins": [{"pixels": 1, "pairs": 0, "tiles": 1}, {"a": {}}],
 }
 
-#: Each found a fault once: without exponents, with few events, of chains of other lengths.
+#: Each found a fault once: without exponents, with few events, of chains of other lengths, of many states.
 KNOWN = [
     {"lyapunov_exponents": 0, "batches": 3, "contact": "symmetric"},
     {"event_window": 0, "trajectory": 0, "initial": blocks(6), "chain": {"ends": "ring"}, "start": "tested"},
+    {"initial": states(4), "without": ["attractors", "solvers", "two_blocks", "proof", "claims"]},
+    {"initial": states(7), "laws": laws(1), "without": ["attractors", "solvers", "two_blocks", "proof", "claims"]},
 ]
 
 

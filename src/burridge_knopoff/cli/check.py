@@ -9,7 +9,7 @@ of jobs that have started, and files that do not belong to the study. Exit code:
 is missing, corrupt or stale, 3 if runs have failed but nothing else is wrong."""
 
 EXAMPLES = """  bk check results/paper
-  bk check --paths results/*
+  bk check --paths results/*/
 """
 
 

@@ -1,0 +1,29 @@
+"""results/README.md: the files that it names are those of a study, and git tracks nothing else there."""
+
+import re
+import subprocess
+
+import pytest
+
+from burridge_knopoff.check.leftovers import study_files
+from burridge_knopoff.provenance.record import NAME
+from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.yaml_file import read_yaml
+
+
+def test_the_page_names_files_of_the_default_study(repository):
+    study = load_study(read_yaml(repository / "config/paper.yaml"), "paper.yaml")
+    known = {*study_files(study), NAME, f"points/{study.point_file.replace('{a}', '<value>')}"}
+    text = (repository / "results/README.md").read_text(encoding="utf-8")
+    named = re.findall(r"`((?:summary|figures|points)/\S+|\w+\.(?:html|json))`", text)
+    assert len(named) > 10
+    assert {name.replace("<law>", "{law}").replace("<initial>", "{initial}") for name in named} <= known
+
+
+def test_git_tracks_the_page_alone(repository):
+    if not (repository / ".git").exists():
+        pytest.skip("not a git checkout")
+    git = ["git", "-C", str(repository), "-c", "safe.directory=*"]
+    ignored = ["results/paper/report.html", "results/paper/README.md", "results/x", "workflow/results/README.md"]
+    said = subprocess.run([*git, "check-ignore", "results/README.md", *ignored], capture_output=True, text=True)
+    assert said.stdout.split() == ignored
