@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
-from itertools import pairwise
 
 import numpy as np
 
@@ -16,6 +14,7 @@ from burridge_knopoff.model.ranges import Number, OneOf, Whole
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.settings import LONGEST
+from burridge_knopoff.running.threads import in_threads
 from burridge_knopoff.values import each_instance_of, instance_of, real_array
 
 #: Label of a state that comes close to no attractor.
@@ -152,7 +151,5 @@ def label_states(
             model, attractors, offset[part], velocity[part], stuck[part], time_limit
         )
 
-    with ThreadPoolExecutor(threads) as pool:
-        for task in [pool.submit(work, first, last) for first, last in pairwise(edges)]:
-            task.result()
+    in_threads(threads, work, edges[:-1], edges[1:])
     return labels, times

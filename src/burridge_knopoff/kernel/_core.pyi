@@ -9,6 +9,17 @@ LANES: int = ...
 
 STATUS: dict = ...
 
+class StopFlag:
+    """
+    Ends calls of the kernel in the threads that heed it, by KeyboardInterrupt.
+    """
+
+    def __init__(self) -> None: ...
+    def heed(self) -> None:
+        """Let the calls of this thread end once the flag is set."""
+
+    def set(self) -> None: ...
+
 def first_root(
     coefficients: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
     length: float,

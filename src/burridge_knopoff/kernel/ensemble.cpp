@@ -11,7 +11,7 @@ void Ensemble::run(const double *position, const double *velocity, const bool *s
     streak.assign(size_t(LANES) * section.size(), 0);
     int next = 0;
     active = mask{};
-    long long work = 0;
+    Watch watch;
     auto refill = [&] {
         mask fresh{};
         for (int lane = 0; lane < LANES && next < out.count; lane++) {
@@ -31,11 +31,7 @@ void Ensemble::run(const double *position, const double *velocity, const bool *s
     };
     for (refill(); any(active); refill()) {
         rounds++;
-        work += blocks * LANES;
-        if (work >= WORK_UNTIL_CHECK) {
-            check_signals();
-            work = 0;
-        }
+        watch.worked(blocks * LANES);
         finish(active & accumulating, ACCUMULATING_EVENTS);
         move(returns, section);
     }

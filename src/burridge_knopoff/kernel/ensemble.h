@@ -4,8 +4,6 @@
 // in other lanes, nor on where it ends: the end only cuts off.
 #pragma once
 
-#include <functional>
-
 #include "clouds.h"
 #include "group.h"
 
@@ -31,7 +29,6 @@ struct Outcome {
 class Ensemble {
   public:
     const Model &model;
-    std::function<void()> check_signals = [] {};
     long long rounds = 0;
 
     Ensemble(const Model &model, long long rate_limit)

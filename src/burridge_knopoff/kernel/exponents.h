@@ -88,6 +88,7 @@ class Exponents {
     double due = 0.0, batch_start = 0.0;
     // Lengths multiplied up, whose logarithm is taken at the end of a batch, or before it could overflow.
     std::vector<double> whole, product;
+    Watch watch;
 
     bool counted() const { return batch >= 0 && batch < batches; }
 
@@ -95,11 +96,13 @@ class Exponents {
     void seed(const State<Blocks> &state, int first) {
         most_stuck = stuck(state);
         alive = std::min(tangent.vectors, 2 * tangent.blocks - most_stuck);
-        for (int i = 0; i < tangent.blocks; i++)
+        for (int i = 0; i < tangent.blocks; i++) {
+            watch.worked(tangent.vectors);
             for (int c = first; c < tangent.vectors; c++) {
                 tangent.x(c)[i] = std::cos(1.0 + 2.3 * i + 3.7 * c + 1.9 * i * c);
                 tangent.u(c)[i] = std::cos(2.0 + 1.7 * i + 2.9 * c + 2.3 * i * c) * (state.slip.lane(i) != 0.0);
             }
+        }
         orthonormalise(false);
     }
 
@@ -119,6 +122,7 @@ class Exponents {
         const int n = tangent.blocks;
         for (int c = 0; c < alive; c++) whole[c] = dot(c, c);
         for (int c = 0; c < tangent.vectors; c++) {
+            watch.worked((long long)n * std::max(alive - c, 1) / 8);
             double factor = 0.0;
             if (c < alive) {
                 const double square = c == 0 ? whole[0] : dot(c, c);

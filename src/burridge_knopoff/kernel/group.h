@@ -2,6 +2,7 @@
 #pragma once
 
 #include "catalogue.h"
+#include "interrupt.h"
 #include "observe.h"
 
 namespace bk {
@@ -11,10 +12,6 @@ enum Status { HALTED = -2, FULL = -1, COMPLETED = 0, STEP_LIMIT = 1, ACCUMULATIN
 
 // A speed that no real motion reaches. The linearized law drives blocks that may slip backward without bound.
 constexpr double ABSURD_SPEED = 1e9;
-
-// Work between two looks at signals such as Ctrl-C: the number of blocks, or of their perturbations, that steps move
-// in about 0.05 s.
-constexpr long long WORK_UNTIL_CHECK = 200000;
 
 struct Group {
     Blocks layout;

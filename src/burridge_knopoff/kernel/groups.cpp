@@ -32,7 +32,7 @@ int Run::run_groups() {
     }
     for (;;) {
         drop_void(queue);
-        if (const int reason = blocked(0)) return reason;
+        if (const int reason = blocked()) return reason;
         // Under quasi-static loading the driver goes on when nothing slips.
         const bool moving = loading == 0.0 || !queue.empty();
         if (!moving) drop_void(waiting);
@@ -370,7 +370,7 @@ void Run::observe_section(const Clock &at, const Clock &reach) {
     const double length = from.until(at), drift = (last - first) * model.v;
     if (observer.side != 0 && std::fabs(section_at) > section_change + drift * section_from.until(at)) return;
     section_at = section_value(from);
-    work += blocks;
+    watch.worked(blocks);
     section_from = from;
     section_change = 0.0;
     // From now on pieces count that end later, also those that have begun.

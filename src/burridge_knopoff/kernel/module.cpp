@@ -53,11 +53,6 @@ nb::ndarray<nb::numpy, T> taken(std::vector<T> &values) {
     return nb::ndarray<nb::numpy, T>(own->data(), 1, shape, owner);
 }
 
-void check_signals() {
-    nb::gil_scoped_acquire held;
-    if (PyErr_CheckSignals() != 0) throw nb::python_error();
-}
-
 Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers sliding_force, Numbers mass,
                  Array1<int64_t> start, Array1<int64_t> neighbour, Numbers strength, Array2<int64_t> operations,
                  Table constants, int value, int slope, bool linear, double rate, double steepest, double v,
@@ -140,6 +135,14 @@ NB_MODULE(_core, m) {
                                {"DIVERGED", DIVERGED}})
         status[name] = int(value);
     m.attr("STATUS") = status;
+
+    check_interrupt = check_python;
+    nb::module_::import_("atexit").attr("register")(nb::cpp_function(end_calls));
+
+    nb::class_<StopFlag>(m, "StopFlag", "Ends calls of the kernel in the threads that heed it, by KeyboardInterrupt.")
+        .def(nb::init<>())
+        .def("heed", &StopFlag::heed, "Let the calls of this thread end once the flag is set.")
+        .def("set", &StopFlag::set);
 
     m.def(
         "first_root",
@@ -340,7 +343,6 @@ NB_MODULE(_core, m) {
             [](Run *at, const Model &model, EventLog &log, Observer &observer, Exponents &exponents, bool observing,
                int local, long long step_limit, double loading) {
                 new (at) Run(model, log, observer, exponents, observing, local, step_limit, loading);
-                at->check_signals = check_signals;
             },
             "model"_a, "log"_a, "observer"_a, "exponents"_a, "observing"_a, "local"_a, "step_limit"_a, "loading"_a,
             nb::keep_alive<1, 2>(), nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>(), nb::keep_alive<1, 5>())
@@ -352,7 +354,7 @@ NB_MODULE(_core, m) {
             "position"_a, "velocity"_a, "stuck"_a, "time"_a = 0.0)
         .def("mark", [](const Run &run) { return run.mark(); })
         .def("resume", &Run::resume, "mark"_a, "time"_a)
-        .def("run", &Run::run, nb::call_guard<nb::gil_scoped_release>())
+        .def("run", &Run::run, nb::call_guard<Unlocked>())
         .def("values", [](Run &run) { return values(run, run.model.springs.blocks); })
         .def(
             "use_modes",
@@ -384,7 +386,6 @@ NB_MODULE(_core, m) {
             "__init__",
             [](TimeStepping *at, const Model &model, EventLog &log, Observer &observer, double step, bool euler) {
                 new (at) TimeStepping(model, log, observer, step, euler);
-                at->check_signals = check_signals;
             },
             "model"_a, "log"_a, "observer"_a, "step"_a, "euler"_a = false, nb::keep_alive<1, 2>(),
             nb::keep_alive<1, 3>(), nb::keep_alive<1, 4>())
@@ -397,7 +398,7 @@ NB_MODULE(_core, m) {
         .def("mark", &TimeStepping::mark)
         .def(
             "resume", [](TimeStepping &run, const StepMark &mark, double) { run.resume(mark); }, "mark"_a, "time"_a)
-        .def("run", &TimeStepping::run, nb::call_guard<nb::gil_scoped_release>())
+        .def("run", &TimeStepping::run, nb::call_guard<Unlocked>())
         .def("values", [](TimeStepping &run) { return values(run, run.model.springs.blocks); })
         .def(
             "record", [](TimeStepping &run, Catalogue &catalogue) { run.catalogue = &catalogue; }, "catalogue"_a,
@@ -424,10 +425,7 @@ NB_MODULE(_core, m) {
     nb::class_<Ensemble>(m, "Ensemble", "Many trajectories of one model at once, a lane of a vector each.")
         .def(
             "__init__",
-            [](Ensemble *at, const Model &model, long long rate_limit) {
-                new (at) Ensemble(model, rate_limit);
-                at->check_signals = check_signals;
-            },
+            [](Ensemble *at, const Model &model, long long rate_limit) { new (at) Ensemble(model, rate_limit); },
             "model"_a, "rate_limit"_a, nb::keep_alive<1, 2>())
         .def_ro("rounds", &Ensemble::rounds)
         .def_prop_ro("searches", &Ensemble::searches)
@@ -438,7 +436,7 @@ NB_MODULE(_core, m) {
                 check_shape(ensemble, position, velocity, stuck);
                 Outcome out(int(position.shape(0)), ensemble.model.springs.blocks, int(times.size()), events);
                 {
-                    nb::gil_scoped_release free;
+                    const Unlocked call;
                     ensemble.run(position.data(), velocity.data(), stuck.data(), times, out, nullptr, {}, {});
                 }
                 return outcome(out);
@@ -453,7 +451,7 @@ NB_MODULE(_core, m) {
                 const size_t n = position.shape(0), blocks = ensemble.model.springs.blocks;
                 Outcome out(int(n), int(blocks), 1, 0);
                 {
-                    nb::gil_scoped_release free;
+                    const Unlocked call;
                     ensemble.run(position.data(), velocity.data(), stuck.data(), {end}, out, &clouds, returns, section);
                 }
                 std::vector<double> last(n * 2 * blocks);

@@ -180,7 +180,7 @@ void Run::retire(Group &group) {
 
 bool Run::plan(Group &group) {
     steps++;
-    work += group.size();
+    watch.worked(group.size());
     const bool seen = observing && !local;
     return group.plan(seen ? observer.side : 0, first, last);
 }
@@ -195,6 +195,7 @@ void Run::change(Group &group, int lane, const Clock &at) {
     if (catalogue && !kind) catalogue->stop(model.springs, model.v, i, at, group.state.position.lane(lane));
     log.add(i, kind, at.time, [&](double *row) {
         double direction;
+        watch.worked(blocks);
         const Clock before = now;
         now = at;
         for (int j = 0; j < blocks; j++) state_of(j, row[j], row[blocks + j], direction);
@@ -213,6 +214,7 @@ void Run::change_due(Group &group, const Clock &at) {
 bool Run::settle(Group &group, const Clock &at) {
     due.assign(group.layout.columns, 0);
     bool changing = false;
+    watch.worked(group.size());
     group.measure();
     // Who changes is decided before anyone does: then no order of the blocks is preferred.
     for (int c = 0; c < group.layout.columns; c++) changing |= (due[c] = bits(group.pending(c))) != 0;
@@ -273,12 +275,7 @@ void Run::start_modes(Group &group, const Mark &mark) {
 }
 
 // Why the run has to end here, COMPLETED if it has not.
-int Run::blocked(int done) {
-    work += done;
-    if (work >= WORK_UNTIL_CHECK) {
-        check_signals();
-        work = 0;
-    }
+int Run::blocked() const {
     if (log.accumulating) return ACCUMULATING_EVENTS;
     if (log.full() || observer.crossings.full || (catalogue && catalogue->full)) return FULL;
     return steps >= step_limit ? STEP_LIMIT : COMPLETED;
@@ -287,7 +284,7 @@ int Run::blocked(int done) {
 int Run::run_whole() {
     Group &group = *groups[group_of[0]];
     for (;;) {
-        if (const int reason = blocked(blocks * exponents.tangent.vectors)) return reason;
+        if (const int reason = blocked()) return reason;
         if (loading > 0.0 && !group.planned && exponents.stuck(group.state) == blocks) {
             if (load_next(group)) continue;
             if (exponents.running) exponents.follow(group.state, load.time, true);

@@ -6,7 +6,6 @@
 // stop. The events are the same either way.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <queue>
@@ -59,7 +58,6 @@ class Run {
     // Under quasi-static loading, the loading clock: it runs while all blocks stick, `now` while some slip.
     Clock load;
     long long steps = 0;
-    std::function<void()> check_signals = [] {};
     // The closed form between events, if that is wanted.
     std::unique_ptr<Modes> modes;
     // Slip events are recorded in it, if that is wanted.
@@ -116,7 +114,7 @@ class Run {
   private:
     const int blocks, first, last;  // W is the sum over the blocks first … last − 1
     bool settled = false;
-    long long work = 0;  // since the last look at signals
+    Watch watch;
     double since_event = 0.0;
     Mark marked;
     Polynomial polynomial;
@@ -161,7 +159,7 @@ class Run {
     void change_due(Group &group, const Clock &at);
     void remember();
     void start_modes(Group &group, const Mark &mark);
-    int blocked(int done);
+    int blocked() const;
 
     // One group.
     int run_whole();

@@ -14,6 +14,7 @@
 // 2004).
 #pragma once
 
+#include "interrupt.h"
 #include "series.h"
 
 namespace bk {
@@ -122,7 +123,10 @@ class Tangent {
     void follow(const Blocks &layout) {
         int v = 0;
         // Several side by side, as each waits for itself.
-        for (; v + 3 <= vectors; v += 3) columns == 1 ? propagate<3, 1>(layout, v) : propagate<3, 0>(layout, v);
+        for (; v + 3 <= vectors; v += 3) {
+            columns == 1 ? propagate<3, 1>(layout, v) : propagate<3, 0>(layout, v);
+            watch.worked(3 * blocks);
+        }
         if (v + 2 <= vectors) {
             columns == 1 ? propagate<2, 1>(layout, v) : propagate<2, 0>(layout, v);
             v += 2;
@@ -150,6 +154,7 @@ class Tangent {
     Vectors moving, pull_scale, rates, speeds, rows;
     double part = 0.0;
     int rate_terms = 0, degree = 0;
+    Watch watch;
 
     // The x with x^(n+1)/(n+1)! = NEGLIGIBLE, rounded to fewer digits than C libraries agree on.
     static double enough(int n) {

@@ -1,7 +1,6 @@
 // The usual methods, for comparison: a fixed step with events at step ends.
 #pragma once
 
-#include <functional>
 #include <optional>
 
 #include "group.h"
@@ -25,7 +24,6 @@ class TimeStepping {
     const bool euler;
     double clock = 0.0;
     long long steps = 0;
-    std::function<void()> check_signals = [] {};
     // Slip events are recorded in it, if that is wanted.
     Catalogue *catalogue = nullptr;
 
@@ -78,18 +76,13 @@ class TimeStepping {
     }
 
     int run() {
-        long long work = 0;
         if (!settled) {
             settled = true;
             settle();
         }
         double *position = &state.position.lane(0), *velocity = &state.velocity.lane(0);
         while (clock < observer.end()) {
-            work += n;
-            if (work >= WORK_UNTIL_CHECK) {
-                check_signals();
-                work = 0;
-            }
+            watch.worked(n);
             const double after = std::min((earlier_steps + steps + 1) * step, observer.end()), h = after - clock;
             std::copy(position, position + n, old_x.begin());
             std::copy(velocity, velocity + n, old_u.begin());
@@ -126,6 +119,7 @@ class TimeStepping {
     Polynomial polynomial;
     long long earlier_steps = 0;
     bool settled = false;
+    Watch watch;
     std::vector<double> old_x, old_u;
     // Slopes of the four stages, and the coefficients of the cubics, lowest power first.
     std::vector<std::vector<double>> speed, acceleration, x, u;
@@ -253,6 +247,7 @@ class TimeStepping {
         for (bool changing = true; changing && !log.accumulating;) {
             std::vector<int> due(layout.columns);
             changing = false;
+            watch.worked(n);
             for (int c = 0; c < layout.columns; c++) relative[c] = state.velocity[c] - model.v;
             for (int c = 0; c < layout.columns; c++) changing |= (due[c] = bits(state.pending(relative.at(), c))) != 0;
             for (int c = 0; changing && c < layout.columns; c++)
@@ -264,6 +259,7 @@ class TimeStepping {
                     if (catalogue && kind) catalogue->start(model.springs, i, {clock, 0.0}, {clock, 0.0}, x);
                     if (catalogue && !kind) catalogue->stop(model.springs, model.v, i, {clock, 0.0}, x);
                     log.add(i, kind, clock, [&](double *row) {
+                        watch.worked(n);
                         std::copy(&state.position.lane(0), &state.position.lane(0) + n, row);
                         std::copy(&state.velocity.lane(0), &state.velocity.lane(0) + n, row + n);
                     });

@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -23,6 +22,7 @@ from burridge_knopoff.model.parameters import names_of, value_of
 from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.threads import in_threads
 from burridge_knopoff.values import shown
 
 if TYPE_CHECKING:
@@ -89,13 +89,7 @@ def sweep(
         values = point_values(found)
         return {name: values[name] for name in _KEPT}, point_attributes(found)
 
-    # The kernel releases Python's global lock while it runs: threads use all cores.
-    with ThreadPoolExecutor(cores or _cores()) as pool:
-        try:
-            found = list(pool.map(one, points, models))
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
+    found = in_threads(cores or _cores(), one, points, models)
     import xarray
 
     shape = [len(values) for values in axes.values()]

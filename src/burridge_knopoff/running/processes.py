@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 import os
+import signal
 import sys
 import threading
 import time
@@ -12,6 +13,7 @@ from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
 from functools import partial
 from multiprocessing import get_context, parent_process
+from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any
 
@@ -52,8 +54,15 @@ def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Cal
     if processes == 1 or sys.platform == "darwin":
         yield partial(each, map)
     else:
-        with ProcessPoolExecutor(processes, get_context("fork"), _end_with_parent) as pool:
-            yield partial(each, pool.map)
+        context = get_context("fork")
+        told, tell = context.Pipe(duplex=False)
+        with told, tell, ProcessPoolExecutor(processes, context, _end_with_parent, (told,)) as pool:
+            try:
+                yield partial(each, pool.map)
+            except KeyboardInterrupt:
+                # Nobody reads it: all of them see it.
+                tell.send_bytes(b"end")
+                raise
     _log(last, taken)
     if folder:
         forget(Path(folder), asked)
@@ -74,12 +83,13 @@ def _timed(folder: Path | None, function: Callable[..., Any], *items: Any) -> tu
     return result, time.perf_counter() - begin, path, was_read
 
 
-def _end_with_parent() -> None:
-    """End this process when the process that shares the work out is killed."""
+def _end_with_parent(told: Connection) -> None:
+    """End this process when the process that shares the work out is killed, or interrupted by Ctrl-C."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    parent = parent_process()
 
     def end() -> None:
-        if (parent := parent_process()) is not None:
-            parent.join()
+        wait([told] if parent is None else [told, parent.sentinel])
         os._exit(1)
 
     threading.Thread(target=end, daemon=True).start()

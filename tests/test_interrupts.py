@@ -1,0 +1,109 @@
+"""Ctrl-C ends whatever computes, in any thread or process; pressed twice, it aborts nothing."""
+
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+BK = Path(sys.executable).with_name("bk")
+HEAD = """
+from concurrent.futures import ThreadPoolExecutor
+from burridge_knopoff import Chain, Model, law_of, simulate
+
+def slow(a):
+    return simulate("linearized", a, "minus", transient=0.0, window=1e7, events="none", sampling=1e3)
+
+model = Model(Chain(3), law_of("linearized", 0.08))
+rest = simulate(model, "minus", transient=0.0, window=1.0).final
+search = {"samples": 2, "transient": 500.0, "window": 500.0}
+"""
+LABELS = """
+import numpy as np
+from burridge_knopoff import find_attractors, label_states
+known, _ = find_attractors(model, **search)
+states = np.random.default_rng(1).uniform(-1.0, -0.9, (2_000_000, 3))
+print("begun", flush=True)
+label_states(model, known, states, 0.1 + 0.0 * states, threads={threads})
+"""
+FUNCTION = """
+from burridge_knopoff{module} import {name}
+print("begun", flush=True)
+{call}
+"""
+
+
+def function(name, call, module=""):
+    return FUNCTION.format(module=module, name=name, call=call)
+
+
+SWEEP = function("sweep", "sweep('linearized', [0.1, 0.16, 0.2], window=1e7, cores=2)")
+RUNS = "with shared_out(2) as each: each('runs', slow, [0.1, 0.16, 0.2])"
+PROCESSES = function("shared_out", RUNS, ".running.processes")
+# Each goes on for minutes.
+PROGRAMS = {
+    "run": function("simulate", "slow(0.16)"),
+    "fixed steps": function("record_events", "record_events(model, rest, 1e7, solver='euler')"),
+    "exponents": function("event_exponents", "event_exponents(model, rest, 1e7, loading='steady')"),
+    "search": function("find_attractors", "find_attractors(model.at(0.16), samples=10_000)"),
+    "labels": LABELS.format(threads=1),
+    "labels in threads": LABELS.format(threads=3),
+    "map": function("basin_map", "basin_map(model, pixels=1500, threads=2, **search)"),
+    "sweep": SWEEP,
+    "processes": PROCESSES,
+}
+SEVERAL = {
+    "labels in threads": LABELS.format(threads=3),
+    "sweep": SWEEP,
+    "processes": PROCESSES,
+    "threads of others": function("simulate", "list(ThreadPoolExecutor(2).map(slow, [0.1, 0.16]))"),
+}
+
+
+def interrupted(command, times, *, begins=True):
+    """Return the exit code of a program, what it said, and the seconds from the first Ctrl-C to its end."""
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        if begins:
+            assert process.stdout.readline() == "begun\n"
+        time.sleep(1.0)
+        assert process.poll() is None
+        begin = time.monotonic()
+        for _ in range(times):
+            process.send_signal(signal.SIGINT)
+            time.sleep(0.1)
+        try:
+            _, said = process.communicate(timeout=60)
+        finally:
+            process.kill()
+    return process.returncode, said, time.monotonic() - begin
+
+
+@pytest.mark.parametrize("program", PROGRAMS)
+def test_ctrl_c_ends_all_that_computes(program):
+    """It takes 0.2 s where a processor is free."""
+    code, said, seconds = interrupted([sys.executable, "-c", HEAD + PROGRAMS[program]], 1)
+    assert code == -signal.SIGINT
+    assert said.splitlines()[-1] == "KeyboardInterrupt"
+    assert seconds < 10
+
+
+@pytest.mark.parametrize("program", SEVERAL)
+def test_a_second_ctrl_c_does_not_abort(program):
+    """The interpreter may be closing meanwhile, or wait for threads that it did not interrupt."""
+    code, said, seconds = interrupted([sys.executable, "-c", HEAD + SEVERAL[program]], 2)
+    assert code in (1, -signal.SIGINT)
+    assert "terminate called" not in said
+    assert seconds < 10
+
+
+@pytest.mark.parametrize("times", [1, 2])
+def test_ctrl_c_ends_a_command(times, tmp_path):
+    options = "--law linearized --a 0.08 --pixels 1500 --threads 2 --samples 2 --transient 500 --window 500"
+    command = [BK, "basins", *options.split(), "--out", tmp_path / "basins.nc"]
+    code, said, seconds = interrupted(command, times, begins=False)
+    assert code in (130, -signal.SIGINT) if times == 1 else code != -signal.SIGABRT
+    assert said.splitlines()[-1] in ("bk basins: interrupted, nothing was written", "KeyboardInterrupt")
+    assert seconds < 10
+    assert not list(tmp_path.iterdir())
