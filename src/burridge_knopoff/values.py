@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cached_property
+from inspect import getattr_static
 from typing import Any, TypeVar
 
 import numpy as np
@@ -52,6 +54,23 @@ def read_only(array: np.ndarray) -> np.ndarray:
     array = np.array(array)
     array.setflags(write=False)
     return array
+
+
+def own_attributes(value: Any) -> dict[str, Any]:
+    """Return the attributes of an object without its cached properties, which follow from the others."""
+    kind = type(value)
+    return {
+        name: item
+        for name, item in vars(value).items()
+        if not isinstance(getattr_static(kind, name, None), cached_property)
+    }
+
+
+class Unchanging:
+    """An object whose copies and pickles compute its cached properties anew: copied arrays could be written to."""
+
+    def __getstate__(self) -> dict[str, Any]:
+        return own_attributes(self)
 
 
 def instance_of(value: Any, kind: type[_T], key: str) -> _T:

@@ -177,6 +177,9 @@ class Catalogue:
 class Mark:
     """What repeats the last pieces of a run that ended."""
 
+    def __getstate__(self) -> bytes: ...
+    def __setstate__(self, arg: bytes, /) -> None: ...
+
 class Run:
     """One run from event to event."""
 
@@ -229,6 +232,9 @@ class Run:
 
 class StepMark:
     """What repeats the last step of a run that ended."""
+
+    def __getstate__(self) -> bytes: ...
+    def __setstate__(self, arg: bytes, /) -> None: ...
 
 class TimeStepping:
     """

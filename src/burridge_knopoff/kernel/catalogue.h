@@ -31,7 +31,13 @@ class Catalogue {
         std::vector<int> absorbed;
         // The speed of a block over a piece of its motion, of some length, in which it may exceed the peak velocity,
         // and its bound: as a rule a later speed is higher, and the maximum need not be found.
-        double bound = 0.0, length = 0.0, speed[Blocks::ORDER + 1];
+        double bound = 0.0, length = 0.0, speed[Blocks::ORDER + 1] = {};
+
+        template <class A>
+        void archive(A &values) {
+            values(start, load, epicentre, slipping, interval, peak_velocity, energy, slips, merged, absorbed, bound,
+                   length, speed);
+        }
     };
 
     // Columns, with an entry for each event, in the order in which events end. Blocks count from 1.
@@ -72,12 +78,22 @@ class Catalogue {
         // Time and position at its start, and time at the start of the last event that has ended.
         Clock begun;
         double position = 0.0, last_start = NAN;
+
+        template <class A>
+        void archive(A &values) {
+            values(event, last_event, begun, position, last_start);
+        }
     };
 
     // Events that have not ended, for a run that goes on.
     struct Open {
         std::vector<Event> events;
         std::vector<Block> of_block;
+
+        template <class A>
+        void archive(A &values) {
+            values(events, of_block);
+        }
     };
 
     Open open() const {

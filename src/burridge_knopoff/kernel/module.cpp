@@ -6,8 +6,10 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "archive.h"
 #include "ensemble.h"
 #include "run.h"
+#include "threads.h"
 #include "time_stepping.h"
 
 namespace nb = nanobind;
@@ -91,6 +93,23 @@ nb::tuple values(Solver &solver, int blocks) {
     else
         solver.values(x.data(), u.data(), slip.data());
     return nb::make_tuple(numbers(x), numbers(u), array<int32_t>(slip, {size_t(blocks)}));
+}
+
+template <class T>
+nb::bytes packed(const T &value) {
+    T copy = value;
+    Archive archive;
+    archive(copy);
+    return nb::bytes(archive.bytes.data(), archive.bytes.size());
+}
+
+template <class T>
+void unpacked(T &at, nb::bytes bytes) {
+    T made;
+    Archive archive({bytes.c_str(), bytes.size()});
+    archive(made);
+    if (!archive.complete()) throw nb::value_error("state: got one pickled by another version of the kernel, expected this version");
+    new (&at) T(std::move(made));
 }
 
 nb::dict outcome(const Outcome &out) {
@@ -335,7 +354,9 @@ NB_MODULE(_core, m) {
             "The columns, with an entry for each event in the order in which events end, and the profiles; the "
             "catalogue is empty afterwards.");
 
-    nb::class_<Mark>(m, "Mark", "What repeats the last pieces of a run that ended.");
+    nb::class_<Mark>(m, "Mark", "What repeats the last pieces of a run that ended.")
+        .def("__getstate__", &packed<Mark>)
+        .def("__setstate__", &unpacked<Mark>);
 
     nb::class_<Run>(m, "Run", "One run from event to event.")
         .def(
@@ -378,7 +399,9 @@ NB_MODULE(_core, m) {
         .def_prop_ro("clock", [](const Run &run) { return run.loading_clock(run.now).time; })
         .def_prop_ro("slip_clock", [](const Run &run) { return run.now.time; });
 
-    nb::class_<StepMark>(m, "StepMark", "What repeats the last step of a run that ended.");
+    nb::class_<StepMark>(m, "StepMark", "What repeats the last step of a run that ended.")
+        .def("__getstate__", &packed<StepMark>)
+        .def("__setstate__", &unpacked<StepMark>);
 
     nb::class_<TimeStepping>(m, "TimeStepping",
                              "One run with a fixed step, by Runge-Kutta of fourth order or by Euler's method.")

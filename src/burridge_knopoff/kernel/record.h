@@ -34,6 +34,10 @@ struct Record {
 struct Clock {
     double time = 0.0, rest = 0.0;
 
+    template <class A>
+    void archive(A &values) {
+        values(time, rest);
+    }
     double until(double other) const { return (other - time) - rest; }
     double until(const Clock &other) const { return (other.time - time) + (other.rest - rest); }
     Clock after(double step) const {

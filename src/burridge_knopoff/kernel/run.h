@@ -32,6 +32,11 @@ struct Mark {
     int side = 0;
     // Whether the chain moved in groups.
     bool local = false;
+
+    template <class A>
+    void archive(A &values) {
+        values(table, group, now, load, origin, origin_velocity, catalogue, since_event, side, local);
+    }
 };
 
 class Run {

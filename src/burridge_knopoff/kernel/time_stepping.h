@@ -11,6 +11,11 @@ namespace bk {
 struct StepMark {
     std::vector<double> slip;
     std::optional<Catalogue::Open> catalogue;
+
+    template <class A>
+    void archive(A &values) {
+        values(slip, catalogue);
+    }
 };
 
 // One run with step h by the paper's Runge-Kutta method of fourth order, or by Euler's explicit method. Between step

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from burridge_knopoff.laws.formula import FormulaError, names_of, tape_of
 from burridge_knopoff.laws.tape import Tape
-from burridge_knopoff.values import instance_of, joined, real_number, refusal, shown
+from burridge_knopoff.values import Unchanging, instance_of, joined, real_number, refusal, shown
 
 #: A law has to be analytic up to this speed. Blocks stay slower if springs and thresholds are about 1.
 FASTEST = 10.0
@@ -30,7 +30,7 @@ SAMPLES = 256
 _SHARES = np.linspace(0.0, 1.0, SAMPLES + 1)
 
 
-class Law:
+class Law(Unchanging):
     """Base class of all laws: friction Φ on a block slipping at speed U', as a fraction of its static friction.
 
     a : friction parameter, at least 0

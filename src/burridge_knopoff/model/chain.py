@@ -25,7 +25,7 @@ from burridge_knopoff.model.springs import (
     of_grid,
     read_edges,
 )
-from burridge_knopoff.values import read_only, refusal
+from burridge_knopoff.values import Unchanging, read_only, refusal
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -43,7 +43,7 @@ _SIDE = Whole(1, MAXIMUM_BLOCKS)
 
 @settings
 @dataclass(frozen=True)
-class Chain:
+class Chain(Unchanging):
     """N blocks in a row, a ring, a grid, or any network of springs.
 
     A row has N − 1 springs between neighbours. A ring has N: the last spring joins the last block to the first. A grid

@@ -15,7 +15,7 @@ from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.parameters import at
 from burridge_knopoff.model.ranges import Number, OneOf, Text
-from burridge_knopoff.values import instance_of, read_only
+from burridge_knopoff.values import Unchanging, instance_of, read_only
 
 LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
 
@@ -27,7 +27,7 @@ START = "moving: every block slips at tau = 0 | tested: those with spring force 
 
 @settings
 @dataclass(frozen=True)
-class Model:
+class Model(Unchanging):
     """A chain with a friction law, pulled by a driver of constant velocity.
 
     chain, law : see `Chain` and `laws`
@@ -142,7 +142,7 @@ class ChainState:
 
     Positions and velocities are in the units of `Model`; e_i is its `sliding_offset`. `Trajectory.final` also keeps the
     last step of its run, which `simulate(model, run.final)` repeats. A split run thus equals the whole run, bit for
-    bit.
+    bit, also from a state that was copied or pickled.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of
     >>> model = Model(Chain(3), law_of("linearized", 0.08))

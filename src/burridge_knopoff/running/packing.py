@@ -10,11 +10,11 @@ from __future__ import annotations
 import json
 import sys
 from enum import Enum
-from functools import cached_property
-from inspect import getattr_static
 from typing import Any, Literal
 
 import numpy as np
+
+from burridge_knopoff.values import own_attributes
 
 _PLAIN = (type(None), bool, int, float, str)
 
@@ -54,13 +54,7 @@ def pack(value: Any) -> bytes:
         return ["array", value.dtype.str, list(value.shape), order]
 
     def attributes(value: Any) -> Any:
-        # Leave out cached properties, which are computed from the other attributes on demand.
-        own = {
-            name: item
-            for name, item in vars(value).items()
-            if not isinstance(getattr_static(type(value), name, None), cached_property)
-        }
-        return ["attributes", _name(type(value)), {name: packed(item) for name, item in own.items()}]
+        return ["attributes", _name(type(value)), {name: packed(item) for name, item in own_attributes(value).items()}]
 
     top = packed(value)
     return json.dumps([top, objects], separators=(",", ":")).encode() + b"\n" + b"".join(arrays)
