@@ -45,7 +45,7 @@ PROCESSES = function("shared_out", RUNS, ".running.processes")
 # Each goes on for minutes.
 PROGRAMS = {
     "run": function("simulate", "slow(0.16)"),
-    "fixed steps": function("record_events", "record_events(model, rest, 1e7, solver='euler')"),
+    "fixed steps": function("record_events", "record_events(model, rest, 1e6, solver='euler')"),
     "exponents": function("event_exponents", "event_exponents(model, rest, 1e7, loading='steady')"),
     "search": function("find_attractors", "find_attractors(model.at(0.16), samples=10_000)"),
     "labels": LABELS.format(threads=1),

@@ -108,7 +108,8 @@ void unpacked(T &at, nb::bytes bytes) {
     T made;
     Archive archive({bytes.c_str(), bytes.size()});
     archive(made);
-    if (!archive.complete()) throw nb::value_error("state: got one pickled by another version of the kernel, expected this version");
+    if (!archive.complete())
+        throw nb::value_error("state: got one pickled by another version of the kernel, expected this version");
     new (&at) T(std::move(made));
 }
 
