@@ -90,7 +90,7 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
     for law in PAPER_LAWS:
         real = equilibrium["eigenvalue"].sel(law=law, part="real").values
         slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in equilibrium["a"].values])
-        shares[f"values of a, {law}"] = share_of((real > 0.0).all(axis=-1))
+        shares[f"values of a, {law}"] = share_of(np.all(real > 0.0, axis=-1))
         measured += [
             Measured(f"smallest real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).min())),
             Measured(f"largest real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).max())),
@@ -100,7 +100,7 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
         if not there.any():
             raise NotTestableError(f"no attractor is known under the {law} law with {a}")
         stops = found["stop_rate"].values[there] > 0.0
-        shares[f"attractors, {law}"], every[law] = share_of(stops.any(axis=-1)), share_of(stops.all(axis=-1))
+        shares[f"attractors, {law}"], every[law] = share_of(np.any(stops, axis=-1)), share_of(np.all(stops, axis=-1))
         measured += [
             Measured(f"share of attractors in which some block stops, {law}", shares[f"attractors, {law}"].value),
             Measured(f"share of attractors in which every block stops, {law}", every[law].value),
