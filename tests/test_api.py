@@ -3,6 +3,10 @@
 import doctest
 import inspect
 import re
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
 
 import pytest
 
@@ -41,3 +45,42 @@ def test_its_examples_run(name, tmp_path, monkeypatch):
 
 def test_names_are_completed_before_they_are_used():
     assert set(NAMES) <= set(dir(burridge_knopoff))
+
+
+FORMS = """
+def forms_() -> None:
+    import numpy as np
+    from burridge_knopoff import Chain, InitialState, Model, SearchSettings, Settings, basin_map, find_attractors
+    from burridge_knopoff import fit_slope, label_states, law_of, simulate, sweep
+    model = Model(Chain(3, coupling=(1.0, 1.5), pulling=[1.0, 2.0, 1.0]), law_of("linearized", 0.08))
+    own = InitialState("own", (-0.9, -1.1, -1.0), 0.1)
+    run = simulate(model, own, Settings(window=100.0))
+    for initial in ("plus", own, {"position": [-0.9, -1.1], "velocity": 0.1}, ([-0.9], [0.1]), np.zeros((2, 3))):
+        simulate("linearized", 0.08, initial)
+        sweep("linearized", 0.08, initial)
+    simulate(model, run.final, transient=0, window=100)
+    simulate({"formula": "1 - c*a*u", "c": 0.5}, 0.1)
+    sweep(model, np.linspace(0.1, 0.2, 3), v=0.2)
+    sweep("carlson_langer", [0.1, 1], sigma=[0.01, 0.02], window=500)
+    find_attractors(model, SearchSettings(samples=12), starts=["plus", own])
+    attractors, labels = find_attractors(law_of("nonlinear", 0.1), 0.1, samples=12)
+    label_states(model, attractors, [[-0.9, -1.1, -1.0]], np.full((1, 3), 0.1))
+    basin_map(model, initial="plus", first_position=[-1, 1], last_position=(-1, 1))
+    fit_slope((0.1, 0.2), 0, 1)
+    fit_slope(np.zeros(20), 0.0)
+"""
+
+
+def test_type_checkers_accept_the_documented_calls(tmp_path):
+    """The examples, and the other forms of arguments that the docstrings name."""
+    parts = [FORMS]
+    for name in NAMES:
+        examples = doctest.DocTestParser().get_examples(getattr(burridge_knopoff, name).__doc__)
+        body = textwrap.indent("".join(example.source for example in examples), "    ")
+        parts.append(f"def {name}_() -> None:\n{body}")
+    path = tmp_path / "calls.py"
+    path.write_text("\n\n".join(parts))
+    checked = subprocess.run(
+        [sys.executable, "-m", "mypy", path], cwd=Path(__file__).parents[1], capture_output=True, text=True
+    )
+    assert not checked.returncode, checked.stdout

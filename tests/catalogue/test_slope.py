@@ -114,3 +114,8 @@ def test_what_has_no_slope():
         fit_slope(np.array([0.5, 1.0, 1.5]), 0.0, 2.0)
     with refused("magnitude: got only 1 between 0 and 2, expected a spread"):
         fit_slope(np.ones(20), 0.0, 2.0)
+
+
+def test_magnitudes_in_two_dimensions_are_refused():
+    with pytest.raises(ValueError, match=r"^magnitude: got \(2, 10\), expected shape \(events,\)$"):
+        fit_slope(np.arange(20.0).reshape(2, 10), 0.0)

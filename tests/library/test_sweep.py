@@ -63,6 +63,14 @@ def test_parameters_that_are_one_number_are_no_dimensions():
     assert runs.identical(same)
 
 
+@pytest.mark.parametrize("number", [0.08, np.float64(0.08), np.array(0.08)])
+def test_one_point_is_the_numbers_of_one_run(number):
+    runs, run = sweep("linearized", number, "plus", **SHORT), simulate("linearized", 0.08, "plus", **SHORT)
+    assert (runs["a"].item(), runs["mean_distance"].shape) == (0.08, ())
+    assert runs["mean_distance"].item() == run.mean_distance
+    assert np.array_equal(runs["lyapunov_exponent"], run.lyapunov_exponent)
+
+
 def test_a_run_that_does_not_complete_is_there():
     runs = sweep("linearized", [0.1, 1.9], contact="symmetric", transient=0.0, window=1e4)
     assert runs["status"].values.tolist() == [0, 3]
@@ -76,6 +84,8 @@ def test_a_run_that_does_not_complete_is_there():
         ({"a": [0.1, -0.1]}, "a: -0.1"),
         ({"a": [0.1, 0.2, 0.1]}, "a: got 0.1 twice"),
         ({"a": [0.1, "x"]}, "a: 'x'"),
+        ({"a": [[0.1, 0.2], [0.3, 0.4]]}, "a: [[0.1, 0.2], [0.3, 0.4]]"),
+        ({"v": np.array([[0.1]])}, "v: [[0.1]]"),
         ({"a": [0.1, 2.0], "solver": "map"}, "a = 2.0: solver: 'map'"),
         ({"cores": 0}, "cores: 0"),
         ({"colour": "blue"}, "colour: not a setting"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.settings import SEARCH
@@ -94,8 +95,8 @@ def moved(model: Model, starts: Sequence[ChainState], time: float) -> list[Chain
 def label_states(
     model: Model,
     attractors: Sequence[Attractor],
-    position: np.ndarray,
-    velocity: np.ndarray,
+    position: ArrayLike,
+    velocity: ArrayLike,
     *,
     start: str = "moving",
     time_limit: float = SEARCH.time_limit,

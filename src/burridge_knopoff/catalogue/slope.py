@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from burridge_knopoff.values import real_array, real_number, refusal
 
@@ -42,7 +43,7 @@ class Slope:
     p_value: float
 
 
-def fit_slope(magnitude: np.ndarray, low: float, high: float = math.inf) -> Slope:
+def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope:
     """Return the slope of the magnitudes in a range: that of an exponential distribution truncated at both ends.
 
     magnitude : of the events, shape (events,); low, high : ends of the range
@@ -68,6 +69,8 @@ def fit_slope(magnitude: np.ndarray, low: float, high: float = math.inf) -> Slop
     (0.8, True)
     """
     magnitude = real_array(magnitude, "magnitude")
+    if magnitude.ndim != 1:
+        raise refusal("magnitude", magnitude.shape, "shape (events,)")
     if not math.isfinite(real_number(low)):
         raise refusal("low", low, "a finite number")
     if math.isnan(real_number(high)):

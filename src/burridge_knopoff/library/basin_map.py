@@ -55,8 +55,7 @@ def basin_map(
     attractor is found.
 
     >>> from burridge_knopoff import basin_map
-    >>> search = {"samples": 12, "transient": 500, "window": 500}
-    >>> basins, attractors = basin_map("linearized", 0.08, pixels=4, **search)
+    >>> basins, attractors = basin_map("linearized", 0.08, pixels=4, samples=12, transient=500, window=500)
     >>> basins.branch.shape, basins.undetermined_count.item()
     ((1, 4, 4), 2)
     >>> attractors.mean_distance.sel(law="linearized", a=0.08).values.round(3).tolist()

@@ -50,8 +50,9 @@ def find_attractors(
     Times are in units of 1/ω. docs/attractors.md shows the search as a diagram.
 
     >>> from burridge_knopoff import find_attractors
-    >>> search = {"samples": 12, "transient": 500, "window": 500}
-    >>> attractors, labels = find_attractors("linearized", 0.08, starts=["plus"], **search)
+    >>> attractors, labels = find_attractors(
+    ...     "linearized", 0.08, starts=["plus"], samples=12, transient=500, window=500
+    ... )
     >>> for attractor in attractors:
     ...     print(attractor.motion.kind.words, round(attractor.motion.mean_distance, 3))
     synchronized 0.0

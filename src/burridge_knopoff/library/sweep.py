@@ -23,7 +23,7 @@ from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.threads import in_threads
-from burridge_knopoff.values import shown
+from burridge_knopoff.values import refusal, shown
 
 if TYPE_CHECKING:
     import xarray
@@ -99,7 +99,7 @@ def sweep(
             data[name] = item.dimensions, np.asarray(found[0][0][name], item.dtype), item.all_attributes()
         else:
             array = np.array([numbers[name] for numbers, _ in found], item.dtype)
-            data[name] = (*axes, *item.dimensions), array.reshape(*shape, *array.shape[1:]), item.all_attributes()
+            data[name] = (*axes, *item.dimensions), array.reshape((*shape, *array.shape[1:])), item.all_attributes()
     for name, values in axes.items():
         item = _KEPT.get(name, Variable((), "f8", f"parameter {name} of the model"))
         data[name] = name, values, item.all_attributes()
@@ -113,8 +113,10 @@ def _grid(
 ) -> tuple[Model, dict[str, list[float]]]:
     """Return the model with all parameters that are one number, and the values of those that are several."""
     arrays = {name: np.asanyarray(value, dtype=object) for name, value in parameters.items()}
-    axes: dict[str, list[float]] = {name: given.ravel().tolist() for name, given in arrays.items() if given.ndim}
+    axes: dict[str, list[float]] = {name: given.tolist() for name, given in arrays.items() if given.ndim}
     for name, values in axes.items():
+        if arrays[name].ndim > 1:
+            raise refusal(name, values, "one number or a sequence of numbers")
         if not values:
             raise ValueError(f"{name}: got no value, expected at least one")
     single = {name: value for name, value in parameters.items() if name not in axes}
