@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from burridge_knopoff.model.sampling import fraction_interval
 
@@ -125,9 +126,9 @@ class Share:
         return f"{100 * self.value:.1f} %"
 
 
-def share_of(right: np.ndarray) -> Share:
+def share_of(right: ArrayLike) -> Share:
     """Return the fraction of true values, shape (n,)."""
-    return Share(int(np.count_nonzero(right)), len(right))
+    return Share(int(np.count_nonzero(right)), np.size(right))
 
 
 def worst(verdicts: Iterable[str]) -> str:
