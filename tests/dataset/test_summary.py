@@ -6,7 +6,7 @@ import pytest
 import xarray
 
 from burridge_knopoff.dataset.summary import axes, open_summary, summary, write_summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import KEYWORDS, SIMULATED, Variable, flag
 from burridge_knopoff.provenance.seal import BadFile
 
 VARIABLES = {
@@ -40,12 +40,17 @@ def test_what_is_described_is_in_the_dataset():
     head = {
         "Conventions": "CF-1.11, ACDD-1.3",
         "title": "A title",
+        "summary": f"A title. {SIMULATED}",
+        "keywords": KEYWORDS,
         "history": "snakemake, from the point files",
         "v": 0.1,
     }
+    assert list(found.attrs)[:4] == list(head)[:4]
     assert {key: found.attrs[key] for key in head} == head
     assert found.attrs["source_module"] == "burridge_knopoff.summaries.lyapunov"
     assert made(history="by hand").attrs["history"] == "by hand"
+    # What was read from a part does not pass for the title of the whole.
+    assert made(title="A part", summary="A part.", source_module="other").attrs == found.attrs
 
 
 def test_what_is_written_is_read_back(tmp_path):

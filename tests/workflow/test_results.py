@@ -42,6 +42,20 @@ def test_every_point_is_there(results):
     assert hidden <= {f".{name}.seal" for name in sealed}
 
 
+def test_every_file_says_what_it_is(results):
+    """What the ACDD conventions recommend highly, and which its name claims: of points, parts and summaries."""
+    folders = set()
+    for path in results.rglob("[!.]*.nc"):
+        folders.add(path.relative_to(results).parts[0])
+        with xr.open_dataset(path) as data:
+            head = {key: data.attrs[key] for key in ("Conventions", "title", "summary", "keywords")}
+        assert "ACDD-1.3" in head["Conventions"], path
+        assert all(head.values()), path
+        assert "stick-slip" in head["keywords"].split(", "), path
+        assert len(head["summary"]) > len(head["title"]) > 10, path
+    assert folders >= {"points", "summary", "attractors", "basins", "solvers"}
+
+
 def test_mean_distance_summary(results):
     with xr.open_dataset(results / "summary" / "mean_distance.nc") as summary:
         assert dict(summary.sizes) == {"law": 2, "initial": 2, "a": 4, "level": 4}

@@ -68,7 +68,7 @@ def returns_of_law(models: Sequence[Model], rows: Sequence[Sequence[Row]], about
     }
     title = f"Section returns of the attractors, {models[0].law.name} friction law"
     arrays = {name: np.asarray(value) for name, value in values.items()}
-    return summary(title, VARIABLES, arrays, slot_coordinates(blocks), {**about, "title": title}, module=__name__)
+    return summary(title, VARIABLES, arrays, slot_coordinates(blocks), about, module=__name__)
 
 
 @dataclass(frozen=True, eq=False)

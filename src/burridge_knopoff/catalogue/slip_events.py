@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 from burridge_knopoff.catalogue.events import SlipEvents, record_events
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.dataset.point import STATUS_FLAG, model_attributes
-from burridge_knopoff.dataset.variables import CONVENTIONS, Variable, described
+from burridge_knopoff.dataset.variables import Variable, described, global_attributes
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.sources import provenance
 
 if TYPE_CHECKING:
     import xarray
@@ -66,22 +65,20 @@ def catalogue_dataset(
     data = described(variables, values)
     if len(events.slip):
         data["blocks"][2]["sample_dimension"] = "slip"
-    head = {
-        "Conventions": CONVENTIONS,
-        "title": f"Slip events of a Burridge-Knopoff chain of {model.blocks} blocks, {model.law.name} friction law",
-        "summary": (
-            "One row for each event of connected slips: of neighbouring blocks at the same time. Blocks count from 1. "
-            "All quantities are dimensionless."
-        ),
+    title = f"Slip events of a Burridge-Knopoff chain of {model.blocks} blocks, {model.law.name} friction law"
+    contents = (
+        "One row for each event of connected slips: of neighbouring blocks at the same time. Blocks count from 1."
+    )
+    about = {
         **model_attributes(model),
         "contact": model.contact,
         "blocks": model.blocks,
         "begin_time": begin,
         "end_time": end,
         **attributes,
-        **provenance(__name__),
     }
     coordinates = [name for name, item in variables.items() if item.coordinate]
+    head = global_attributes(title, about, module=__name__, contents=contents)
     return xarray.Dataset(data, attrs=head).set_coords(coordinates)
 
 

@@ -12,7 +12,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from burridge_knopoff.dataset.variables import (
-    CONVENTIONS,
     DIRECTION,
     KIND,
     TIMES,
@@ -21,10 +20,11 @@ from burridge_knopoff.dataset.variables import (
     described,
     fill,
     flag,
+    global_attributes,
 )
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.seal import write_sealed
-from burridge_knopoff.provenance.sources import SOFTWARE, provenance, source_fingerprint
+from burridge_knopoff.provenance.sources import SOFTWARE, source_fingerprint
 from burridge_knopoff.running.command import CHAIN_OPTIONS, simulate_command
 from burridge_knopoff.running.status import ENDS, Status
 from burridge_knopoff.running.trajectory import Trajectory
@@ -128,14 +128,9 @@ def point_about(command: str) -> dict[str, str]:
 def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
     """Return the global attributes of a point file."""
     model, settings = trajectory.model, trajectory.settings
+    title = f"Burridge-Knopoff chain of {model.blocks} blocks, {model.law.name} friction law"
+    contents = "One run: event sequence, section crossings and phase-space distance between the end blocks."
     attributes = {
-        "Conventions": CONVENTIONS,
-        "title": f"Burridge-Knopoff chain of {model.blocks} blocks, {model.law.name} friction law",
-        "summary": (
-            "One simulation of spring-coupled blocks with stick-slip friction: event sequence, section crossings and "
-            "phase-space distance between the end blocks. All quantities are dimensionless."
-        ),
-        "keywords": "stick-slip, Burridge-Knopoff model, synchronization",
         "source": f"{SOFTWARE}, event-driven or time-stepping simulation",
         "history": simulate_command(model, trajectory.initial, settings),
         **model_attributes(model),
@@ -150,8 +145,7 @@ def point_attributes(trajectory: Trajectory) -> dict[str, Any]:
     }
     if attributes["solver"] == "rk4":
         attributes["step"] = settings.step
-    attributes.update(provenance(__name__))
-    return attributes
+    return global_attributes(title, attributes, module=__name__, contents=contents)
 
 
 def model_attributes(model: Model) -> dict[str, Any]:

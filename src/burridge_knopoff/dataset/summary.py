@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, CONVENTIONS, Variable, described
+from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, Variable, described, global_attributes
 from burridge_knopoff.provenance.seal import BadFile, check_seal, write_sealed
-from burridge_knopoff.provenance.sources import provenance, source_fingerprint
+from burridge_knopoff.provenance.sources import source_fingerprint
 
 AXES: dict[str, Variable] = {
     "law": Variable(("law",), "O", "friction law", coordinate=True),
@@ -43,13 +43,7 @@ def summary(
 
     module : name of the module that makes the values
     """
-    head = {
-        "Conventions": CONVENTIONS,
-        "title": title,
-        "history": "snakemake, from the point files",
-        **attributes,
-        **provenance(module),
-    }
+    head = global_attributes(title, {"history": "snakemake, from the point files", **attributes}, module=module)
     return xarray.Dataset(described(variables, values), dict(coordinates), head)
 
 

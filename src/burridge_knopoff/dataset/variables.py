@@ -9,10 +9,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from burridge_knopoff.provenance.sources import provenance
+
 if TYPE_CHECKING:
     import netCDF4
 
 CONVENTIONS = "CF-1.11, ACDD-1.3"
+KEYWORDS = "stick-slip, friction, Burridge-Knopoff model, spring-block chain, synchronization"
+#: What every file contains, for its `summary`.
+SIMULATED = (
+    "From simulations of the Burridge-Knopoff model: blocks with stick-slip friction, coupled by springs and pulled by a "
+    "driver of constant velocity. All quantities are dimensionless."
+)
 COMPRESSION_LEVEL = 5
 COMPRESSED_FROM = 64
 
@@ -35,6 +43,21 @@ class Variable:
             attributes["units"] = "1"
         attributes.update(self.attributes)
         return attributes
+
+
+def global_attributes(title: str, attributes: Mapping[str, Any], *, module: str, contents: str = "") -> dict[str, Any]:
+    """Return the global attributes of a file: those of CF and ACDD, further ones, and the provenance.
+
+    contents : one or several sentences on what the file has, if its title does not say it
+    module : name of the module that makes the values
+    """
+    own = {
+        "Conventions": CONVENTIONS,
+        "title": title,
+        "summary": f"{contents or f'{title}.'} {SIMULATED}",
+        "keywords": KEYWORDS,
+    }
+    return {**own, **{key: value for key, value in attributes.items() if key not in own}, **provenance(module)}
 
 
 def flag(dtype: str, meanings: Iterable[IntEnum] | Mapping[int, str]) -> dict[str, Any]:

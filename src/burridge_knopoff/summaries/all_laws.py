@@ -22,11 +22,8 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.kind import MotionKind
-from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.formatting import span
 from burridge_knopoff.summaries.attractors import VARIABLES
-
-_HEAD = ("Conventions", "title", "law", *provenance(__name__))
 
 
 def merge(
@@ -51,7 +48,7 @@ def merge(
             values[name][within] = array
     coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
     coordinates["law"] = axes(law=[part.attrs["law"] for part in parts])["law"]
-    attributes = {key: parts[0].attrs[key] for key in parts[0].attrs if key not in _HEAD}
+    attributes = {key: value for key, value in parts[0].attrs.items() if key != "law"}
     whole = {name: replace(item, dimensions=("law", *item.dimensions)) for name, item in variables.items()} | NAMES
     values.update(name_branches(*(values[name] for name in ("branch", "symmetry", "stop_rate"))))
     return summary(title, whole, values, coordinates, attributes, module=__name__)

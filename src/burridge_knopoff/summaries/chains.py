@@ -14,7 +14,7 @@ import xarray
 from numpy.typing import ArrayLike
 
 from burridge_knopoff.dataset.summary import STATE, axes, summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import Variable, flag, global_attributes
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import CONFIDENCE, fraction_interval
 from burridge_knopoff.motion.chain_synchronization import (
@@ -23,11 +23,10 @@ from burridge_knopoff.motion.chain_synchronization import (
     Watch,
     watch_chain,
 )
-from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.formatting import friction_words
 
 _POINT = ("law", "a")
-_OWN_ATTRIBUTES = ("blocks", "title", "Conventions", *provenance(__name__))
+_OWN_ATTRIBUTES = ("blocks", *global_attributes("", {}, module=__name__))
 _STATE = (*_POINT, "state")
 _SYMMETRIC = (*_POINT, "symmetric_state")
 CHAIN_VARIABLES = {
