@@ -18,7 +18,7 @@ def wave(blocks, amplitude=0.1):
 
 
 def weakly_repelling():
-    """Return a periodic orbit embedded in weak chaos, with multiplier -1.054: to leave it takes thousands of time units."""
+    """Return a periodic orbit embedded in weak chaos, with multiplier -1.054 over a period of 75."""
     model = Model(Chain(3), law_of("linearized", 0.1325))
     position = np.array([-0.86490860, -0.66580172, -0.83500781]) - model.sliding_offset
     near = ChainState(position, np.array([0.23419014, 0.16806155, 0.21475228]), np.zeros(3, dtype=bool))

@@ -9,7 +9,13 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.variables import COMPRESSED_FROM, COMPRESSION_LEVEL, Variable, described, global_attributes
+from burridge_knopoff.dataset.variables import (
+    COMPRESSED_FROM,
+    COMPRESSION_LEVEL,
+    Variable,
+    described,
+    global_attributes,
+)
 from burridge_knopoff.provenance.seal import BadFile, check_seal, write_sealed
 from burridge_knopoff.provenance.sources import source_fingerprint
 

@@ -18,8 +18,8 @@ CONVENTIONS = "CF-1.11, ACDD-1.3"
 KEYWORDS = "stick-slip, friction, Burridge-Knopoff model, spring-block chain, synchronization"
 #: What every file contains, for its `summary`.
 SIMULATED = (
-    "From simulations of the Burridge-Knopoff model: blocks with stick-slip friction, coupled by springs and pulled by a "
-    "driver of constant velocity. All quantities are dimensionless."
+    "From simulations of the Burridge-Knopoff model: blocks with stick-slip friction, coupled by springs and pulled by "
+    "a driver of constant velocity. All quantities are dimensionless."
 )
 COMPRESSION_LEVEL = 5
 COMPRESSED_FROM = 64

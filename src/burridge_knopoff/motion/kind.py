@@ -130,14 +130,14 @@ def motion_of(run: Mapping[str, Any], mean_distance: float, settings: MotionSett
     mean_distance : ⟨J⟩; the end blocks move as one where it is below the synchronization threshold
 
     Closed if the section points repeat, even where an exponent is positive: a symmetric state stays on an orbit that
-    repels all others (`unstable`), and chaos may have ended within the window. A run whose turns diverge is
-    leaving such an orbit and does not show where it goes: it is undetermined unless an exponent shows chaos. Chaotic if the largest exponent is above
-    `chaotic_exponent` and above its error. Otherwise the largest must be 0, that of the flow; then the motion is closed
-    if its states repeat or if the next exponent is negative, and quasiperiodic if that one is 0 as well and the errors
-    are small; but end blocks that move as one hardly ever move on a torus, so that there it has to be 0 within one
-    standard error. What is closed is synchronized, or periodic up to the longest period and quasiperiodic beyond.
-    Everything else is undetermined, even a largest exponent above `chaotic_exponent` if it is within its error; and
-    uniform sliding that attracts, of which no exponent is 0 and the section points are rounding.
+    repels all others (`unstable`), and chaos may have ended within the window. A run whose turns diverge is leaving
+    such an orbit and does not show where it goes: it is undetermined unless an exponent shows chaos. Chaotic if the
+    largest exponent is above `chaotic_exponent` and above its error. Otherwise the largest must be 0, that of the flow;
+    then the motion is closed if its states repeat or if the next exponent is negative, and quasiperiodic if that one is
+    0 as well and the errors are small; but end blocks that move as one hardly ever move on a torus, so that there it
+    has to be 0 within one standard error. What is closed is synchronized, or periodic up to the longest period and
+    quasiperiodic beyond. Everything else is undetermined, even a largest exponent above `chaotic_exponent` if it is
+    within its error; and uniform sliding that attracts, of which no exponent is 0 and the section points are rounding.
     """
     exponents = run["lyapunov_exponent"], run["lyapunov_error"]
     points, period = period_of(run, settings)

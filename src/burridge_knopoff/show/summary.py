@@ -15,7 +15,10 @@ from burridge_knopoff.show.formatting import paragraph, table, values_in_words
 from burridge_knopoff.show.result import Result
 
 #: Global attributes that the page shows elsewhere, or that are the same in all files.
-_ELSEWHERE = ("Conventions", "title", "summary", "keywords", "history", "software", "source_module", "source_fingerprint")
+_ELSEWHERE = (
+    *("Conventions", "title", "summary", "keywords", "history"),
+    *("software", "source_module", "source_fingerprint"),
+)
 
 
 def summary_lines(result: Result) -> list[str]:
