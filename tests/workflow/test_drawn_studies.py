@@ -77,7 +77,6 @@ KNOWN = [
     {"lyapunov_exponents": 0, "batches": 3, "contact": "symmetric"},
     {"event_window": 0, "trajectory": 0, "initial": blocks(6), "chain": {"ends": "ring"}, "start": "tested"},
     {"initial": states(4), "without": ["attractors", "solvers", "two_blocks", "proof", "claims"]},
-    {"initial": states(7), "laws": laws(1), "without": ["attractors", "solvers", "two_blocks", "proof", "claims"]},
 ]
 
 

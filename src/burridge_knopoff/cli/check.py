@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-DESCRIPTION = """List the points of studies that are missing, corrupt, stale or failed, damaged summaries, missing files
-of jobs that have started, and files that do not belong to the study. Exit code: 0 if nothing is wrong, 1 if something
-is missing, corrupt or stale, 3 if runs have failed but nothing else is wrong."""
+DESCRIPTION = """List the points and catalogues of studies that are missing, corrupt, stale or failed, damaged
+summaries, missing files of jobs that have started, and files that do not belong to the study. Exit code: 0 if nothing
+is wrong, 1 if something is missing, corrupt or stale, 3 if runs have failed but nothing else is wrong."""
 
 EXAMPLES = """  bk check results/paper
   bk check --paths results/*/
