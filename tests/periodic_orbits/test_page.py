@@ -1,0 +1,10 @@
+"""docs/bifurcations.md prints what it says."""
+
+from tests.pages import outputs
+
+
+def test_scripts(repository):
+    results = outputs((repository / "docs" / "bifurcations.md").read_text(), "docs/bifurcations.md")
+    assert len(results) == 2
+    for _, said, printed in results:
+        assert printed == said
