@@ -30,6 +30,7 @@ def test_motion_that_is_locked_with_a_period_that_no_run_shows_is_not_periodic(l
     found = search.attractors[index].motion
     assert (found.kind.name, found.section_period) == (kind, points)
     assert found.period == pytest.approx(period, rel=1e-5)
+    assert (np.diff(found.exponent) <= 0.0).all()
 
 
 @pytest.mark.parametrize(
