@@ -150,7 +150,9 @@ def _synchronized_shares(
         for state in initial:
             grid, kind = _kinds(evidence, state, law, a)
             count = evidence.choose(evidence.of_state("lyapunov", state), a).sel(law=law)["section_period"].values
-            other = (kind == MotionKind.PERIODIC) & (count <= most)
+            # A section that does not repeat within the run has more points than can be counted.
+            few = np.where(count > 0, count, np.inf) <= most
+            other = (kind == MotionKind.PERIODIC) & few
             periodic = other | (kind == MotionKind.SYNCHRONIZED)
             if not periodic.any():
                 continue

@@ -54,8 +54,7 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
     if detuning not in rotation["detuning"].values:
         raise NotTestableError(f"rotation.nc has no motion with a detuning of {detuning:g}")
     resolution = 1.0 / rotation.attrs["detuned_window"]
-    end_blocks = f"the end blocks to each other, with {100 * detuning:g} % more mass of one,"
-    middle = "the end blocks to the middle block"
+    end_blocks, middle = "the end blocks to each other", "the end blocks to the middle block"
     shares: dict[str, dict[str, Share]] = {end_blocks: {}, middle: {}}
     measured, where = [], []
     for law in PAPER_LAWS:
@@ -96,7 +95,10 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
         measured += [Measured(f"{name}, {law}", share.value) for law, share in of_laws.items()]
     readings = shares_by_readings(shares, loose_share)
     texts = [f"{r} at {shares_text(s)} ({readings.get(r, NOT_TESTABLE)})" for r, s in shares.items()]
-    reason = f"Branch 1 is locked: {'; '.join(texts)}, of the values of a with {a}."
+    reason = (
+        f"Branch 1 is locked: {'; '.join(texts)}, of the values of a with {a}. Locked to each other, the end blocks "
+        f"keep one frequency with {100 * detuning:g} % more mass of one of them."
+    )
     verdict, own = by_readings(readings)
     return Verdict(verdict, reason, measured, "; ".join(where), readings, own)
 
