@@ -1,6 +1,7 @@
 """The stage of slip events: its files, their content, and what changes of the config make again."""
 
 import re
+import subprocess
 
 import numpy as np
 import pytest
@@ -34,17 +35,10 @@ TARGETS = [
 ]
 
 
-#: Settings of matplotlib in the folder of the study, which would break its figures or change them; see also MPLBACKEND.
-OWN_SETTINGS = "text.usetex: True\nsavefig.bbox: tight\naxes.spines.top: False\nfigure.autolayout: True\n"
-
-
 @pytest.fixture(scope="module")
 def study(tmp_path_factory):
     study = Study(tmp_path_factory.mktemp("quakes"), CATALOGUE)
-    (study.folder / "matplotlibrc").write_text(OWN_SETTINGS)
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("MPLBACKEND", "module://matplotlib_inline.backend_inline")
-        study.ok(*TARGETS)
+    study.ok(*TARGETS)
     return study
 
 
@@ -117,6 +111,20 @@ def test_the_statistics_are_those_of_the_events(study):
         assert {name: one[name].item() for name in names} == names
         assert one["block_event_count"].sum() == events["blocks"].sum()
         assert one["shown_magnitude"].max() == one["largest_magnitude"] == magnitude.max()
+
+
+def test_a_picture_is_the_same_under_a_users_own_settings_of_matplotlib(study):
+    """As of a matplotlibrc, and of a notebook that starts snakemake. It is the program itself that is started."""
+    before = study.files("figures")
+    own = study.folder / "matplotlibrc"
+    own.write_text("text.usetex: True\nsavefig.bbox: tight\naxes.spines.top: False\nfigure.autolayout: True\n")
+    environment = {**study.environment(), "MPLBACKEND": "module://matplotlib_inline.backend_inline"}
+    command = study.command("-R", "figure_catalogue", "--", TARGETS[1])
+    run = subprocess.run(command, cwd=study.folder, env=environment, capture_output=True, text=True)
+    own.unlink()
+    assert run.returncode == 0, run.stderr
+    assert "figures/catalogue.png" in run.stderr
+    assert study.files("figures") == before
 
 
 def test_a_change_makes_again_what_depends_on_it(study, capsys):
