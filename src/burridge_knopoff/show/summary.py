@@ -16,8 +16,14 @@ from burridge_knopoff.show.result import Result
 
 #: Global attributes that the page shows elsewhere, or that are the same in all files.
 _ELSEWHERE = (
-    *("Conventions", "title", "summary", "keywords", "history"),
-    *("software", "source_module", "source_fingerprint"),
+    "Conventions",
+    "title",
+    "summary",
+    "keywords",
+    "history",
+    "software",
+    "source_module",
+    "source_fingerprint",
 )
 
 
