@@ -19,12 +19,12 @@ from tests.claims.said import CLAIMS
 ROOT = Path(__file__).parents[2]
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def content() -> dict:
     return json.loads((ROOT / "docs/claims.json").read_text(encoding="utf-8"))
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def depths() -> dict:
     return json.loads((ROOT / "docs/depths.json").read_text(encoding="utf-8"))
 
