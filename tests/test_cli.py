@@ -119,6 +119,18 @@ def test_what_is_longer_than_the_run_is_said(tmp_path, capsys):
     ]
 
 
+def test_what_a_long_chain_costs_is_said_before_it_starts(tmp_path):
+    options = "--law nonlinear --a 0.3 --blocks 100000 --position=-0.9 --velocity 0.1 --initial all --trajectory 1"
+    command = [BK, "simulate", *options.split(), "--lyapunov-exponents", "0", "--out", tmp_path / "x.nc"]
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        said = process.stderr.readline()
+        process.send_signal(signal.SIGINT)
+    assert said == (
+        "note: bk simulate: 100000 blocks: about 5 min for a unit of time, 35 days for the run if they go on slipping; "
+        "0.45 GB besides the events kept\n"
+    )
+
+
 def test_no_events(tmp_path):
     out = tmp_path / "none.nc"
     assert main([*RUN, "--events", "none", "--out", str(out)]) == 0

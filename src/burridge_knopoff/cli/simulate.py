@@ -15,6 +15,8 @@ from burridge_knopoff.running.status import EXIT_CODE
 from burridge_knopoff.study.formatting import plain, with_error
 
 if TYPE_CHECKING:
+    from burridge_knopoff.model.initial import InitialState
+    from burridge_knopoff.model.model import Model
     from burridge_knopoff.running.trajectory import Trajectory
 
 DESCRIPTION = """Run one simulation and write it as a netCDF point file.
@@ -51,7 +53,10 @@ def run(options: argparse.Namespace) -> int:
 
     state = state_of(options) or PAPER_STATES["minus"]
     settings = settings_of(Settings, options)
-    trajectory = simulation.run(model_of(options, state), state, settings)
+    model = model_of(options, state)
+    if told := _cost(model, state, settings):
+        print(f"note: bk simulate: {told}", file=sys.stderr, flush=True)
+    trajectory = simulation.run(model, state, settings)
     write_point(trajectory, options.out)
     for key, part in _PARTS.items():
         asked, there = getattr(settings, key), settings.duration if part == "run" else settings.window
@@ -68,6 +73,25 @@ def run(options: argparse.Namespace) -> int:
         )
         return EXIT_CODE
     return 0
+
+
+def _cost(model: Model, state: InitialState, settings: Settings) -> str:
+    """Return about what a run costs if its blocks go on as at the start; empty for a minute or less."""
+    from burridge_knopoff.running.cost import cost_of
+
+    settings.check_chain(model.chain)
+    each, memory = cost_of(model, model.begin(state, settings.start), settings)
+    if settings.solver == "rk4" or each * settings.duration <= 60.0:
+        return ""
+    seconds = f"{_time(each)} for a unit of time, {_time(each * settings.duration)} for the run if they go on slipping"
+    return f"{model.blocks} blocks: about {seconds}; {1e-9 * memory:.2g} GB besides the events kept"
+
+
+def _time(seconds: float) -> str:
+    for unit, name in ((86400.0, "days"), (3600.0, "h"), (60.0, "min")):
+        if seconds >= 2.0 * unit:
+            return f"{seconds / unit:.0f} {name}"
+    return f"{seconds:.2g} s"
 
 
 def outcome(trajectory: Trajectory) -> str:
