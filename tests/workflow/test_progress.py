@@ -69,7 +69,7 @@ def test_interrupted_on_a_terminal(study):
     code, written = on_a_terminal(command, study.folder, until=rb" ([6-9]|\d\d) s so far")
     text = plain(written)
     assert code != 0
-    assert re.search(r"study tiny: stopped after \d+ s: 2 jobs interrupted, 14 jobs did not run", text)
+    assert re.search(r"study tiny: stopped after [\d min]+ s: 2 jobs interrupted, 14 jobs did not run", text)
     assert "the same command goes on where this run stopped" in text
     assert written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l") > 0
 
