@@ -137,7 +137,7 @@ def test_failed_jobs_are_named_with_their_logs(copy):
     lines = run.stderr.splitlines()
     assert run.returncode != 0
     end = next(n for n, line in enumerate(lines) if line.startswith("study tiny: stopped"))
-    assert re.fullmatch(r"study tiny: stopped after \d+ s: 1 job failed, 1 job did not run", lines[end])
+    assert re.fullmatch(r"study tiny: stopped after [\d min]+ s: 1 job failed, 1 job did not run", lines[end])
     told, path = lines[end + 1], point.relative_to(copy.folder)
     assert told == f"failed: mean_distance: {path}: is empty (log results/tiny/logs/mean_distance.log)"
     assert lines[end + 2] == "made: nothing"
