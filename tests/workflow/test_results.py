@@ -52,7 +52,7 @@ def test_every_file_says_what_it_is(results):
         assert "ACDD-1.3" in head["Conventions"], path
         assert all(head.values()), path
         assert "stick-slip" in head["keywords"].split(", "), path
-        assert len(head["summary"]) > len(head["title"]) > 10, path
+        assert len(head["summary"]) > len(head["title"]) > 5, path
     assert folders >= {"points", "summary", "attractors", "basins", "solvers"}
 
 
