@@ -166,8 +166,8 @@ class Scripted:
     def __init__(self, distances):
         self.distances = distances
 
-    def begin(self, start):
-        self.clock = 0.0
+    def begin(self, at, clock):
+        self.clock = clock
 
     def run(self, end):
         assert end == self.clock + INTERVAL
