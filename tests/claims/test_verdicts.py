@@ -10,7 +10,7 @@ import pytest
 import xarray
 
 from burridge_knopoff.attractors.lookup import reached
-from burridge_knopoff.claims.conventions import judge_shares, shares_by_readings, under_conventions
+from burridge_knopoff.claims.conventions import by_readings, judge_shares, shares_by_readings, under_conventions
 from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.claims.verdict import (
     CONVENTION,
@@ -137,11 +137,31 @@ def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> Non
     assert verdict_of({**one, "third": Share(0, 9)}, 0.9) == FAILS
 
 
-def test_a_reading_that_is_open_does_not_count() -> None:
-    shares = {"first": {"one": Share(7, 8)}, "second": {"one": Share(8, 8)}}
-    assert shares_by_readings(shares, 0.9) == {"second": HOLDS}
-    with pytest.raises(NotTestableError, match="7 of 8"):
-        shares_by_readings({"first": shares["first"]}, 0.9)
+@pytest.mark.parametrize(
+    ("readings", "expected"),
+    [
+        ([HOLDS, HOLDS], HOLDS),
+        ([HOLDS, LOOSELY], LOOSELY),
+        ([FAILS, FAILS], FAILS),
+        ([LOOSELY, FAILS], READING),
+        # What is open does not matter if the others differ. It may differ from them if they do not.
+        ([HOLDS, NOT_TESTABLE, FAILS], READING),
+        ([NOT_TESTABLE, HOLDS], NOT_TESTABLE),
+        ([FAILS, NOT_TESTABLE], NOT_TESTABLE),
+    ],
+)
+def test_a_reading_that_is_open_is_not_left_out(readings: list[str], expected: str) -> None:
+    verdicts = {f"reading {number}": verdict for number, verdict in enumerate(readings)}
+    if expected == NOT_TESTABLE:
+        with pytest.raises(NotTestableError, match=f"«reading {readings.index(NOT_TESTABLE)}»$"):
+            by_readings(verdicts)
+    else:
+        assert by_readings(verdicts) == (expected, readings[0])
+
+
+def test_the_worst_share_of_a_reading_decides() -> None:
+    shares = {"first": {"one": Share(7, 8), "other": Share(8, 8)}, "second": {"one": Share(8, 8)}}
+    assert shares_by_readings(shares, 0.9) == {"first": NOT_TESTABLE, "second": HOLDS}
 
 
 def test_every_claim_is_seen_to_fail() -> None:

@@ -1,9 +1,10 @@
-"""Locking of the end blocks of branch 1: one frequency with unequal masses, up to some detuning."""
+"""One frequency of the end blocks of branch 1 with unequal masses, up to some detuning."""
 
 import numpy as np
 import pytest
+from scipy.linalg import eigvalsh
 
-from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff import Chain, ChainState, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.summaries.detuning import WINDOW, detuned_motion
@@ -22,6 +23,18 @@ def test_the_end_blocks_keep_one_frequency_with_unequal_masses(law: str, a: floa
     assert abs(frequency[2] - frequency[0]) < 1e-5
     assert correlation < -0.5
     assert frequency[1] > 1.5 * frequency[0]
+
+
+@pytest.mark.parametrize("detuning", [0.1, 0.3])
+def test_so_do_blocks_that_the_springs_alone_move(detuning: float) -> None:
+    """At a = 0 friction is constant: small oscillations about sliding are those of the springs, without any locking."""
+    model = Model(Chain(3), law_of("linearized", 0.0))
+    antiphase = ChainState(model.sliding_offset + np.array([0.05, 0.0, -0.05]), np.full(3, model.v), np.zeros(3, bool))
+    frequency, _ = detuned_motion(model, antiphase, detuning)
+    masses = np.diag([1.0, 1.0, 1.0 + detuning])
+    modes = np.sqrt(eigvalsh(model.chain.stiffness, masses)) / (2.0 * np.pi)
+    assert frequency[0] == pytest.approx(frequency[2], abs=1e-6)
+    assert np.abs(modes - frequency[0]).min() < 1e-4
 
 
 def test_beyond_the_range_of_locking_they_have_two_frequencies() -> None:

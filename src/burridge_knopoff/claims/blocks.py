@@ -8,7 +8,6 @@ from burridge_knopoff.claims.conventions import by_readings, shares_by_readings
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
-    NOT_TESTABLE,
     Measured,
     Range,
     Share,
@@ -71,7 +70,7 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     if other_known.any():
         of_other = float(other_right[other_known].mean())
         measured.append(Measured("the first share if both blocks are pulled, which is not the paper's chain", of_other))
-    texts = [f"{of[name]} {name} ({readings.get(name, NOT_TESTABLE)})" for name, of in shares.items()]
+    texts = [f"{of[name]} {name} ({readings[name]})" for name, of in shares.items()]
     reason = (
         f"In the train model, pulled at its first block only, the laws agree from all {states} sampled states at "
         f"{'; at '.join(texts)}, of the values of a with {a}."

@@ -12,16 +12,18 @@ from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     CONVENTION,
     FAILS,
+    HOLDS,
+    LOOSELY,
     NOT_TESTABLE,
     READING,
     Measured,
+    NotTestableError,
     Range,
     Share,
     Verdict,
     at_values,
     by_share,
     shares_text,
-    verdict_of,
     worst,
 )
 
@@ -68,26 +70,25 @@ def under_conventions(
 def by_readings(verdicts: Mapping[str, str]) -> tuple[str, str]:
     """Return (the verdict of a claim with more than one reading, the verdict under the first reading).
 
-    It depends on reading if it holds, at least loosely, under one reading and fails under another.
+    It depends on reading if it holds, at least loosely, under one reading and fails under another; if it does not, the
+    worst decides. Raises NotTestableError if that is open: it may agree with the others or not.
     """
     own = next(iter(verdicts.values()))
-    return (READING if _divided(verdicts) else own), own
+    if _divided(verdicts):
+        return READING, own
+    if unresolved := [reading for reading, verdict in verdicts.items() if verdict == NOT_TESTABLE]:
+        raise NotTestableError(f"there are too few values for the reading «{'» and «'.join(unresolved)}»")
+    return worst(verdicts.values()), own
 
 
 def shares_by_readings(shares: Mapping[str, Mapping[str, Share]], loose: float) -> dict[str, str]:
-    """Return the verdict under each reading for its worst share; a reading that is open is left out.
-
-    Raises NotTestableError if all of them are.
-    """
-    found = {reading: judge_shares(of_one, loose)[0] for reading, of_one in shares.items()}
-    if not any(found.values()):
-        verdict_of(next(iter(shares.values())), loose)
-    return {reading: verdict for reading, verdict in found.items() if verdict}
+    """Return the verdict under each reading for its worst share, for `by_readings`."""
+    return {name: worst(by_share(share, loose) for share in of_one.values()) for name, of_one in shares.items()}
 
 
 def _divided(verdicts: Mapping[str, str]) -> bool:
-    fails = [verdict == FAILS for verdict in verdicts.values()]
-    return any(fails) and not all(fails)
+    """Return whether some verdict is «fails» and some «holds», at least loosely."""
+    return FAILS in verdicts.values() and not {HOLDS, LOOSELY}.isdisjoint(verdicts.values())
 
 
 def of_rounded_states(evidence: Evidence, initial: Sequence[str], laws: Sequence[str], a: Range) -> list[str]:

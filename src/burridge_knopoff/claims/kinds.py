@@ -13,7 +13,7 @@ from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
-    NOT_TESTABLE,
+    LOOSELY,
     Measured,
     NotTestableError,
     Range,
@@ -131,11 +131,30 @@ def periodic_is_synchronized(
         for reading, of_runs in shares.items()
         for name, share in of_runs.items()
     ]
-    texts = [f"{shares_text(of)} of those {name} ({readings.get(name, NOT_TESTABLE)})" for name, of in shares.items()]
+    texts = [f"{shares_text(of)} of those {name} ({readings[name]})" for name, of in shares.items()]
+    changes += _periodic_elsewhere(evidence, initial, a)
     reason = f"Of the periodic runs are synchronized: {'; '.join(texts)}."
     verdict, own = by_readings(readings)
-    reason = f"Of the periodic runs are synchronized: {'; '.join(texts)}."
     return Verdict(verdict, reason, measured, "; ".join(changes), readings, own)
+
+
+def _periodic_elsewhere(evidence: Evidence, initial: Sequence[str], a: Range) -> list[str]:
+    """Return, in words, where states reach periodic motion without synchrony under the other conventions."""
+    if "attractors" not in evidence.summaries:
+        return []
+    texts = []
+    for convention, attractors in evidence.conventions():
+        if convention == evidence.own_convention:
+            continue
+        inside = evidence.choose(attractors, a)
+        for law in PAPER_LAWS:
+            for state in initial:
+                known, kind = kinds_reached(inside, state, law)
+                other = known & (kind == MotionKind.PERIODIC)
+                if other.any():
+                    where = at_values(inside["a"].values, other)
+                    texts.append(f"{convention}: periodic without synchrony {where} ({law}, {state})")
+    return texts
 
 
 def _synchronized_shares(
@@ -256,10 +275,11 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
     return under_conventions(evidence, own, reason, measured, changes, labels)
 
 
-def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) -> Verdict:
+def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float, points: int) -> Verdict:
     """Judge whether the motion from a state at one a, under some laws, is aperiodic: chaotic or quasiperiodic.
 
-    Quasiperiodic means regular motion that does not repeat within `motion.longest_period`, locked or not.
+    Quasiperiodic means regular motion that does not repeat within `motion.longest_period`, locked or not. The claim
+    holds loosely if the motion repeats, but only after more than `points` points of the section W = 0, a cloud.
     """
     verdicts, measured, texts, elsewhere = [], [], [], []
     runs = evidence.choose(evidence.of_state("lyapunov", initial), Range(above=0.0))
@@ -270,8 +290,8 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
         kind = int(kinds[grid == at].item())
         if kind == MotionKind.UNDETERMINED:
             raise NotTestableError(f"the kind of motion from {initial} at a = {at:g} under the {law} law is unknown")
-        verdicts.append(FAILS if kind in CLOSED else HOLDS)
         period = int(run["section_period"].item())
+        verdicts.append(_by_repetition(kind, period, points))
         measured.append(Measured(f"section points in a period (0: not periodic), {law}", float(period)))
         if run.sizes.get("exponent", 0) > 1:
             exponent, error = (run[name].values[1] for name in ("lyapunov_exponent", "lyapunov_error"))
@@ -288,15 +308,23 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float) 
         found = {}
         for law in laws:
             known, kind = kinds_reached(attractors.sel(a=[at]), initial, law)
+            count = reached(attractors.sel(a=[at]), initial, law, "section_count")[1]
             if known[0]:
-                found[law] = int(kind[0])
+                found[law] = int(kind[0]), int(count[0])
         if not found:
             return "", ""
-        verdict = worst(FAILS if kind in CLOSED else HOLDS for kind in found.values())
-        return verdict, ", ".join(f"{MotionKind(kind).words} {law}" for law, kind in found.items())
+        verdict = worst(_by_repetition(kind, count, points) for kind, count in found.values())
+        return verdict, ", ".join(f"{MotionKind(kind).words} {law}" for law, (kind, _) in found.items())
 
     reason = f"The motion from {initial} at a = {at:g} is {' and '.join(texts)}."
     return under_conventions(evidence, worst(verdicts), reason, measured, elsewhere, labels)
+
+
+def _by_repetition(kind: int, period: int, points: int) -> str:
+    """Return how far motion of a kind, with so many section points in a period, is aperiodic; see `aperiodic`."""
+    if kind not in CLOSED:
+        return HOLDS
+    return LOOSELY if kind == MotionKind.PERIODIC and period > points else FAILS
 
 
 def _neighbours(evidence: Evidence, law: str, at: float, kind: int) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,8 +17,10 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Range,
+    Share,
     Verdict,
     at_values,
+    by_share,
     by_value,
     known_share,
     share_of,
@@ -25,6 +28,8 @@ from burridge_knopoff.claims.verdict import (
     verdict_of,
 )
 from burridge_knopoff.dataset.variables import Answer
+from burridge_knopoff.motion.kind import with_one_chaos
+from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.judgement import same_mean
 
 if TYPE_CHECKING:
@@ -49,18 +54,34 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
         if np.isfinite(difference).any():
             measured.append(Measured(f"largest |Δ⟨J⟩| where they agree, {state}", float(np.nanmax(difference))))
     tolerance = 100.0 * next(iter(found.values())).attrs["relative_tolerance"]
-    what = f"in ⟨J⟩ within {tolerance:g} % of the largest, {scale:.3f},"
-    return _by_answers(answers, what, measured, a, loose_share)
+    reason, share, numbers, apart = _by_answers(answers, a, loose_share)
+    reason = f"The laws agree in ⟨J⟩ within {tolerance:g} % of the largest, {scale:.3f}, at {reason}."
+    return Verdict(verdict_of({"points": share}, loose_share), reason, [*numbers, *measured], "; ".join(apart))
 
 
 def laws_agree_in_kind(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead to the same kind of motion at all a of a range.
 
-    A torus and an unsynchronized closed orbit count as one kind, see `judgement.compare`.
+    Kinds may be synchrony, other regular motion and chaos: a torus is locked to closed orbits on a dense set of a, so
+    that one value of a shows either. Or they may be those that the paper names: periodic, quasiperiodic and chaotic.
     """
-    found = {state: _compared(evidence, state, a) for state in initial}
-    answers = {state: (one["a"].values, one["same_kind"].values) for state, one in found.items()}
-    return _by_answers(answers, "in the kind of motion", [], a, loose_share)
+    loosely, strictly = {}, {}
+    for state in initial:
+        one = _compared(evidence, state, a)
+        same, (kind, other) = one["same_kind"].values, with_one_chaos(one["kind"].sel(law=list(PAPER_LAWS)).values)
+        loosely[state] = one["a"].values, same
+        strictly[state] = one["a"].values, np.where((same == Answer.YES) & (kind != other), Answer.NO, same)
+    readings, texts, measured, apart = {}, [], [], []
+    for number, answers in (("one kind", loosely), ("two kinds", strictly)):
+        text, share, numbers, where = _by_answers(answers, a, loose_share)
+        reading = f"with periodic and quasiperiodic motion as {number}"
+        readings[reading] = by_share(share, loose_share)
+        texts.append(f"at {text}, {reading} ({readings[reading]})")
+        measured += [replace(item, quantity=f"{item.quantity}, {reading}") for item in numbers]
+        apart += [f"{reading} {text}" for text in where]
+    verdict, own = by_readings(readings)
+    reason = f"The laws agree in the kind of motion {'; '.join(texts)}."
+    return Verdict(verdict, reason, measured, "; ".join(apart), readings, own)
 
 
 def _compared(evidence: Evidence, state: str, a: Range) -> xarray.Dataset:
@@ -68,15 +89,13 @@ def _compared(evidence: Evidence, state: str, a: Range) -> xarray.Dataset:
 
 
 def _by_answers(
-    answers: Mapping[str, tuple[np.ndarray, np.ndarray]],
-    what: str,
-    measured: Sequence[Measured],
-    a: Range,
-    loose_share: float,
-) -> Verdict:
-    """Return the verdict of a claim that the laws agree, by the points of all states together, as a figure shows them.
+    answers: Mapping[str, tuple[np.ndarray, np.ndarray]], a: Range, loose_share: float
+) -> tuple[str, Share, list[Measured], list[str]]:
+    """Return where the laws agree, by the points of all states together, as a figure shows them.
 
     answers : {initial state: (a, an Answer for each)}
+
+    Returned are the share as text, the share, those of the states, and where the laws differ or are not known to agree.
     """
     shares, numbers, apart, unknown = {}, [], [], []
     for state, (grid, same) in answers.items():
@@ -92,9 +111,12 @@ def _by_answers(
     same = np.concatenate([of_state for _, of_state in answers.values()])
     reason = f"the laws could not be compared: {'; '.join(unknown)}"
     share = known_share(same == Answer.YES, same != Answer.UNDETERMINED, loose_share, reason)
-    reason = f"The laws agree {what} at {share} of the points, states and values of a with {a}: {shares_text(shares)}."
-    verdict = verdict_of({"points": share}, loose_share)
-    return Verdict(verdict, reason, [*numbers, *measured], "; ".join([*apart, *unknown]))
+    return (
+        f"{share} of the points, states and values of a with {a}: {shares_text(shares)}",
+        share,
+        numbers,
+        [*apart, *unknown],
+    )
 
 
 def linearization_justified(

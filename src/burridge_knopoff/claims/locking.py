@@ -94,7 +94,7 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
         name = f"share of a at which branch 1 is locked, {reading}"
         measured += [Measured(f"{name}, {law}", share.value) for law, share in of_laws.items()]
     readings = shares_by_readings(shares, loose_share)
-    texts = [f"{r} at {shares_text(s)} ({readings.get(r, NOT_TESTABLE)})" for r, s in shares.items()]
+    texts = [f"{r} at {shares_text(s)} ({readings[r]})" for r, s in shares.items()]
     reason = (
         f"Branch 1 is locked: {'; '.join(texts)}, of the values of a with {a}. Locked to each other, the end blocks "
         f"keep one frequency with {100 * detuning:g} % more mass of one of them."

@@ -11,13 +11,11 @@ from burridge_knopoff.claims.conventions import judge_shares, under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.kinds import CLOSED
 from burridge_knopoff.claims.verdict import (
-    FAILS,
     Measured,
     NotTestableError,
     Range,
     Verdict,
     at_values,
-    by_interval,
     is_decided,
     known_share,
     share_of,
@@ -42,7 +40,10 @@ def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loos
     unknown = f"the section of the run from {initial} is unknown {at_values(grid, ~known)}"
     share = known_share(one, known, loose_share, unknown)
     measured = [Measured("share of a with one section point", share.value)]
-    reason = f"The section of runs from {initial} ({law}) is one point at {share} of the values of a with {a}."
+    reason = (
+        f"The section of runs from {initial} ({law}) is one point at {share} of the {share.count} values of a with {a} "
+        "at which it is known."
+    )
     changes = [f"more than one {at_values(grid, known & ~one)}"] if share.value < 1.0 else []
     if not known.all():
         changes.append(f"unknown {at_values(grid, ~known)}")
@@ -143,52 +144,45 @@ def cloud_not_periodic(
     return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
 
-def line_returns(
-    evidence: Evidence,
-    initial: tuple[str, str],
-    law: str,
-    claimed: float,
-    near: float,
-    tolerance: float,
-    loose: float,
+def line_disappears(
+    evidence: Evidence, initial: tuple[str, str], law: str, a: Range, near: float, loose_share: float
 ) -> Verdict:
-    """Judge the a from which the section of one state, crossed upward, has points on the line of another state.
+    """Judge whether the section of one state, crossed upward, has no point on the line of another state.
 
-    initial : the state with the line, the state that lacks it below
-    claimed : a from which the line is there; the line is that of the other state at the last a below
-    near : a point is on the line if its W' differs by at most this fraction
+    initial : the state with the line, the state that is to lack it
+    near : a point is on the line if its W' differs from that of the other state at this a by at most this fraction
     """
-    for name in initial:
-        evidence.of_state("lyapunov", name)
-    from burridge_knopoff.summaries.bifurcation_diagram import section_points
-
-    bifurcation = evidence.summary("bifurcation_diagram")
-    (line_a, line), (grid, velocity) = (section_points(bifurcation, law, name, 1) for name in initial)
-    below = line_a[(line_a > 0.0) & (line_a < claimed)]
-    values = np.unique(grid[grid > 0.0])
-    above = np.flatnonzero(values > claimed)
-    if not len(below) or not len(above):
-        raise NotTestableError(f"no run crosses the section on both sides of a = {claimed:g}")
-    height = float(line[line_a == below.max()].mean())
-    there = np.array([(np.abs(velocity[grid == a] - height) <= near * height).any() for a in values])
-    measured = [Measured(f"W' of the line from {initial[0]} at a = {below.max():g}", height)]
-    first = int(above[0])
-    if there[first]:
-        while first and there[first - 1]:
-            first -= 1
-    elif there[first:].any():
-        first += int(np.argmax(there[first:]))
-    else:
-        return Verdict(FAILS, f"Above a = {claimed:g} no point from {initial[1]} ({law}) lies on the line.", measured)
-    low, high = (float(values[first - 1]) if first else 0.0), float(values[first])
-    measured.append(Measured("a from which on the line is there", 0.5 * (low + high), 0.5 * (high - low)))
-    reason = (
-        f"From {initial[1]} ({law}) the section has points on the line above an a between {low:g} and {high:g}; the "
-        f"claim says {claimed:g}."
+    grid, line, other = _sections(evidence, initial, law, a)
+    known = np.array([len(one) > 0 for one in line], dtype=bool)
+    if known.sum() < LEAST_VALUES:
+        raise NotTestableError(
+            f"a statement on all {a} needs {LEAST_VALUES} values of a at which the run from {initial[0]} crosses the "
+            f"section; there are {known.sum()}"
+        )
+    there = np.array(
+        [
+            k and (np.abs(found - one.mean()) <= near * one.mean()).any()
+            for k, one, found in zip(known, line, other, strict=True)
+        ]
     )
-    gone = ~there & (values > high)
-    changes = f"it is missing again {at_values(values, gone)}" if gone.any() else ""
-    return Verdict(by_interval(low, high, claimed, tolerance, loose), reason, measured, changes)
+    share = share_of(~there[known])
+    own = verdict_of({law: share}, loose_share)
+    reason = (
+        f"From {initial[1]} ({law}) no section point lies within {100.0 * near:g} % of the line from {initial[0]} at "
+        f"{share} of the values of a with {a}."
+    )
+    exceptions = [f"on the line {at_values(grid, known & there)}"] if share.value < 1.0 else []
+
+    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = evidence.choose(attractors, a)
+        (also, first), (there, second) = (reached(found, name, law, "branch") for name in initial)
+        if not is_decided(first != second, also & there, loose_share):
+            return "", ""
+        share = share_of((first != second)[also & there])
+        return judge_shares({law: share}, loose_share)[0], f"another attractor than from {initial[0]} at {share}"
+
+    measured = [Measured("share of a without a point on the line", share.value)]
+    return under_conventions(evidence, own, reason, measured, exceptions, labels)
 
 
 def _sections(

@@ -102,9 +102,10 @@ def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, toleranc
 
 
 def beginning_of_synchrony(evidence: Evidence, initial: str, claimed: float, tolerance: float, loose: float) -> Verdict:
-    """Judge the smallest a with synchrony from an initial state, under both laws, by the attractor reached.
+    """Judge whether there is synchrony from an initial state from one a on, under both laws, by the attractor reached.
 
-    It lies between this value of the grid and the one before, or 0, where friction is constant.
+    The smallest a with synchrony lies between a value of the grid and the one before, or 0, where friction is constant.
+    The claim holds if it is not larger than the claimed one.
     """
     evidence.check_state(initial)
     attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
@@ -116,7 +117,10 @@ def beginning_of_synchrony(evidence: Evidence, initial: str, claimed: float, tol
             raise NotTestableError(f"no a with synchrony from {initial} is known, {law} law")
         first = int(np.argmax(synchronized))
         low, high = float(grid[first]), float(grid[first + 1])
-        verdicts.append(by_interval(low, high, claimed, tolerance, loose))
+        late = (
+            by_interval(max(low, claimed), high, claimed, tolerance, loose) if high > claimed * (1.0 + 1e-9) else HOLDS
+        )
+        verdicts.append(late)
         measured.append(Measured(f"smallest a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
         texts.append(f"between {low:g} and {high:g} ({law})")
     reason = f"The smallest a with synchrony from {initial} lies {'; '.join(texts)}; the claim says {claimed:g}."

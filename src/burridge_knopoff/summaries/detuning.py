@@ -1,7 +1,8 @@
 """Motion after detuning: do the end blocks keep one frequency if their masses differ?
 
 By mirror symmetry both end blocks of a motion that is its own mirror image have one frequency, locked or not. If they
-are locked to each other they keep one frequency when their own frequencies are made to differ, up to some detuning.
+are locked to each other they keep one frequency when their own frequencies are made to differ, up to some detuning. The
+converse does not hold: blocks that move in one mode of the springs keep one frequency as well.
 
 Reference: A. Pikovsky, M. Rosenblum and J. Kurths, Synchronization (Cambridge University Press, 2001), chapter 8:
 mutual synchronization of two self-sustained oscillators, and its range of detuning.
