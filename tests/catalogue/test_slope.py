@@ -66,6 +66,20 @@ def test_rounded_magnitudes_take_a_range_of_whole_bins(width):
     assert fit_slope(rounded, -2.0 + 1e-9 - width, 2.0).b < 0.81 * (1.0 - 0.4 * width)
 
 
+@pytest.mark.parametrize("width", [0.1, 0.5])
+@pytest.mark.parametrize("last", [2.0, 10.0])
+def test_rounding_biases_as_much_as_the_page_says(width, last):
+    """docs/catalogues.md: w²/(12 s²) half a bin outside the centres, 2w/range and bw/2 on them."""
+    b, low, high = 0.8, -width / 2, last + width / 2
+    magnitude = drawn(b, low, high, 2_000_000, 1)
+    rounded = width * np.round(magnitude / width)
+    true = fit_slope(magnitude, low, high).b
+    fraction = 1.0 - fit_slope(rounded, low, high).b / true
+    assert fraction == pytest.approx(width**2 / (12.0 * magnitude.var()), rel=0.1, abs=0.001)
+    on_centres = fit_slope(rounded, -1e-9, last + 1e-9).b / true - 1.0
+    assert max(2.0 * width / last, b * width / 2.0) < on_centres < 2.0 * width / last + 1.2 * b * width / 2.0
+
+
 @pytest.mark.parametrize("b", [1000.0, -1000.0, 1e6])
 @pytest.mark.parametrize("high", [3.0, 300.0])
 def test_steep_slopes_have_a_fit(b, high):

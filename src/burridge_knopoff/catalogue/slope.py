@@ -53,7 +53,9 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
     too lenient (Lilliefors). The range counts as given: p does not allow for one that was chosen by the same events.
 
     Magnitudes are real numbers. If they were rounded to bins, begin and end the range half a bin outside the first and
-    the last centre; any other range biases b (Utsu). p then tests the rounding, too.
+    the last centre (Utsu). b is then too low by a fraction of about w²/(12 s²), with w the width of the bins and s² the
+    variance of the magnitudes in the range; if the range ends on the centres, b is too high, by the fraction bw/2 and
+    more. p tests the rounding, too.
 
     Raises ValueError for fewer than FEWEST events in the range, if they are all of one magnitude or one is infinite,
     and for a range that does not begin at a finite magnitude.
