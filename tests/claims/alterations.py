@@ -252,6 +252,9 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("minus_distance_vanishes", LOOSELY, alter("mean_distance", "settling_time", 4500.0)),
     ("history_decides", HOLDS, alter("attractors", "basin_count", 0, attractor=[1, 2])),
     ("history_decides", FAILS, both(alter("attractors", "branch", 0), reached(0))),
+    # Several attractors of one kind are one character of motion; the kind of one that is unknown is none.
+    ("history_decides", FAILS, alter("attractors", "kind", PERIODIC)),
+    ("history_decides", FAILS, both(alter("attractors", "kind", UNDETERMINED, attractor=[1, 2]))),
     ("history_decides", LOOSELY, ONE_ATTRACTOR),
     ("history_decides", NOT_TESTABLE, both(ONE_ATTRACTOR, alter("attractors", "basin_count", 20))),
     ("first_block_decides", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),

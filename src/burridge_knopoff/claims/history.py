@@ -27,6 +27,7 @@ from burridge_knopoff.claims.verdict import (
     verdict_of,
     worst,
 )
+from burridge_knopoff.motion.kind import MotionKind, with_one_chaos
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
@@ -34,37 +35,43 @@ if TYPE_CHECKING:
 
 
 def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) -> Verdict:
-    """Judge whether more than one attractor exists at each a of a range, so that history can decide, under both laws.
+    """Judge whether attractors of different kinds coexist at each a of a range, under both laws: history then decides.
 
-    An attractor counts if sampled states or the study's initial states reach it; mirror images count once.
+    An attractor counts if sampled states or the study's initial states reach it; mirror images count once. Kinds are
+    synchronized, periodic, quasiperiodic and chaotic motion.
     samples : number of sampled states required to say that there is only one attractor
     """
     attractors = evidence.choose(evidence.own_attractors(), a)
     shares, measured, single = {}, [], []
     for law in PAPER_LAWS:
         found = attractors.sel(law=law)
-        count = _coexisting(found, samples)
-        shares[law] = share_of(count > 1)
-        measured.append(Measured(f"share of a with more than one attractor, {law}", shares[law].value))
+        count, kinds = _coexisting(found, samples)
+        shares[law] = share_of(kinds > 1)
+        measured.append(Measured(f"share of a with attractors of more than one kind, {law}", shares[law].value))
         measured.append(Measured(f"most attractors that coexist, {law}", float(count.max())))
         fraction = found["basin_fraction"].values[(found["branch"].values == 0) & (found["basin_count"].values > 0)]
         if len(fraction):
             measured.append(Measured(f"smallest basin fraction of synchrony, {law}", float(fraction.min())))
             measured.append(Measured(f"largest basin fraction of synchrony, {law}", float(fraction.max())))
-        if not (count > 1).all():
-            single.append(f"at most one attractor {at_values(found['a'].values, count <= 1)} ({law})")
-    reason = f"More than one attractor is reached at {shares_text(shares)} of the values of a with {a}."
+        if not (kinds > 1).all():
+            single.append(f"at most one kind of motion {at_values(found['a'].values, kinds <= 1)} ({law})")
+    reason = f"More than one kind of motion is reached at {shares_text(shares)} of the values of a with {a}."
     return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(single))
 
 
-def _coexisting(found: xarray.Dataset, samples: int) -> np.ndarray:
-    """Return the number of attractors reached at each a under one law; see `coexistence`."""
+def _coexisting(found: xarray.Dataset, samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the numbers of attractors reached, and of their kinds of motion, at each a under one law."""
     reached = np.where(found["basin_count"].values > 0, found["branch"].values, -1)
     started = found["initial_branch"].transpose("a", "initial").values
-    count = np.array([len(set(row[row >= 0])) for row in np.concatenate([reached, started], axis=1)])
+    seen = [set(row[row >= 0].tolist()) for row in np.concatenate([reached, started], axis=1)]
+    count = np.array([len(branches) for branches in seen])
+    kinds = []
+    for branches, branch, kind in zip(seen, found["branch"].values, with_one_chaos(found["kind"].values), strict=True):
+        of_branch = dict(zip(branch.tolist(), kind.tolist(), strict=True))
+        kinds.append(len({of_branch.get(one, MotionKind.UNDETERMINED) for one in branches} - {MotionKind.UNDETERMINED}))
     if ((count < 2) & (found["basin_count"].values.sum(axis=1) < samples)).any():
         raise NotTestableError(f"fewer than {samples} sampled states reach an attractor where one alone is seen")
-    return count
+    return count, np.array(kinds)
 
 
 def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, loose_share: float) -> Verdict:
