@@ -135,3 +135,17 @@ def test_many_events_of_a_long_chain_accumulate_at_no_clock(clock):
     run = simulate(model, state, transient=0.0, window=5000.0, lyapunov_exponents=0)
     assert run.event_count > 3000
     assert run.status == "completed"
+
+
+@pytest.mark.parametrize("blocks", [3, 30])
+@pytest.mark.parametrize("time", [0.0, 100.0])
+def test_a_run_that_fails_ends_at_its_last_instant(blocks, time):
+    """Once the clock of its last state was 0."""
+    model = Model(Chain(blocks), law_of("linearized", 3.0), contact="symmetric")
+    at = model.begin(InitialState("rough", tuple([5.0, -5.0, 5.0] * (blocks // 3)), 0.0), "tested")
+    start = replace(at, time=time)
+    ended = simulate(model, start, transient=10.0, window=100.0)
+    assert ended.status == "diverged"
+    assert time < ended.final.time == ended.end_time < time + 100.0
+    # Groups diverge where one of them does.
+    assert time < record_events(model, start, time + 500.0).final.time < time + 100.0

@@ -14,6 +14,9 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of, refusal
 
+# A block at its threshold, at the start of an event, sticks: forces are known to this share.
+LENIENT = 1e-9
+
 #: Batches for the errors of exponents.
 BATCHES = 16
 
@@ -56,6 +59,10 @@ def event_exponents(
         default the same time, and turn into the growing directions first
     count : how many exponents
 
+    Under a steady driver the events are those between the first and the last time at which all blocks stick. What
+    perturbations grow by between two such times depends on no unit, as all velocities are 0. In a chain that never
+    rests the batches are cut while blocks slip.
+
     Under quasi-static loading N blocks have N − 1 finite exponents: the state at the start of an event has N positions,
     of which the threshold fixes one.
 
@@ -79,28 +86,53 @@ def event_exponents(
         raise refusal("begin", begin, f"a time not before the start ({start.time:g})")
     if end <= begin:
         raise refusal("end", end, f"a time after begin ({begin:g})")
-    catalogue = Catalogue(model.blocks, begin, False, MOST_EVENTS)
-    early = 0.5 * (start.time + begin)
-    exponents = Exponents(model.blocks, count, early, np.linspace(begin, end, BATCHES + 1))
+    edges = np.linspace(begin, end, BATCHES + 1)
+    if loading == "steady" and len(rests := _rests(model, start, edges)) > 1:
+        edges = rests
+    catalogue = Catalogue(model.blocks, edges[0], False, MOST_EVENTS)
+    exponents = Exponents(model.blocks, count, 0.5 * (start.time + begin), edges, at_rest=True)
     runner = Runner(model, exponents=exponents, catalogue=catalogue, loading=loading, groups=False)
     runner.begin(start)
-    status = runner.run(end)
+    status = runner.run(edges[-1])
     time, growth = catalogue.take()["time"], exponents.results()["growth"]
-    events = len(time)
+    events, batches = len(time), len(growth)
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = growth.sum(axis=0) / events
-        share = np.histogram(time, np.linspace(begin, end, BATCHES + 1))[0] / events
-        scatter = growth - mean * (share * events)[:, None]
-        error = np.sqrt(BATCHES / (BATCHES - 1) * np.sum(scatter**2, axis=0)) / events
+        scatter = growth - mean * np.histogram(time, edges)[0][:, None]
+        error = np.sqrt(np.divide(batches, batches - 1) * np.sum(scatter**2, axis=0)) / events
     order = np.argsort(-mean, kind="stable")
     return EventExponents(mean[order], np.where(np.isfinite(mean), error, 0.0)[order], events, status)
+
+
+def _rests(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:
+    """Return the middle of the time of rest nearest to each edge, all between the first and the last of them.
+
+    At rest all blocks stick. None is returned if they never do, or if the run fails.
+    """
+    catalogue = Catalogue(model.blocks, start.time, False, MOST_EVENTS)
+    runner = Runner(model, catalogue=catalogue, groups=False)
+    runner.begin(start)
+    if runner.run(edges[-1]) != Status.COMPLETED:
+        return edges[:0]
+    table = catalogue.take()
+    order = np.argsort(table["time"], kind="stable")
+    begins = np.append(table["time"][order], edges[-1])
+    ends = np.append(start.time, (table["time"] + table["duration"])[order])
+    # Slips in several places overlap.
+    ends = np.maximum(np.maximum.accumulate(ends), edges[0])
+    middle = (0.5 * (begins + ends))[begins > ends]
+    if len(middle):
+        middle = np.unique(middle[np.abs(middle - edges[:, None]).argmin(axis=1)])
+    # Blocks that slip at the start belong to no event.
+    runner.begin(start)
+    return middle[[runner.run(time) == Status.COMPLETED and bool(runner.state().stuck.all()) for time in middle]]
 
 
 def event_multipliers(model: Model, start: ChainState, end: float, *, loading: str = "quasistatic") -> np.ndarray:
     """Return the multipliers of the events between two moments of rest, in descending order of size, shape (blocks,).
 
-    model, start, end : a state in which all blocks stick, and τ of another such moment; for the multipliers of a
-        periodic motion, a period later
+    model, start, end : a state in which all blocks stick, none beyond its threshold, and τ of another such moment; for
+        the multipliers of a periodic motion, a period later
     loading : see `record_events`
 
     They are eigenvalues of what the events make of displacements of the blocks. Under quasi-static loading one of them
@@ -122,8 +154,10 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     perturbations = np.vstack([np.eye(blocks), np.zeros((blocks, blocks))])
     runner = Runner(model, perturbations=perturbations, loading=loading, groups=False)
     runner.begin(start)
-    if not start.stuck.all():
-        raise refusal("start", start, "a state in which all blocks stick")
+    force = -(model.chain.sparse_stiffness @ start.position)
+    pulled = np.abs(force) if model.contact == "symmetric" else force
+    if not start.stuck.all() or (pulled > model.chain.thresholds * (1.0 + LENIENT)).any():
+        raise refusal("start", start, "a state in which all blocks stick, none beyond its threshold")
     status = runner.run(end)
     if status != Status.COMPLETED or not runner.state().stuck.all():
         raise refusal("end", end, "a time at which all blocks stick")

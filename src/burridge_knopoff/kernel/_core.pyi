@@ -146,6 +146,7 @@ class Exponents:
         vectors: int,
         start_time: float,
         edge: Annotated[NDArray[numpy.float64], dict(shape=(None,), order="C", device="cpu", writable=False)],
+        at_rest: bool = ...,
     ) -> None: ...
     def carry(
         self,

@@ -19,6 +19,9 @@ constexpr double NEVER = 1e300;
 // start_time : the perturbations start with the piece of the motion in which this time lies; until the first edge they
 //     only turn into the growing directions
 // edge : boundaries of the batches
+// at_rest : whether the perturbations are orthonormalised whenever a block starts after all have stuck: a batch whose
+// edges
+//     lie in times of rest then has the growth of whole slips, which no unit of time changes, as all velocities are 0
 class Exponents {
   public:
     Tangent tangent;
@@ -28,10 +31,12 @@ class Exponents {
     // chain of three blocks a stop shortens a vector to 1e-4 of what the others leave of it at worst, in long chains to
     // 1e-11.
     double interval = 1.0;
+    // The chain's own unit of time: velocities are compared with displacements by it.
+    double unit = 1.0;
     std::vector<double> growth, duration;
 
-    Exponents(int blocks, int vectors, double start_time, std::vector<double> edges)
-        : tangent(blocks, vectors), growth((edges.size() - 1) * vectors), duration(edges.size() - 1),
+    Exponents(int blocks, int vectors, double start_time, std::vector<double> edges, bool at_rest)
+        : tangent(blocks, vectors), growth((edges.size() - 1) * vectors), duration(edges.size() - 1), at_rest(at_rest),
           start_time(vectors > 0 ? start_time : NEVER), edge(std::move(edges)), batches(int(edge.size()) - 1),
           whole(vectors), product(vectors, 1.0) {}
 
@@ -68,6 +73,11 @@ class Exponents {
         if (clock >= due || (completed && alive > 0)) renew(state, clock, completed);
     }
 
+    // A block is about to start.
+    void before_start(const State<Blocks> &state, double clock) {
+        if (at_rest && running && alive > 0 && stuck(state) == tangent.blocks) renew(state, clock, false);
+    }
+
     int stuck(const State<Blocks> &state) const {
         int count = 0;
         for (int i = 0; i < tangent.blocks; i++) count += state.slip.lane(i) == 0.0;
@@ -81,6 +91,7 @@ class Exponents {
     // A vector that has been shortened to less than this is one that stops have taken away: the rest is rounding.
     static constexpr double LOST = 1e-13;
 
+    const bool at_rest;
     const double start_time;
     const std::vector<double> edge;
     const int batches;
@@ -100,7 +111,7 @@ class Exponents {
             watch.worked(tangent.vectors);
             for (int c = first; c < tangent.vectors; c++) {
                 tangent.x(c)[i] = std::cos(1.0 + 2.3 * i + 3.7 * c + 1.9 * i * c);
-                tangent.u(c)[i] = std::cos(2.0 + 1.7 * i + 2.9 * c + 2.3 * i * c) * (state.slip.lane(i) != 0.0);
+                tangent.u(c)[i] = std::cos(2.0 + 1.7 * i + 2.9 * c + 2.3 * i * c) * (state.slip.lane(i) != 0.0) / unit;
             }
         }
         orthonormalise(false);
@@ -113,7 +124,7 @@ class Exponents {
             moved += x[i] * y[i];
             sped += u[i] * w[i];
         }
-        return moved + sped;
+        return moved + unit * unit * sped;
     }
 
     // Make the vectors orthonormal (modified Gram-Schmidt). kept : vectors that were orthonormal before are dropped

@@ -279,10 +279,10 @@ NB_MODULE(_core, m) {
     nb::class_<Exponents>(m, "Exponents", "Growth of the perturbations of a run: Lyapunov exponents, batch by batch.")
         .def(
             "__init__",
-            [](Exponents *at, int blocks, int vectors, double start_time, Numbers edge) {
-                new (at) Exponents(blocks, vectors, start_time, copied(edge));
+            [](Exponents *at, int blocks, int vectors, double start_time, Numbers edge, bool at_rest) {
+                new (at) Exponents(blocks, vectors, start_time, copied(edge), at_rest);
             },
-            "blocks"_a, "vectors"_a, "start_time"_a, "edge"_a)
+            "blocks"_a, "vectors"_a, "start_time"_a, "edge"_a, "at_rest"_a = false)
         .def(
             "carry",
             [](Exponents &exponents, Table matrix) {

@@ -319,6 +319,7 @@ int Run::run_whole() {
             halting = halting_block >= 0 && group.state.slip.lane(halting_block) != 0.0;
             advance(group, length);
             find_due(group);
+            exponents.before_start(group.state, now.time);
             change_due(group, now);
             while (!log.accumulating && settle(group, now)) {}
             since_event = 0.0;

@@ -80,6 +80,7 @@ class Run {
           lane_of(blocks, -1), version(blocks), begins(blocks) {
         log.unit = model.springs.unit;
         exponents.interval = loading > 0.0 ? 0.0 : model.springs.unit;
+        exponents.unit = model.springs.unit;
     }
 
     Run(const Run &) = delete;
