@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import OrbitError, Symmetry
+from burridge_knopoff import Chain, Model, OrbitError, Symmetry, law_of
 from burridge_knopoff.periodic_orbits import bifurcations
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
@@ -156,7 +156,8 @@ def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeyp
 )
 def test_a_short_stick_is_none_at_a_grazing(kind, sticks, shortest):
     """Within 1e-10 of it what shrinks like a root is shorter than 1e-4."""
-    here = SimpleNamespace(contacts=SimpleNamespace(stick=np.array(sticks)))
+    orbit = SimpleNamespace(model=Model(Chain(3), law_of("linearized", 0.1)))
+    here = SimpleNamespace(orbit=orbit, contacts=SimpleNamespace(stick=np.array(sticks)))
     assert Bifurcation(0.1, 1e-9, kind, here, here, None, turns=False).stick_time == shortest
 
 

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import ChainState, OrbitError
+from burridge_knopoff.model.own_units import OwnUnits
 from burridge_knopoff.periodic_orbits import border_collision
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
@@ -195,7 +196,7 @@ def turn(monkeypatch):
         reference = ChainState(np.array([0.5, 0.25]), np.zeros(2), np.zeros(2, dtype=bool))
         known = {"model": SimpleNamespace(blocks=2), "return_time": 1.0, "symmetry": None}
         orbit = SimpleNamespace(reference=reference, stop_counts=here, **known)
-        line = SimpleNamespace(coordinate=lambda model: 2e-6, model=lambda model, a: a, least=0.0)
+        line = SimpleNamespace(coordinate=lambda model: 2e-6, model=lambda model, a: a, least=0.0, units=OwnUnits())
         point = SimpleNamespace(orbit=orbit, line=line, tangent=np.array([4.0, -2.0, 0.0, 0.0, 0.0, -1.0]))
         found = border_collision.turn_corner(point)
         return found and found.orbit.stop_counts, tried, tangents

@@ -33,7 +33,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Run the simulation, and print the exponents."""
     from burridge_knopoff.dataset.point import write_point
-    from burridge_knopoff.motion.chain_synchronization import ALIGNMENT, WINDOW, transverse_exponent
+    from burridge_knopoff.motion.chain_synchronization import ALIGNMENT, transverse_exponent, window_range
     from burridge_knopoff.motion.kind import motion_of_run, words_of
     from burridge_knopoff.running import simulation
     from burridge_knopoff.show.formatting import table
@@ -42,7 +42,7 @@ def run(options: argparse.Namespace) -> int:
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
     if model.chain.is_mirror_symmetric:
         # Refuse it before the run, not after.
-        WINDOW.form(options.window, "window")
+        window_range(model.chain).form(options.window, "window")
     trajectory = simulation.run(model, state, settings_of(Settings, options))
     print(f"{said_of(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
     exponents = zip(trajectory.lyapunov_exponent, trajectory.lyapunov_error, strict=True)
@@ -56,7 +56,9 @@ def run(options: argparse.Namespace) -> int:
     print(f"<J> = {plain(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)
-        value, error = transverse_exponent(model, start, max(options.transient, ALIGNMENT), options.window)
+        value, error = transverse_exponent(
+            model, start, max(options.transient, ALIGNMENT * model.chain.own_units.time), options.window
+        )
         print(f"transverse exponent of the nearby symmetric motion: {plain(with_error(value, error))}")
     if options.out:
         write_point(trajectory, options.out)

@@ -166,7 +166,7 @@ def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> Half | OrbitErr
     """Follow an orbit one way, and find the bifurcations that it meets, or return why it cannot be followed."""
     try:
         # From one end of a wide grid to the other as well.
-        step = max(FOLLOWING.largest_step, largest / FOLLOWING.most_orbits)
+        step = max(FOLLOWING.largest_step, largest / orbit.model.chain.own_units.slope / FOLLOWING.most_orbits)
         found = half(orbit, upward, (LEAST_A, largest), BEYOND, replace(FOLLOWING, largest_step=step))
         # Found here, these go with the orbits to the process that asks for them.
         _ = (

@@ -12,6 +12,7 @@ import numpy as np
 
 from burridge_knopoff.model.drawn import Drawn, Numbers, numbers_of
 from burridge_knopoff.model.fields import check_fields, settings
+from burridge_knopoff.model.own_units import OwnUnits, own_units_of
 from burridge_knopoff.model.ranges import Either, Number, OneOf, Several, Whole
 from burridge_knopoff.model.solving import static_displacement
 from burridge_knopoff.model.springs import (
@@ -290,6 +291,11 @@ class Chain(Unchanging):
         bound = self.diagonal.copy()
         np.add.at(bound, self.neighbours.block, self.neighbours.strength)
         return math.sqrt(float((bound / self.masses).max()))
+
+    @cached_property
+    def own_units(self) -> OwnUnits:
+        """The units in which this chain is about as fast, as long and as strong as the paper's."""
+        return own_units_of(self)
 
     @property
     def damping_limit(self) -> float:

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
@@ -46,7 +47,8 @@ FALLING = 0.5
 NEAR = 0.01
 STANDARD_ERRORS = 3.0
 
-# Symmetric motion is made symmetric again, and its perturbation scaled to length 1, after this time at most.
+# Symmetric motion is made symmetric again, and its perturbation scaled to length 1, after this time at most, in the
+# chain's own unit, as the times below are.
 RENEWAL = 10.0
 
 # Time for a perturbation to turn into the direction that grows most, where the motion itself has settled.
@@ -54,7 +56,7 @@ ALIGNMENT = 200.0
 BATCHES = 5
 
 # A batch holds such a time at least, about two periods of synchronous motion: less shows nothing of its own scatter.
-WINDOW = Number(BATCHES * RENEWAL, LONGEST)
+SHORTEST_WINDOW = BATCHES * RENEWAL
 
 
 @dataclass(frozen=True)
@@ -80,6 +82,11 @@ class Fate:
     transverse_exponent: float = math.nan
 
 
+def window_range(chain: Chain) -> Number:
+    """Return the windows over which a transverse exponent of a chain has an error."""
+    return Number(SHORTEST_WINDOW * chain.own_units.time, LONGEST)
+
+
 def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate:
     """Watch a state until it has synchronized or the time limit is over.
 
@@ -99,7 +106,7 @@ def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate
         history.append(distances)
         nearest = float(distances.max())
         if nearest <= watch.synchronization_distance:
-            exponent, _ = transverse_exponent(model, state, ALIGNMENT, watch.quarter)
+            exponent, _ = transverse_exponent(model, state, *_times(model, watch))
             outcome = Outcome.SYNCHRONIZED if exponent < 0.0 else Outcome.UNDETERMINED
             return Fate(outcome, check * INTERVAL, nearest, nearest, len(distances), exponent)
     quarter = len(history) // 4
@@ -107,7 +114,7 @@ def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate
     undetermined = last.max() < FALLING * before.max()
     exponent = math.nan
     if last.max() < NEAR * model.scale:
-        exponent, error = transverse_exponent(model, runner.state(), ALIGNMENT, watch.quarter)
+        exponent, error = transverse_exponent(model, runner.state(), *_times(model, watch))
         undetermined |= not exponent > STANDARD_ERRORS * error
     return Fate(
         Outcome.UNDETERMINED if undetermined else Outcome.NOT_SYNCHRONIZED,
@@ -119,7 +126,7 @@ def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate
 
 
 def transverse_exponent(
-    model: Model, state: ChainState, alignment: float = ALIGNMENT, window: float = WATCH.quarter
+    model: Model, state: ChainState, alignment: float | None = None, window: float | None = None
 ) -> tuple[float, float]:
     """Return the largest transverse Lyapunov exponent of the mirror-symmetric motion from a state, and its error.
 
@@ -133,7 +140,8 @@ def transverse_exponent(
     the same share of that, and their scatter shows nothing of it.
 
     model, state : any state of a motion, as `Model.begin` and `Orbit.reference` are
-    alignment, window : in units of 1/ω, as the exponent is in units of ω; the window is 50 at least
+    alignment, window : in units of 1/ω, as the exponent is in units of ω; by default 200 and 2500, and the window 50 at
+        least, times as much as the chain is slower than the paper's: `Chain.own_units`
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of, transverse_exponent
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -144,13 +152,16 @@ def transverse_exponent(
     """
     instance_of(model, Model, "model")
     _check_mirror(model)
-    alignment, window = DURATION.form(alignment, "alignment"), WINDOW.form(window, "window")
-    blocks = model.blocks
+    blocks, unit = model.blocks, model.chain.own_units.time
+    alignment = ALIGNMENT * unit if alignment is None else DURATION.form(alignment, "alignment")
+    window = WATCH.quarter * unit if window is None else window_range(model.chain).form(window, "window")
+    own = model.chain.own_units.state(blocks)[:, None]
     index = np.arange(2 * blocks)
     # A direction of no special symmetry but this one.
     perturbation = _antisymmetric(np.cos(1.0 + 2.3 * index)[:, None])
-    runner = Runner(model, perturbations=perturbation)
-    before, steps = math.ceil(alignment / RENEWAL), BATCHES * math.ceil(window / BATCHES / RENEWAL)
+    runner = Runner(model, perturbations=perturbation * own)
+    renewal = RENEWAL * unit
+    before, steps = math.ceil(alignment / renewal), BATCHES * math.ceil(window / BATCHES / renewal)
     growth = np.zeros(steps)
     state = symmetrized(state)
     for step in range(-before, steps):
@@ -159,13 +170,13 @@ def transverse_exponent(
         if length == 0.0:
             return -math.inf, math.nan
         perturbation /= length
-        runner.carry(perturbation)
+        runner.carry(perturbation * own)
         after = runner.after(state, alignment / before if step < 0 else window / steps)
         if after is None:
             return math.nan, math.nan
         # Rounding grows where symmetric motion is unstable; it is taken away before it counts.
         state = symmetrized(after)
-        perturbation = _antisymmetric(runner.perturbations)
+        perturbation = _antisymmetric(runner.perturbations / own)
         if step >= 0:
             growth[step] = 0.5 * math.log(max(math.fsum(perturbation[:, 0] ** 2), 1e-300))
     rate = growth.reshape(BATCHES, -1).sum(axis=1) / (window / BATCHES)
@@ -204,7 +215,7 @@ def watch_chain(
                     results[name][i, j, k] = getattr(fate, name)
             for k, state in enumerate(initial[: sample.symmetric_samples]):
                 results["symmetric_exponent"][i, j, k], results["symmetric_error"][i, j, k] = transverse_exponent(
-                    model, model.begin(state, sample.start), watch.quarter, watch.quarter
+                    model, model.begin(state, sample.start), watch.quarter, _times(model, watch)[1]
                 )
             results["lyapunov_exponent"][i, j], results["lyapunov_error"][i, j] = _lyapunov_exponent(
                 model, initial[0], sample.start, watch
@@ -219,6 +230,12 @@ def _lyapunov_exponent(model: Model, initial: InitialState, start: str, watch: W
     settings = Settings(start=start, lyapunov_exponents=1, **options, **kept)
     trajectory = run(model, initial, settings, section_only=True)
     return float(trajectory.lyapunov_exponent[0]), float(trajectory.lyapunov_error[0])
+
+
+def _times(model: Model, watch: Watch) -> tuple[float, float]:
+    """Return the time of alignment, and a quarter of the time limit or the shortest window with an error."""
+    unit = model.chain.own_units.time
+    return ALIGNMENT * unit, max(watch.quarter, SHORTEST_WINDOW * unit)
 
 
 def _check_mirror(model: Model) -> None:

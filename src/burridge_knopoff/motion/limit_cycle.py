@@ -18,12 +18,14 @@ from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import DURATION
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.values import instance_of
 
-#: Distances, for v = 0.1, within which a state has to return for Newton's method to begin from it, one after another.
+#: Distances, for v = 0.1 in the chain's own units, within which a state has to return for Newton's method to begin from
+#: it, one after another.
 CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
 
-#: Time for which returns are looked for: longer orbits, as locked tori may have, are not found; and how much farther
-#: than it returned the motion may still be from the orbit in the end.
+#: Time, in the chain's own unit, for which returns are looked for: longer orbits, as locked tori may have, are not
+#: found; and how much farther than it returned the motion may still be from the orbit in the end.
 WINDOW = 8000.0
 FARTHER = 30.0
 
@@ -32,11 +34,12 @@ FARTHER = 30.0
 SOONEST = 0.1
 
 
-def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: float = WINDOW) -> PeriodicOrbit:
+def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: float | None = None) -> PeriodicOrbit:
     """Return the periodic orbit on which a motion that has settled lies; the shortest return that closes it.
 
     model, state : of the motion
-    settling, window : times that it is left to settle first, and in which it has to return
+    settling, window : times, in units of 1/ω, that it is left to settle first, and in which it has to return; the
+        latter is by default 8000, times as much as the chain is slower than the paper's: `Chain.own_units`
 
     It lies on an orbit that attracts if it comes nearer in the window, on one that does not, such as synchrony from
     equal states, only if it never leaves it: in chaos a motion passes by one unstable orbit after another.
@@ -51,7 +54,13 @@ def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: 
     >>> round(orbit.period, 4), orbit.symmetry.name, orbit.stop_counts
     (157.2451, 'SYMMETRIC', (20, 54, 20))
     """
-    settling, window = DURATION.form(settling, "settling"), DURATION.form(window, "window")
+    instance_of(model, Model, "model")
+    window = WINDOW * model.chain.own_units.time if window is None else DURATION.form(window, "window")
+    return orbit_of_motion(model, state, DURATION.form(settling, "settling"), window)
+
+
+def orbit_of_motion(model: Model, state: ChainState, settling: float, window: float) -> PeriodicOrbit:
+    """Return the same as `limit_cycle`, for times of any length."""
     runner = Runner(model, keep_events=True, events_from=settling)
     runner.begin(state, 0.0)
     if runner.run(settling + window) != Status.COMPLETED:
@@ -62,7 +71,7 @@ def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: 
             found = find_periodic_orbit(model, start, time, symmetry)
         except OrbitError:
             continue
-        if _stays(found, values, FARTHER * size * model.scale):
+        if _stays(found, values, FARTHER * size):
             return simplest(found, CLOSENESS[0])
     raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found within {window:g}")
 
@@ -74,6 +83,8 @@ def _returns(
     stops = values[:, 1] == 0
     if not stops.any():
         return
+    units = model.chain.own_units
+    own_units, scale = units.state(model.blocks), model.scale / units.velocity
     block = int(values[stops, 0].min())
     other = model.blocks + 1 - block
     own = np.flatnonzero(stops & (values[:, 0] == block))
@@ -81,7 +92,7 @@ def _returns(
     repeated = [(times[k] - begun, Symmetry.ASYMMETRIC, values[k, 2:]) for k in own[1:]]
     if model.chain.is_mirror_symmetric:
         order = mirror(model.blocks)
-        if np.abs(state - state[order]).max() <= CLOSENESS[0] * model.scale:
+        if np.abs((state - state[order]) / own_units).max() <= CLOSENESS[0] * scale:
             repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, _, at in repeated]
         else:
             soonest = begun + SOONEST * (times[own[1:2]] - begun).sum()
@@ -90,19 +101,24 @@ def _returns(
     repeated.sort(key=lambda item: item[0])
     for size in CLOSENESS:
         for time, symmetry, at in repeated:
-            if np.abs(at - state).max() <= size * model.scale:
+            if np.abs((at - state) / own_units).max() <= size * scale:
                 yield state_of(state), float(time), symmetry, size
                 break
 
 
 def _stays(orbit: PeriodicOrbit, values: np.ndarray, reach: float) -> bool:
-    """Tell whether a motion, by its events, lies on an orbit: how far its first and its last turn are from it."""
+    """Tell whether a motion, by its events, lies on an orbit: how far its first and its last turn are from it.
+
+    reach : for v = 0.1 in the chain's own units, as CLOSENESS is
+    """
+    units = orbit.model.chain.own_units
+    own_units, scale = units.state(orbit.model.blocks), orbit.model.scale / units.velocity
     block = int(np.flatnonzero(orbit.stop_counts)[0]) + 1
     around, _ = flow(orbit.model, orbit.reference, orbit.period)
-    own, seen = _stops(around.log.events.values(), block), _stops(values, block)
+    own, seen = (_stops(events, block) / own_units for events in (around.log.events.values(), values))
     first, last = (distance(turn, own, share=1.0) for turn in (seen[: len(own)], seen[-len(own) :]))
-    rounding = CLOSENESS[0] * orbit.model.scale
-    return last <= (rounding if multipliers(orbit).unstable else max(rounding, min(first, reach)))
+    rounding = CLOSENESS[0] * scale
+    return last <= (rounding if multipliers(orbit).unstable else max(rounding, min(first, reach * scale)))
 
 
 def _stops(values: np.ndarray, block: int) -> np.ndarray:

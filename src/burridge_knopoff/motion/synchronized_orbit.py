@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.limit_cycle import limit_cycle
+from burridge_knopoff.motion.limit_cycle import orbit_of_motion
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
@@ -22,8 +22,8 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of
 
-# A run from rest has settled after this time at the friction parameters that orbits are continued from, and returns
-# within the other one.
+# A run from rest has settled after this time, in the chain's own unit, at the friction parameters that orbits are
+# continued from, and returns within the other one.
 SETTLING = 4000.0
 LONGEST_PERIOD = 500.0
 SEEDS = (0.05, 0.1, 0.02, 0.2)
@@ -80,9 +80,10 @@ def _of_one_turn(model: Model) -> PeriodicOrbit:
 
     The run itself may end on another synchronous motion, of several turns.
     """
-    runner = Runner(model, keep_events=True, events_from=SETTLING, stops_only=True)
+    unit_of_time = model.chain.own_units.time
+    runner = Runner(model, keep_events=True, events_from=SETTLING * unit_of_time, stops_only=True)
     runner.begin(_rest(model))
-    if runner.run(SETTLING + LONGEST_PERIOD) != Status.COMPLETED:
+    if runner.run((SETTLING + LONGEST_PERIOD) * unit_of_time) != Status.COMPLETED:
         raise OrbitError(f"a = {model.a!r}: the run from rest ends at τ = {runner.clock!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
     own = np.flatnonzero(values[:, 0] == 1)[-TURNS - 1 :]
@@ -100,4 +101,5 @@ def _of_one_turn(model: Model) -> PeriodicOrbit:
 
 def _settled(model: Model) -> PeriodicOrbit:
     """Return the orbit on which a run from rest settles."""
-    return limit_cycle(model, _rest(model), SETTLING, LONGEST_PERIOD)
+    unit_of_time = model.chain.own_units.time
+    return orbit_of_motion(model, _rest(model), SETTLING * unit_of_time, LONGEST_PERIOD * unit_of_time)

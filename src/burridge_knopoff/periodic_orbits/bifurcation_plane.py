@@ -53,9 +53,10 @@ class BifurcationPlane:
         orbit = bifurcation.at.orbit
         self.kind, self.names = bifurcation.kind, names
         self.units = np.array([line_of(orbit, name).rates[0] for name in names])
+        self.own_units = orbit.model.chain.own_units
         self.symmetry, self.stops = orbit.symmetry, orbit.stop_counts
         if self.kind == BifurcationKind.GRAZING:
-            self.contact = int(bifurcation.at.contacts.values().argmin())
+            self.contact = int(bifurcation.at.contacts.shares(self.own_units).argmin())
         else:
             values = {key: abs(value) for key, value in critical_values(orbit).items() if key[0] == self.kind}
             self.key = min(values, key=values.__getitem__)
@@ -69,9 +70,8 @@ class BifurcationPlane:
         rates = np.array([direction[1], -direction[0]]) * self.units
         order = (0, 1) if abs(direction[1]) >= abs(direction[0]) else (1, 0)
         names = tuple(self.names[k] for k in order)
-        return ParameterLine(
-            names, tuple(value_of(model, name) for name in names), tuple(float(rates[k]) for k in order)
-        )
+        origins = tuple(value_of(model, name) for name in names)
+        return ParameterLine(names, origins, tuple(float(rates[k]) for k in order), units=self.own_units)
 
     def point(
         self, near: PeriodicOrbit, direction: np.ndarray, model: Model, guess: ChainState, time: float, length: float
@@ -151,7 +151,7 @@ class BifurcationPlane:
             if abs(ahead) < REACHED:
                 return found, np.abs(self.place(found.model) - self.place(orbit.model)) * abs(ahead / length)
             following = tangent_of(found, line)
-            tangent = following if following @ (weights(found.model) * tangent) > 0.0 else -following
+            tangent = following if following @ (weights(found.model, line) * tangent) > 0.0 else -following
             orbit, distance, length = found, left, CAUTIOUS * ahead
         raise OrbitError(f"{line.place(orbit.model)}: no grazing found near the guess")
 

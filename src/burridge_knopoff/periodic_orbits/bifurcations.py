@@ -37,14 +37,14 @@ ROUNDING = 1e-12
 # Range, in steps, searched for the end of a branch around the point where it has joined another branch.
 NEAR_JOINT = 2.0
 
-# A stick this short next to a grazing is the one that shrinks to nothing, as a square root.
+# A stick this short, in the chain's own unit, next to a grazing is the one that shrinks to nothing, as a square root.
 NO_STICK = 1e-4
 
 # Multipliers with a smaller imaginary part are real.
 REAL = 1e-6
 
-# Distance, for v = 0.1, within which an orbit at a root is a more symmetric one or one of a shorter period: near a root
-# the distance is itself a square root.
+# Distance, for v = 0.1 in the chain's own units, within which an orbit at a root is a more symmetric one or one of a
+# shorter period: near a root the distance is itself a square root.
 JOINED = 1e-4
 
 
@@ -103,7 +103,8 @@ class Bifurcation:
     def stick_time(self) -> float:
         """Shortest stick of the orbit there; 0 if it shrinks to nothing."""
         shortest = float(self.at.contacts.stick.min())
-        return 0.0 if self.kind == BifurcationKind.GRAZING and shortest < NO_STICK else shortest
+        none = NO_STICK * self.at.orbit.model.chain.own_units.time
+        return 0.0 if self.kind == BifurcationKind.GRAZING and shortest < none else shortest
 
     @property
     def loses_stability(self) -> bool:

@@ -127,7 +127,8 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
     if drops(orbit.model):
         return None
     blocks = orbit.model.blocks
-    change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2]).max()), 1e-3)
+    own = line.units.state(blocks)
+    change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2] / own).max()), 1e-3)
     for beyond in BEYOND:
         vector = orbit.reference.vector() + beyond * change
         state = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)

@@ -86,13 +86,17 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     >>> multipliers(orbit).unstable == 0
     True
     """
+    # In the chain's own units, or positions would outweigh velocities where times are long.
     nothing = np.zeros(instance_of(orbit, PeriodicOrbit, "orbit").model.blocks, dtype=bool)
     keeping, breaking = directions(nothing, orbit.symmetry), parting(nothing)
     if orbit.symmetry != Symmetry.SYNCHRONIZED:
         breaking = breaking[:, :0]
-    flow = rate(orbit.model, orbit.reference) @ keeping
+    units = orbit.model.chain.own_units
+    own = units.state(orbit.model.blocks)
+    flow = (rate(orbit.model, orbit.reference) * units.time / own) @ keeping
     across = keeping @ np.linalg.svd(flow[:, None])[0][:, 1:]
-    kept, broken = (_sorted(np.linalg.eigvals(basis.T @ orbit.monodromy @ basis)) for basis in (across, breaking))
+    monodromy = orbit.monodromy * own / own[:, None]
+    kept, broken = (_sorted(np.linalg.eigvals(basis.T @ monodromy @ basis)) for basis in (across, breaking))
     return Multipliers(kept, broken, power=2 if orbit.symmetry == Symmetry.SYMMETRIC else 1)
 
 

@@ -16,8 +16,8 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch, line_of
 from burridge_knopoff.values import instance_of, real_number, refusal
 
-# Distance, for v = 0.1, within which an orbit about to become more symmetric, or of half the period, returns to its
-# mirror image, or to itself after half its period.
+# Distance, for v = 0.1 in the chain's own units, within which an orbit about to become more symmetric, or of half the
+# period, returns to its mirror image, or to itself after half its period.
 JOINED = 3e-2
 
 # Growth of a step after a successful one.
@@ -27,6 +27,9 @@ FASTER = 2.0
 @dataclass(frozen=True)
 class Following:
     """Options of the continuation: lengths of steps along the branch, mostly in a, and the maximum number of orbits.
+
+    Lengths in a are in the chain's own unit of it, `Chain.own_units.slope`: 1 for the paper's chain, and 2 for one that
+    moves half as fast, so that friction has to fall twice as steeply.
 
     Along another parameter, the unit of length is the change of it that changes the return of the orbit by about as
     much as a change of 1 in a does on a short orbit. On long orbits, whose return changes faster, the unit is smaller.

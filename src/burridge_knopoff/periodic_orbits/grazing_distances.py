@@ -19,13 +19,15 @@ import numpy as np
 
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.own_units import OwnUnits
 from burridge_knopoff.periodic_orbits.flow import after
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner, new_observer
 
-# Longest time between the states searched for least speeds and greatest forces, and longest phase of the fastest mode.
-# The Hermite cubic through two of them finds the instant to 1e-5; a step along the acceleration there does the rest.
+# Longest time, in the chain's own unit, between the states searched for least speeds and greatest forces, and longest
+# phase of the fastest mode. The Hermite cubic through two of them finds the instant to 1e-5; a step along the
+# acceleration there does the rest.
 SPACING = 0.1
 LARGEST_PHASE = 0.245
 
@@ -35,7 +37,7 @@ SLOWEST = 2
 # Number of samples whose derivatives are computed at a time: few enough for a fast cache.
 CHUNK = 4096
 
-# Rounding errors of accelerations and forces.
+# Rounding errors of accelerations and rates of forces, in the chain's own units.
 ROUNDING = 1e-12
 
 # Directions in which a block can slip, by contact.
@@ -61,6 +63,11 @@ class Contacts:
         """Return the quantities that fall to 0 in proportion to the distance from a grazing, shape (5 blocks,)."""
         return np.concatenate([self.stick**2, self.slip**2, self.speed, self.force, self.deceleration**2])
 
+    def shares(self, units: OwnUnits) -> np.ndarray:
+        """Return these quantities in a chain's own units, in which they can be compared."""
+        of = [units.time**2, units.time**2, units.velocity, units.force, units.acceleration**2]
+        return self.values() / np.repeat(of, len(self.stick))
+
 
 def drops(model: Model) -> bool:
     """Tell whether friction drops at the start of a slip."""
@@ -69,12 +76,13 @@ def drops(model: Model) -> bool:
 
 def longest_spacing(chain: Chain) -> float:
     """Return the longest time between two samples that resolves the motion of a chain."""
-    return min(SPACING, LARGEST_PHASE / chain.highest_frequency)
+    return min(SPACING * chain.own_units.time, LARGEST_PHASE / chain.highest_frequency)
 
 
 def contacts(orbit: PeriodicOrbit) -> Contacts:
     """Return the grazing distances of an orbit; raises OrbitError if the orbit cannot be integrated."""
-    model = orbit.model
+    model, units = orbit.model, orbit.model.chain.own_units
+    slow, slack = ROUNDING * units.acceleration, ROUNDING * units.force / units.time
     lengths = [_shortest(orbit, block, kind) for kind in (0, 1) for block in range(model.blocks)]
     longest = longest_spacing(model.chain)
     # On a symmetric orbit the second half shows for a block what the first half shows for its mirror block.
@@ -99,7 +107,7 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
         moving = side * velocity
         for block in range(model.blocks):
             slips = whole[:, block] & ~stuck[:-1, block] & (moving[:-1, block] > 0.0) & (moving[1:, block] > 0.0)
-            turns = slips & (acceleration[:-1, block] < -ROUNDING) & (acceleration[1:, block] > ROUNDING)
+            turns = slips & (acceleration[:-1, block] < -slow) & (acceleration[1:, block] > slow)
             for k in sorted(np.flatnonzero(turns), key=lambda k: moving[k, block])[:SLOWEST]:
                 share = _root(acceleration[k : k + 2, block], jerk[k : k + 2, block] * spacing)
                 at = after(again, ChainState(position[k], velocity[k], stuck[k]), share * spacing)
@@ -107,7 +115,7 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
                 change, second = float(here[2][0, block]), float(here[3][0, block])
                 speed[block] = min(speed[block], side * (at.velocity[block] - 0.5 * change**2 / second))
             sticks = whole[:, block] & stuck[:-1, block]
-            peaks = sticks & (force_rate[:-1, block] > ROUNDING) & (force_rate[1:, block] < -ROUNDING)
+            peaks = sticks & (force_rate[:-1, block] > slack) & (force_rate[1:, block] < -slack)
             for k in np.flatnonzero(peaks):
                 share = force_rate[k, block] / (force_rate[k, block] - force_rate[k + 1, block])
                 highest = force[k, block] + 0.5 * share * spacing * force_rate[k, block]

@@ -11,7 +11,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit, refined
 
-# Steps in a of the continuation; sticks vanish as the square root of a as a falls to 0.
+# Steps in a of the continuation, in the chain's own unit of it; sticks vanish as the square root of a as a falls to 0.
 LARGEST_STEP = 0.02
 LEAST_STEP = 1e-5
 
@@ -40,7 +40,8 @@ class KnownOrbits:
         if not a > 0.0:
             raise OrbitError(f"a = {a!r}: no orbit is looked for: 0 < a")
         here = min(self.known, key=lambda known: abs(known - a))
-        step = LARGEST_STEP
+        unit = self.model.chain.own_units.slope
+        step = largest = unit * LARGEST_STEP
         while here != a:
             reach = min(step, 0.5 * here) if a < here else step
             there = a if abs(a - here) <= reach else here + math.copysign(reach, a - here)
@@ -48,7 +49,7 @@ class KnownOrbits:
                 self.known[there] = beside(self.known[here], there)
             except OrbitError as error:
                 step = 0.5 * abs(there - here)
-                if step < LEAST_STEP * min(1.0, here / LARGEST_STEP):
+                if step < unit * LEAST_STEP * min(1.0, here / largest):
                     raise OrbitError(f"{error}, on the way to a = {a!r}") from None
                 continue
             here = there

@@ -12,7 +12,8 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_period
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# Distance, for v = 0.1, within which an orbit counts as more symmetric, or of a shorter period.
+# Distance, for v = 0.1 in the chain's own units, within which an orbit counts as more symmetric, or of a shorter
+# period.
 SAME = 1e-8
 
 # Relative time within which the simpler orbit has to return; otherwise Newton's method has reached another orbit.
@@ -24,15 +25,17 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
 
     The simpler orbit has the same stops, traversed as often as necessary.
 
-    tolerance : largest distance, for v = 0.1, of its state from that of the simpler orbit; a branch of orbits of less
-        symmetry, or of twice the period, begins at such orbits
+    tolerance : largest distance, for v = 0.1 in the chain's own units, of its state from that of the simpler orbit; a
+        branch of orbits of less symmetry, or of twice the period, begins at such orbits
     """
+    units = orbit.model.chain.own_units
+    own, scale = units.state(orbit.model.blocks), orbit.model.scale / units.velocity
     for time, symmetry in _simpler(orbit):
         if time > 0.0:
             end = ReturnMap(orbit.model, symmetry).end(orbit.reference, time)
         else:
             end, time = orbit.reference.mirrored(), orbit.period
-        if np.abs(end.vector() - orbit.reference.vector()).max() > tolerance * orbit.model.scale:
+        if np.abs((end.vector() - orbit.reference.vector()) / own).max() > tolerance * scale:
             continue
         try:
             found = find_periodic_orbit(orbit.model, orbit.reference, time, symmetry)

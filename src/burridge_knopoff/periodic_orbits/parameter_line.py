@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.own_units import OwnUnits
 from burridge_knopoff.model.parameters import at, value_of
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 
@@ -24,12 +26,14 @@ class ParameterLine:
 
     names : the first one tells the coordinate of a model
     least : the least coordinate at which there is a model, if known
+    units : in which changes of states and times are measured, the same all along the line
     """
 
     names: tuple[str, ...]
     origins: tuple[float, ...]
     rates: tuple[float, ...]
     least: float = float("-inf")
+    units: OwnUnits = field(default=OwnUnits())
 
     @property
     def parameter(self) -> str:
@@ -54,5 +58,11 @@ class ParameterLine:
         return ", ".join(f"{name} = {value_of(model, name)!r}" for name in self.names)
 
 
-#: The friction parameter: coordinates are a itself.
+def along_a(chain: Chain) -> ParameterLine:
+    """Return the line along a, with coordinates in the chain's own unit of it."""
+    units = chain.own_units
+    return ParameterLine(("a",), (0.0,), (units.slope,), least=0.0, units=units)
+
+
+#: The friction parameter of the paper's chain: coordinates are a itself.
 ALONG_A = ParameterLine(("a",), (0.0,), (1.0,), least=0.0)

@@ -27,8 +27,8 @@ from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.values import instance_of
 
-#: Largest difference of a position or velocity after a return, times v if v > 1. Below it Newton's method continues as
-#: long as it gains, down to rounding.
+#: Largest difference of a position or velocity after a return, times v if v > 1, all in the chain's own units. Below it
+#: Newton's method continues as long as it gains, down to rounding.
 TOLERANCE = 1e-10
 ENOUGH = 1e-12
 ITERATIONS = 10
@@ -36,7 +36,7 @@ ITERATIONS = 10
 # From this iteration on, each iteration has to improve the solution, or the method fails.
 FIRST = 2
 
-# A larger correction, in units of v, leads to another orbit, if to any.
+# A larger correction, in units of v, for times in the chain's own unit, leads to another orbit, if to any.
 FARTHEST = 5.0
 
 # A reference state closer than this, as a fraction of the longest time without events, to an event is moved to the
@@ -168,8 +168,9 @@ def solve_return(
 
     Raises OrbitError if Newton's method does not converge.
     """
-    basis = directions(start.stuck, symmetry)
-    phase = basis.T @ rate(model, start)
+    units, basis = model.chain.own_units, directions(start.stuck, symmetry)
+    own = units.state(model.blocks)
+    phase = basis.T @ (rate(model, start) * units.time / own)
     count, unknowns = basis.shape[1], basis.shape[1] + (1 if constraint is None else 2)
     first, last = start.vector(), np.inf
     state, blocks = first.copy(), model.blocks
@@ -178,13 +179,13 @@ def solve_return(
     for iteration in range(ITERATIONS):
         here = ChainState(state[:blocks], state[blocks:], start.stuck)
         end, changed = mapping.with_tangent(here, time)
-        residual = float(np.abs(end.vector() - state).max())
+        apart = (end.vector() - state) / own
         values = np.zeros(unknowns)
-        values[:count] = basis.T @ (end.vector() - state)
-        values[count] = phase @ (basis.T @ (state - first))
+        values[:count] = basis.T @ apart
+        values[count] = phase @ (basis.T @ ((state - first) / own))
         jacobian = np.zeros((unknowns, unknowns))
-        jacobian[:count, :count] = basis.T @ changed @ basis - np.eye(count)
-        jacobian[:count, count] = basis.T @ mapping.time_derivative(end)
+        jacobian[:count, :count] = basis.T @ (changed * own / own[:, None]) @ basis - np.eye(count)
+        jacobian[:count, count] = basis.T @ (mapping.time_derivative(end) * units.time / own)
         jacobian[count, :count] = phase
         if constraint is not None and origin is not None:
             vector, amount = constraint
@@ -192,14 +193,13 @@ def solve_return(
             values[-1] = vector @ change - amount
             # Expensive, and nearly constant between iterations.
             if by_parameter is None:
-                by_parameter = basis.T @ mapping.parameter_derivative(
-                    here, time, end, mapping.event_rows()[:, 1:], line
-                )
+                events = mapping.event_rows()[:, 1:]
+                by_parameter = basis.T @ (mapping.parameter_derivative(here, time, end, events, line) / own)
             jacobian[:count, -1] = by_parameter
-            jacobian[-1] = np.concatenate([vector[:-2] @ basis, vector[-2:]])
-        size = float(np.abs(values).max())
-        if size <= enough or (size <= TOLERANCE * max(1.0, model.v) and size > 0.25 * last):
-            if residual > TOLERANCE * max(1.0, model.v) or (end.stuck != start.stuck).any():
+            jacobian[-1] = np.concatenate([(vector[:-2] * own) @ basis, [vector[-2] * units.time, vector[-1]]])
+        size, speed = float(np.abs(values).max()), model.v / units.velocity
+        if size <= enough or (size <= TOLERANCE * max(1.0, speed) and size > 0.25 * last):
+            if np.abs(apart).max() > TOLERANCE * max(1.0, speed) or (end.stuck != start.stuck).any():
                 break
             return PeriodicOrbit(model, symmetry, here, time, end, changed, _event_rows(mapping, time))
         if iteration > FIRST and size > last:
@@ -209,10 +209,10 @@ def solve_return(
             step = np.linalg.solve(jacobian, -values)
         except np.linalg.LinAlgError:
             break
-        if not np.abs(step[:count]).max() < FARTHEST * model.v:
+        if not np.abs(step[:count]).max() < FARTHEST * speed:
             break
-        state = state + basis @ step[:count]
-        time += float(step[count])
+        state = state + own * (basis @ step[:count])
+        time += units.time * float(step[count])
         if not time > 0.0:
             break
         if constraint is not None:

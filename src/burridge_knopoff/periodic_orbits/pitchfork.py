@@ -12,6 +12,7 @@ import numpy as np
 
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, model_at
+from burridge_knopoff.periodic_orbits.parameter_line import along_a
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, refined, solve_return
 from burridge_knopoff.periodic_orbits.return_map import parting
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
@@ -29,11 +30,11 @@ def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrb
     Its reference is a state in which the end blocks stick. Raises OrbitError if it is not found.
     """
     center = _while_ends_stick(critical)
-    base, blocks = center.reference.vector(), center.model.blocks
+    base, blocks, units = center.reference.vector(), center.model.blocks, center.model.chain.own_units
     if near is None:
         vector = base + asymmetry * _way_off(center)
         start = ChainState(vector[:blocks], vector[blocks:], center.reference.stuck)
-        a, time = center.a + (asymmetry / center.model.v) ** 2 * center.a, center.return_time
+        a, time = center.a + (asymmetry / units.time / center.model.v) ** 2 * center.a, center.return_time
     else:
         # The antisymmetric part grows with the asymmetry, everything else with its square.
         factor = asymmetry / asymmetry_of(near)
@@ -44,10 +45,12 @@ def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrb
         a = center.a + factor**2 * (near.a - center.a)
         time = center.return_time + factor**2 * (near.return_time - center.return_time)
     difference = np.zeros(2 * blocks + 2)
-    difference[0], difference[blocks - 1] = 1.0, -1.0
-    origin = base, center.return_time, center.a
+    difference[0], difference[blocks - 1] = 1.0 / units.length, -1.0 / units.length
+    line = along_a(center.model.chain)
+    origin = base, center.return_time, line.coordinate(center.model)
+    constraint = difference, asymmetry / units.length
     model = model_at(center.model, a)
-    found = solve_return(model, start, time, Symmetry.ASYMMETRIC, (difference, asymmetry), origin, enough=0.0)
+    found = solve_return(model, start, time, Symmetry.ASYMMETRIC, constraint, origin, enough=0.0, line=line)
     if not abs(found.a - center.a) < FARTHEST * center.a:
         raise OrbitError(f"asymmetry = {asymmetry!r}: no orbit found near a = {center.a!r}")
     return found

@@ -18,12 +18,13 @@ from burridge_knopoff.model.parameters import at, value_of
 from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, rate
 from burridge_knopoff.periodic_orbits.grazing_distances import Contacts, contacts
-from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A, ParameterLine
+from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A, ParameterLine, along_a
 from burridge_knopoff.periodic_orbits.periodic import ENOUGH, PeriodicOrbit, orbit_of, safe_offset, solve_return
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# Length along a branch is mostly length in the parameter: positions, in units of 0.1 v, and times have smaller weights.
+# Length along a branch is mostly length in the parameter: positions, in units of 0.1 v, and times have smaller weights,
+# all in the chain's own units.
 STATE_WEIGHT = 0.01
 TIME_WEIGHT = 1e-4
 
@@ -92,13 +93,15 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
     """Return the line along one parameter of an orbit, in units in which its return changes by CHANGE.
 
     The return of a long orbit changes faster, so that its unit is smaller. Positions and velocities are compared in
-    units of v, since they grow with it. For a, the unit is 1.
+    units of v, since they grow with it. For a, the unit is the chain's own.
 
     Raises ValueError, one line, if the model has no one number of this name.
     """
     value = value_of(orbit.model, parameter)
     if parameter == "a":
-        return ALONG_A
+        return along_a(orbit.model.chain)
+    units = orbit.model.chain.own_units
+    own = units.state(orbit.model.blocks)
     size, change = abs(value) or 1.0, 0.0
     for step in (PART * size, -PART * size):
         try:
@@ -111,30 +114,33 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
         except ValueError:
             continue
         apart = end.vector() / model.scale - orbit.returned.vector() / orbit.model.scale
-        change = max(change, float(np.abs(apart).max() / abs(step)))
-    return ParameterLine((parameter,), (value,), (min(LONGEST * size, CHANGE / max(change, 1e-300)),))
+        change = max(change, float(np.abs(apart * units.velocity / own).max() / abs(step)))
+    return ParameterLine((parameter,), (value,), (min(LONGEST * size, CHANGE / max(change, 1e-300)),), units=units)
 
 
-def weights(model: Model) -> np.ndarray:
+def weights(model: Model, line: ParameterLine = ALONG_A) -> np.ndarray:
     """Return the weight of each component of (positions and velocities, return time, parameter) in a squared length."""
-    return np.concatenate([np.full(2 * model.blocks, STATE_WEIGHT / model.scale**2), [TIME_WEIGHT, 1.0]])
+    units = line.units
+    state = STATE_WEIGHT / model.scale**2 * (units.velocity / units.state(model.blocks)) ** 2
+    return np.concatenate([state, [TIME_WEIGHT / units.time**2, 1.0]])
 
 
 def tangent_of(orbit: PeriodicOrbit, line: ParameterLine = ALONG_A) -> np.ndarray:
     """Return the unit tangent of the branch at an orbit, of either sign."""
     model, start, time = orbit.model, orbit.reference, orbit.return_time
-    basis = directions(start.stuck, orbit.symmetry)
+    basis, units = directions(start.stuck, orbit.symmetry), line.units
+    own = units.state(model.blocks)
     count = basis.shape[1]
     mapping, end = ReturnMap(model, orbit.symmetry), orbit.returned
     events = orbit.event_rows[orbit.event_rows[:, 0] <= time, 1:]
     matrix = np.zeros((count + 1, count + 2))
-    matrix[:count, :count] = basis.T @ orbit.monodromy @ basis - np.eye(count)
-    matrix[:count, count] = basis.T @ mapping.time_derivative(end)
-    matrix[:count, count + 1] = basis.T @ mapping.parameter_derivative(start, time, end, events, line)
-    matrix[count, :count] = rate(model, start) @ basis
+    matrix[:count, :count] = basis.T @ (orbit.monodromy * own / own[:, None]) @ basis - np.eye(count)
+    matrix[:count, count] = basis.T @ (mapping.time_derivative(end) * units.time / own)
+    matrix[:count, count + 1] = basis.T @ (mapping.parameter_derivative(start, time, end, events, line) / own)
+    matrix[count, :count] = (rate(model, start) * units.time / own) @ basis
     null = np.linalg.svd(matrix)[2][-1]
-    vector = np.concatenate([basis @ null[:count], null[count:]])
-    return vector / np.sqrt(weights(model) @ vector**2)
+    vector = np.concatenate([own * (basis @ null[:count]), [units.time * null[count], null[count + 1]]])
+    return vector / np.sqrt(weights(model, line) @ vector**2)
 
 
 def begin_branch(orbit: PeriodicOrbit, upward: bool, line: ParameterLine = ALONG_A) -> BranchOrbit:
@@ -163,7 +169,7 @@ def solve_ahead(
     there = line.model(model, here + length * float(tangent[-1]))
     guess = base + length * tangent[:-2]
     start = ChainState(guess[:blocks], guess[blocks:], reference.stuck)
-    constraint = weights(there) * tangent, length
+    constraint = weights(there, line) * tangent, length
     after = time + length * float(tangent[-2])
     return solve_return(there, start, after, symmetry, constraint, (base, time, here), enough, line)
 
@@ -180,7 +186,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     found = solve_ahead(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, line, tangent, length)
     model = found.model
     following = tangent_of(found, line)
-    cosine = float(following @ (weights(model) * tangent))
+    cosine = float(following @ (weights(model, line) * tangent))
     if tangent is point.tangent and abs(cosine) < STRAIGHT:
         raise OrbitError(f"{line.place(model)}: the branch turns too sharply within a step of {length!r}")
     following = following if cosine > 0.0 else -following
@@ -191,7 +197,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     there = flow(model, found.reference, offset)[0].state()
     moved = orbit_of(model, there, found.return_time, orbit.symmetry)
     following = tangent_of(moved, line)
-    side = following @ (weights(model) * carried)
+    side = following @ (weights(model, line) * carried)
     return BranchOrbit(moved, following if side > 0.0 else -following, length, line=line)
 
 
@@ -203,6 +209,7 @@ def _carried(orbit: PeriodicOrbit, tangent: np.ndarray, time: float, line: Param
     here = flow(orbit.model, orbit.reference, time)[0].state()
     model = line.model(orbit.model, line.coordinate(orbit.model) + PART * float(tangent[-1]))
     there = flow(model, near, time)[0].state()
-    change = (there.vector() - here.vector()) / PART
-    along = rate(orbit.model, here)
-    return np.concatenate([change - along * (along @ change) / (along @ along), tangent[-2:]])
+    own = line.units.state(blocks)
+    change = (there.vector() - here.vector()) / PART / own
+    along = rate(orbit.model, here) * line.units.time / own
+    return np.concatenate([own * (change - along * (along @ change) / (along @ along)), tangent[-2:]])

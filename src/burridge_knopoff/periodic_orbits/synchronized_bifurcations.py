@@ -32,8 +32,8 @@ FIRST_STEP = 1e-3
 LARGEST_STEP = 5e-3
 AGAIN = 0.0125
 
-# A root is bracketed at these distances, in turn, and found to the rounding of the function. With such small steps
-# brentq only bisects, and may need more than its usual hundred iterations.
+# A root is bracketed at these distances, in the chain's own unit of a, in turn, and found to the rounding of the
+# function. With such small steps brentq only bisects, and may need more than its usual hundred iterations.
 SIDES = (1e-9, 1e-8, 1e-7, 1e-6)
 TOLERANCE = 1e-15
 ITERATIONS = 1000
@@ -41,8 +41,8 @@ ITERATIONS = 1000
 # Largest distance from −1, or from the unit circle, of the multiplier of a bifurcation.
 CRITICAL = 1e-5
 
-# Difference d of mirror blocks for finite differences, in units of v: rounding of the quotient and the d⁴ that
-# extrapolation leaves are both about 1e-12.
+# Difference d of mirror blocks for finite differences, in units of v, for times in the own unit: rounding of the
+# quotient and the d⁴ that extrapolation leaves are both about 1e-12.
 DIFFERENCE = 1e-3
 
 # Step in a, in units of `unit`, for the slope of the multiplier.
@@ -67,7 +67,9 @@ def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
     """Follow the orbits upward; where a branch ends, continue both ways with any orbit beyond."""
     size = unit(orbits.model.chain)
     (first, high), gap = (size * end for end in RANGE), size * AGAIN
-    settings = Following(first_step=size * FIRST_STEP, largest_step=size * LARGEST_STEP)
+    # `follow` counts its steps in the chain's own unit.
+    share = size / orbits.model.chain.own_units.slope
+    settings = Following(first_step=share * FIRST_STEP, largest_step=share * LARGEST_STEP)
     low, a = first, first
     while a < high:
         try:
@@ -144,11 +146,12 @@ def _least(
 def _root(bifurcation: Bifurcation, value: Callable[[PeriodicOrbit], float]) -> float:
     """Return the root in a of a function of the orbit at a bifurcation; the a of the bifurcation if there is none."""
     orbit = bifurcation.at.orbit
+    own = orbit.model.chain.own_units.slope
     for side in SIDES:
-        ends = bifurcation.a - side, bifurcation.a + side
+        ends = bifurcation.a - own * side, bifurcation.a + own * side
         try:
             if (value(beside(orbit, ends[0])) > 0.0) != (value(beside(orbit, ends[1])) > 0.0):
-                precise = {"xtol": TOLERANCE, "rtol": TOLERANCE, "maxiter": ITERATIONS}
+                precise = {"xtol": own * TOLERANCE, "rtol": TOLERANCE, "maxiter": ITERATIONS}
                 return float(brentq(lambda a: value(beside(orbit, a)), *ends, **precise))
         except OrbitError:
             continue
@@ -162,14 +165,15 @@ def differenced_multiplier(orbit: PeriodicOrbit) -> complex:
     function of d, so that one step of Richardson extrapolation leaves an error of order d⁴.
     """
     runner, start, blocks = Runner(orbit.model), orbit.reference, orbit.model.blocks
-    basis = parting(start.stuck)
+    basis, units = parting(start.stuck), orbit.model.chain.own_units
+    own = units.state(blocks)
 
     def returned(direction: np.ndarray, d: float) -> np.ndarray:
-        state = start.vector() + d * direction
+        state = start.vector() + d * own * direction
         end = after(runner, ChainState(state[:blocks], state[blocks:], start.stuck), orbit.return_time)
-        return basis.T @ end.vector() / d
+        return basis.T @ (end.vector() / own) / d
 
-    d = DIFFERENCE * orbit.model.v
+    d = DIFFERENCE * orbit.model.v / units.velocity
     columns = [(4.0 * returned(direction, 0.5 * d) - returned(direction, d)) / 3.0 for direction in basis.T]
     values = np.linalg.eigvals(np.stack(columns, axis=1))
     return complex(values[np.abs(values).argmax()])

@@ -1,0 +1,73 @@
+"""The units in which a chain is about as fast, as long and as strong as the paper's, where all of them are 1.
+
+Times, lengths and tolerances that suit the paper's chain suit any other one in these units.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from burridge_knopoff.model.chain import Chain
+
+# These put 1 amid what counts as 1, between numbers that a chain would be given.
+_OF_TIME = math.sqrt(1.5)
+_OF_SIZE = math.sqrt(2.0)
+
+
+@dataclass(frozen=True)
+class OwnUnits:
+    """Units of time, length and force, powers of 2: a chain in other units of these gives the same results to the bit.
+
+    >>> from burridge_knopoff import Chain
+    >>> slow = Chain(3, coupling=2.0**-20, pulling=tuple(2.0**-20 * n for n in (1, 2, 1)))
+    >>> Chain(3).own_units
+    OwnUnits(time=1.0, length=1.0, force=1.0)
+    >>> slow.own_units
+    OwnUnits(time=1024.0, length=1048576.0, force=1.0)
+    """
+
+    time: float = 1.0
+    length: float = 1.0
+    force: float = 1.0
+
+    @property
+    def velocity(self) -> float:
+        """The unit of velocities."""
+        return self.length / self.time
+
+    @property
+    def acceleration(self) -> float:
+        """The unit of accelerations."""
+        return self.velocity / self.time
+
+    @property
+    def slope(self) -> float:
+        """The unit of the slope of a friction law, and so of a."""
+        return self.time / self.length
+
+    def state(self, blocks: int) -> np.ndarray:
+        """Return the units of positions and velocities, shape (2 blocks,)."""
+        return np.repeat([self.length, self.velocity], blocks)
+
+
+def own_units_of(chain: Chain) -> OwnUnits:
+    """Return the units of a chain, from how far static friction displaces it and how fast it would then come back.
+
+    However stiff the springs between blocks are, these are the length and the time of the slowest motion.
+    """
+    threshold, mass = chain.thresholds, chain.masses
+    displacement = float(threshold @ np.abs(chain.sliding_offset(1.0))) / float(threshold.sum())
+    acceleration = float(threshold.sum()) / float(mass.sum())
+    time = math.ldexp(1.0, math.frexp(_OF_TIME * displacement / acceleration)[1] // 2)
+    length = time * time * _power(acceleration)
+    return OwnUnits(time, length, _power(float(threshold.mean())))
+
+
+def _power(size: float) -> float:
+    """Return the power of 2 nearest to a number, by their ratio."""
+    return math.ldexp(1.0, math.frexp(_OF_SIZE * size)[1] - 1)

@@ -1,0 +1,156 @@
+"""A chain in other units is the same chain: its orbits are found as well, as fast, and scale."""
+
+import math
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    Chain,
+    InitialState,
+    Model,
+    follow,
+    follow_bifurcation,
+    law_of,
+    limit_cycle,
+    locate_bifurcations,
+    multipliers,
+    synchronized_orbit,
+    transverse_exponent,
+)
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
+from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
+    bifurcations_of,
+    critical_a,
+    differenced_multiplier,
+    grazing_a,
+)
+from burridge_knopoff.running.runner import Runner
+
+#: Units of time and length, in those of the paper's chain.
+UNITS = [(2.0**p, 2.0**q) for p, q in ((10, 10), (-9, -9), (-9, -18), (9, 18), (-5, 0), (5, 0), (0, -6), (3, -3))]
+
+
+def paper(time=1.0, length=1.0, a=0.08, law="linearized"):
+    """Return the paper's chain in other units of time and length, in which its forces are the same."""
+    springs = 1.0 / length
+    chain = Chain(3, coupling=springs, pulling=(springs, 2.0 * springs, springs), mass=time * time / length)
+    return Model(chain, law_of(law, a * time / length), v=0.1 * length / time)
+
+
+def begun(model, time, length):
+    """Return a state of no symmetry."""
+    position = tuple(length * x for x in (-0.9, -1.15, -1.0))
+    return model.begin(InitialState("own", position, 0.1 * length / time))
+
+
+@pytest.fixture(scope="module")
+def branch():
+    """Return a function that follows a branch of synchronized orbits, not held synchronous, in any units."""
+
+    def followed(time=1.0, length=1.0):
+        model = paper(time, length, 0.0865)
+        orbit, slope = limit_cycle(model, synchronized_orbit(model).reference), time / length
+        return follow(orbit, (0.086 * slope, 0.0875 * slope))
+
+    return followed
+
+
+@pytest.mark.parametrize("time", [2.0**10, 2.0**-9])
+def test_the_synchronized_orbit_is_the_same_to_the_bit(time):
+    """Where v and a stay the same numbers; other ones round otherwise."""
+    one, other = synchronized_orbit(paper()), synchronized_orbit(paper(time, time))
+    assert other.period == one.period * time
+    assert (other.reference.position == one.reference.position * time).all()
+    assert (other.reference.velocity == one.reference.velocity).all()
+    assert multipliers(other).transverse == pytest.approx(multipliers(one).transverse, abs=1e-14)
+
+
+@pytest.mark.parametrize(
+    ("time", "length", "law"),
+    # The nonlinear law has a speed of its own.
+    [(*units, "linearized") for units in UNITS] + [(2.0**10, 2.0**10, "nonlinear"), (2.0**-9, 2.0**-9, "nonlinear")],
+)
+def test_the_synchronized_orbit_scales(time, length, law):
+    one, other = synchronized_orbit(paper(law=law)), synchronized_orbit(paper(time, length, law=law))
+    assert other.period / time == pytest.approx(one.period, abs=1e-11)
+    assert other.reference.position / length == pytest.approx(one.reference.position, abs=1e-11)
+    assert abs(multipliers(other).whole) == pytest.approx(abs(multipliers(one).whole), abs=1e-10)
+    assert differenced_multiplier(other) == pytest.approx(multipliers(one).transverse, abs=1e-9)
+
+
+def test_a_chain_a_thousand_times_as_slow_has_its_orbit():
+    """Its springs are a thousand times as weak and its blocks as heavy; the period is that of a run from a state."""
+    chain = Chain(3, coupling=0.001, pulling=(0.001, 0.002, 0.001), mass=1000.0)
+    orbit = synchronized_orbit(Model(chain, law_of("linearized", 0.08)))
+    assert orbit.period == pytest.approx(1000.0 * synchronized_orbit(paper()).period, rel=1e-12)
+    found = limit_cycle(orbit.model, orbit.model.begin(InitialState("own", (-900.0, -1100.0, -900.0), 0.1)), 2e6)
+    assert found.period == pytest.approx(orbit.period, rel=1e-12)
+
+
+@pytest.mark.parametrize("mass", [1.0, 2.0**-18])
+def test_a_fast_chain_takes_no_longer(monkeypatch, mass):
+    """Hundreds of times as fast: a run of 4000 units of 1/ω would be a million turns."""
+    times, run = [], Runner.run
+    monkeypatch.setattr(Runner, "run", lambda runner, until: times.append(until) or run(runner, until))
+    springs = 2.0**18
+    chain = Chain(3, coupling=springs, pulling=(springs, 2.0 * springs, springs), mass=mass)
+    orbit = synchronized_orbit(Model(chain, law_of("carlson_langer", 0.5)))
+    assert 5.0 < orbit.period * math.sqrt(springs / mass) < 7.0
+    assert max(times) < 1000.0 * orbit.period
+
+
+@pytest.mark.parametrize(("time", "length"), UNITS)
+def test_an_orbit_that_a_motion_settles_on_scales(time, length):
+    model = paper(time, length)
+    found = limit_cycle(model, begun(model, time, length), settling=4000.0 * time)
+    one = limit_cycle(paper(), begun(paper(), 1.0, 1.0), settling=4000.0)
+    assert (found.symmetry, found.stop_counts) == (one.symmetry, one.stop_counts)
+    assert found.period / time == pytest.approx(one.period, abs=1e-11)
+
+
+@pytest.mark.parametrize(("time", "length"), UNITS)
+def test_a_branch_scales(branch, time, length):
+    one, other = branch(), branch(time, length)
+    assert len(other) == len(one)
+    for first, second in zip(one, other, strict=True):
+        assert second.orbit.a * length / time == pytest.approx(first.orbit.a, abs=1e-9)
+        assert second.orbit.period / time == pytest.approx(first.orbit.period, abs=1e-9)
+        assert second.contacts.shares(second.orbit.model.chain.own_units) == pytest.approx(
+            first.contacts.values(), rel=1e-6
+        )
+    (pitchfork,), (found,) = locate_bifurcations(one), locate_bifurcations(other)
+    assert found.kind == pitchfork.kind
+    assert found.a * length / time == pytest.approx(pitchfork.a, abs=1e-10)
+    curve = follow_bifurcation(found, ("a", "v"), (0.0999 * length / time, 0.1001 * length / time))
+    assert curve.values[:, 0] * length / time == pytest.approx(found.a * length / time, abs=1e-9)
+    along = (
+        follow(points[0].orbit, (0.95 / size, 1.0 / size), parameter="coupling", upward=False)
+        for points, size in ((one, 1.0), (other, length))
+    )
+    first, second = ([point.value for point in points] for points in along)
+    assert np.array(second) * length == pytest.approx(np.array(first), abs=1e-7)
+
+
+@pytest.mark.parametrize(("time", "length"), [(2.0**10, 2.0**10), (2.0**-9, 2.0**-18), (8.0, 0.125)])
+def test_bifurcations_of_the_synchronized_orbit_scale(time, length):
+    found = []
+    for units in ((1.0, 1.0), (time, length)):
+        orbits = synchronized_orbits(paper(*units))
+        bifurcations, slope = bifurcations_of(orbits), units[0] / units[1]
+        critical = critical_a(bifurcations)
+        beyond = branching_orbit(orbits.at(critical), 1e-3 * units[1])
+        found.append([critical / slope, grazing_a(bifurcations, 1) / slope, (beyond.a - critical) / slope * 1e4])
+    assert found[1] == pytest.approx(found[0], abs=1e-8)
+
+
+@pytest.mark.parametrize(("time", "length"), UNITS)
+def test_a_transverse_exponent_scales(time, length):
+    model = paper(time, length)
+    one = np.array(transverse_exponent(paper(), begun(paper(), 1.0, 1.0)))
+    state = begun(model, time, length)
+    for times in ((), (200.0 * time, 2500.0 * time)):
+        assert np.array(transverse_exponent(model, state, *times)) * time == pytest.approx(one, abs=1e-10)
+    with pytest.raises(ValueError, match="^window: got"):
+        transverse_exponent(model, state, window=49.0 * time)
