@@ -4,6 +4,8 @@ import warnings
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from scipy.stats import kstest
 
 from burridge_knopoff.catalogue.slope import fit_slope, format_p_value
@@ -104,6 +106,79 @@ def test_infinite_magnitudes():
     for low in (-np.inf, np.nan, np.inf):
         with refused(f"low: got {low}, expected a finite number"):
             fit_slope(magnitude, low)
+
+
+@pytest.mark.parametrize("number", [np.nan, -np.nan])
+def test_what_is_no_magnitude_is_refused(number):
+    """It belongs to no range: the others alone would pass for the whole catalogue."""
+    with refused("magnitude: got nan, expected numbers"):
+        fit_slope(np.append(drawn(1.0, 0.0, np.inf, 100, 1), number), 0.0)
+
+
+@pytest.mark.parametrize("far", [1e4, 1e62, 1e100, 1e155, 1e200, 1e308])
+def test_an_end_that_is_far_from_all_events_is_none(far):
+    magnitude = drawn(0.9, 0.0, np.inf, 200, 4)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        whole, found, rising = (
+            fit_slope(magnitude, 0.0),
+            fit_slope(magnitude, 0.0, far),
+            fit_slope(-magnitude, -far, 0.0),
+        )
+    assert (found.b, found.error, found.p_value) == (whole.b, whole.error, whole.p_value)
+    assert (rising.b, rising.error, rising.p_value) == (-whole.b, whole.error, whole.p_value)
+    assert (found.high, rising.low) == (far, -far)
+
+
+@settings(max_examples=60)
+@given(
+    st.floats(-300.0, 300.0),
+    st.sampled_from([np.inf, 1.0, 3.0, 900.0, 1100.0]),
+    st.booleans(),
+    st.sampled_from([0.0, 1e5, 1e300]),
+)
+def test_slopes_scale_with_the_magnitudes(exponent, width, rises, beyond):
+    """In any unit, with an end as far as the largest event, far beyond it, or nowhere."""
+    size, magnitude = 10.0**exponent, drawn(1.0, 0.0, 3.0, 50, 2)
+    high = width * float(magnitude.max())
+    expected, inside = fit_slope(magnitude, 0.0, high), size * magnitude
+    # Rounding does not push the largest event out.
+    end = max(size * high, float(inside.max()), beyond if width > 1.0 and beyond > 1e4 * size else 0.0)
+    if end > size * high * 1.01:
+        expected = fit_slope(magnitude, 0.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        if rises and np.isfinite(end):
+            found, sign = fit_slope(-inside, -end, 0.0), -1.0
+        else:
+            found, sign = fit_slope(inside, 0.0, end), 1.0
+    assert found.b * size == pytest.approx(sign * expected.b, rel=1e-9)
+    assert found.error * size == pytest.approx(expected.error, rel=1e-9)
+    assert found.p_value == pytest.approx(expected.p_value, abs=0.002)
+
+
+@pytest.mark.parametrize(
+    ("size", "low", "high"),
+    [
+        (1.0, -1e308, 1e308),
+        (1.0, -1e308, np.inf),
+        (1e306, 0.0, np.inf),
+        (1e307, -1.7e308, 1.7e308),
+        (1e307, -1.7e308, np.inf),
+        (1e-307, 0.0, 1e308),
+    ],
+)
+def test_magnitudes_and_ends_at_the_limit_of_numbers(size, low, high):
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = fit_slope(size * drawn(1.0, 0.0, np.inf, 200, 4), low, high)
+    assert np.isfinite([found.b, found.error, found.p_value]).all()
+    assert found.error > 0.0
+
+
+def test_magnitudes_that_hardly_differ_have_no_slope():
+    with refused("magnitude: got differences up to 6.43769e-310 between 0 and inf, expected larger ones"):
+        fit_slope(1e-310 * drawn(1.0, 0.0, np.inf, 200, 4), 0.0)
 
 
 def test_small_p_is_written_as_a_bound():

@@ -18,6 +18,10 @@ DRAWN = 999
 MOST_DRAWN = 300
 #: Smaller values of p are not distinguished.
 SMALLEST_P = 0.005
+# An end of the range this many times as far from the other one as all events is none.
+FAR = 1000.0
+# Larger magnitudes and ends are divided by the other number: their sums and differences would overflow.
+LARGE, SHRINKING = 1e300, 2.0**-64
 
 
 @dataclass(frozen=True)
@@ -57,8 +61,9 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
     variance of the magnitudes in the range; if the range ends on the centres, b is too high, by the fraction bw/2 and
     more. p tests the rounding, too.
 
-    Raises ValueError for fewer than FEWEST events in the range, if they are all of one magnitude or one is infinite,
-    and for a range that does not begin at a finite magnitude.
+    Raises ValueError for fewer than FEWEST events in the range, if they are all of one magnitude or differ too
+    little for b to be a number, if one is infinite or any is NaN, and for a range that does not begin at a finite
+    magnitude.
 
     References: K. Aki, Bull. Earthq. Res. Inst. 43 (1965) 237; for two ends, R. Page, Bull. Seismol. Soc. Am. 58 (1968)
     1131; H. W. Lilliefors, J. Am. Stat. Assoc. 62 (1967) 399 and 64 (1969) 387; for bins, T. Utsu, Geophys. Bull.
@@ -73,10 +78,13 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
     magnitude = real_array(magnitude, "magnitude")
     if magnitude.ndim != 1:
         raise refusal("magnitude", magnitude.shape, "shape (events,)")
+    if np.isnan(magnitude).any():
+        raise refusal("magnitude", math.nan, "numbers")
     if not math.isfinite(real_number(low)):
         raise refusal("low", low, "a finite number")
     if math.isnan(real_number(high)):
         raise refusal("high", high, "a number")
+    low, high = float(low), float(high)
     inside = np.sort(magnitude[(magnitude >= low) & (magnitude <= high)])
     where = f"between {low:g} and {high:g}"
     if len(inside) < FEWEST:
@@ -85,17 +93,42 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
         raise ValueError(f"magnitude: got {inside[-1]:g} {where}, expected finite magnitudes")
     if inside[0] == inside[-1]:
         raise ValueError(f"magnitude: got only {inside[0]:g} {where}, expected a spread")
-    # From the end at which the events are more frequent, in units of the width: the slope is not negative there.
-    rises = math.isfinite(high) and inside.mean() - low > high - inside.mean()
-    distance = (high - inside)[::-1] if rises else inside - low
-    # An end beyond 1000 times the largest is none.
-    width = high - low if math.isfinite(high) else 1000.0 * float(distance[-1])
+    distance, width, factor, rises = _distances(inside, low, high)
+    # The slope is not negative from there.
     share = distance / width
     decay = _decay(share.mean(keepdims=True))
-    b = float(decay[0]) / width
-    error = 1.0 / (width * math.sqrt(len(share) * float(_variance(decay)[0])))
+    b = factor * (float(decay[0]) / width)
+    error = factor / (width * math.sqrt(len(share) * float(_variance(decay)[0])))
+    if not (math.isfinite(b) and math.isfinite(error)):
+        raise ValueError(f"magnitude: got differences up to {inside[-1] - inside[0]:g} {where}, expected larger ones")
     p_value = _p_value(float(_largest_difference(share[None], decay)[0]), float(decay[0]), len(share))
     return Slope(-b if rises else b, error, low, high, len(share), p_value)
+
+
+def _distances(inside: np.ndarray, low: float, high: float) -> tuple[np.ndarray, float, float, bool]:
+    """Return how far magnitudes are from the end of their range near which there are more of them.
+
+    inside : the magnitudes, in ascending order; low, high : ends of the range
+
+    Returns the distances in ascending order and the width of the range, both in a unit of about the largest distance;
+    1 over this unit, a power of 2, by which nothing is rounded; and whether that end is `high`.
+    """
+    width = high / FAR - low / FAR
+    if width > float(inside[-1]) - low:
+        high = math.inf
+    elif width > high - float(inside[0]):
+        low = -math.inf
+    factor = 1.0
+    if max(abs(value) for value in (low, high, *inside[[0, -1]].tolist()) if math.isfinite(value)) > LARGE:
+        factor = SHRINKING
+        inside, low, high = factor * inside, factor * low, factor * high
+    mean = float(inside.mean())
+    rises = math.isinf(low) or (math.isfinite(high) and mean - low > high - mean)
+    distance = (high - inside)[::-1] if rises else inside - low
+    largest = float(distance[-1])
+    unit = math.ldexp(1.0, math.frexp(largest)[1] - 1)
+    width = (high - low) / unit if math.isfinite(high - low) else FAR * (largest / unit)
+    return distance / unit, width, factor / unit, rises
 
 
 def format_p_value(p: float) -> str:
