@@ -11,6 +11,7 @@ from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.period import orbit_length
 from burridge_knopoff.motion.section_returns import Returns
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.running.runner import ROUNDING
 
 #: Successive returns within the capture radius after which a trajectory is captured: none passes by so often by chance.
 CLOSE_RETURNS = 8
@@ -68,6 +69,7 @@ def perturbed(start: ChainState, size: float, generator: np.random.Generator) ->
     blocks = len(start.position)
     change = generator.uniform(-size, size, 2 * blocks)
     moved = start.velocity + change[blocks:]
-    backward = start.velocity < 0.0
+    # Less is rounding at a stop, of either sign.
+    backward = start.velocity < -ROUNDING * max(1.0, np.abs(start.velocity).max())
     velocity = np.where(start.stuck | (np.where(backward, -moved, moved) < 0.0), 0.0, moved)
     return ChainState(start.position + change[:blocks], velocity, start.stuck)

@@ -10,7 +10,7 @@ from burridge_knopoff.catalogue.events import MOST_EVENTS, TIMES
 from burridge_knopoff.kernel._core import Catalogue, Exponents
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Whole
-from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.runner import Runner, check_state
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of, refusal
 
@@ -80,6 +80,7 @@ def event_exponents(
     """
     instance_of(model, Model, "model")
     instance_of(start, ChainState, "start")
+    check_state(model, start)
     end, begin = TIMES.form(end, "end"), TIMES.form(start.time if begin is None else begin, "begin")
     count = Whole(1, 2 * model.blocks).form(count, "count")
     if begin < start.time:

@@ -117,12 +117,19 @@ class Model(Unchanging):
     def numbers_of(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
         """Return U(0) and U'(0) of an initial state, each of shape (blocks,); raises ValueError as `begin` does."""
         u, w = initial.numbers(self.blocks)
-        if self.contact == "one_sided" and w.min() < 0.0:
+        self.check_directions(w, "velocity")
+        return u, w
+
+    def check_directions(self, velocity: np.ndarray, key: str, rounding: float = 0.0) -> None:
+        """Check that no block slips backward under one-sided contact, by more than rounding.
+
+        Raises ValueError, one line, if one does.
+        """
+        if self.contact == "one_sided" and velocity.min() < -rounding:
             raise ValueError(
-                f"velocity: got {float(w.min())!r}, expected at least 0 under contact one_sided: blocks only slip "
+                f"{key}: got {float(velocity.min())!r}, expected at least 0 under contact one_sided: blocks only slip "
                 "forward; contact symmetric lets them slip backward"
             )
-        return u, w
 
     def starts_stuck(self, position: np.ndarray, start: str) -> np.ndarray:
         """Return which blocks stick at τ = 0 for a choice of `start`; same shape as U(0), (…, blocks)."""
@@ -141,8 +148,8 @@ class ChainState:
     time : τ of the state; a continued run starts its clock here
 
     Positions and velocities are in the units of `Model`; e_i is its `sliding_offset`. `Trajectory.final` also keeps the
-    last step of its run, which `simulate(model, run.final)` repeats. A split run thus equals the whole run, bit for
-    bit, also from a state that was copied or pickled.
+    last step of its run, which `simulate(model, run.final)` repeats. States, events and crossings of a split run are
+    thus those of the whole run, bit for bit, also from a state that was copied or pickled.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of
     >>> model = Model(Chain(3), law_of("linearized", 0.08))

@@ -22,7 +22,7 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.motion.chain_settings import SAMPLE, WATCH, Sample, Watch
 from burridge_knopoff.motion.mirror import pair_distances, symmetrized
-from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.runner import Runner, check_state
 from burridge_knopoff.running.settings import DURATION, LONGEST, Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.status import Status
@@ -156,6 +156,7 @@ def transverse_exponent(
     alignment = ALIGNMENT * unit if alignment is None else DURATION.form(alignment, "alignment")
     window = WATCH.quarter * unit if window is None else window_range(model.chain).form(window, "window")
     own = model.chain.own_units.state(blocks)[:, None]
+    check_state(model, state)
     index = np.arange(2 * blocks)
     # A direction of no special symmetry but this one.
     perturbation = _antisymmetric(np.cos(1.0 + 2.3 * index)[:, None])

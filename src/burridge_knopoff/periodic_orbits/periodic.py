@@ -24,6 +24,7 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distanc
 from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A, ParameterLine
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions, mirror
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.running.runner import check_state
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.values import instance_of
 
@@ -267,6 +268,7 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
         raise ValueError(
             f"symmetry: got {symmetry.name.lower()!r}, expected asymmetric in a chain that is not its own mirror image"
         )
+    check_state(model, guess)
     mapping = ReturnMap(model, symmetry)
     mapping.end(guess, return_time)
     events = _event_rows(mapping, return_time)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from functools import partial
 
@@ -14,7 +15,7 @@ from burridge_knopoff.running.loading import is_quasistatic
 from burridge_knopoff.running.normal_modes import normal_modes
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
+from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_array, real_number, refusal
 
 NEVER = 1e300
 
@@ -24,6 +25,10 @@ STEPPING = ("rk4", "euler")
 # Real motion stays far below: a slip of a block takes about one time unit or longer.
 EVENTS_PER_BLOCK_AND_UNIT = 1000
 STEP_LIMIT = 10**10
+
+# Velocity, as a share of 1, of the driver's or of the fastest block's, that rounding may leave a block at the instant
+# at which it stops, together with another one. It has either sign, and the block stops at once.
+ROUNDING = 1e-12
 
 
 class Runner:
@@ -110,15 +115,17 @@ class Runner:
 
         clock : the time τ at which the run starts; that of the instant, whose last step is then repeated, by default
 
-        Raises ValueError if the number of blocks is not the model's.
+        Raises ValueError as `check_state` does.
         """
-        blocks = self.model.blocks
-        if not isinstance(at, ChainState) or {np.shape(x) for x in (at.position, at.velocity, at.stuck)} != {(blocks,)}:
-            raise refusal("state", at, f"a ChainState of {blocks} blocks")
-        position, velocity = (np.asarray(x, dtype=float) for x in (at.position, at.velocity))
-        self.kernel.begin(position, velocity, np.asarray(at.stuck, dtype=bool), at.time if clock is None else clock)
+        check_state(self.model, at)
+        self._place(at, at.time if clock is None else clock)
         if clock is None and at.last_step is not None and at.last_step[0] == self.solver:
             self.kernel.resume(at.last_step[1], at.time)
+
+    def _place(self, at: ChainState, clock: float) -> None:
+        _check_blocks(self.model, at)
+        position, velocity = (np.asarray(x, dtype=float) for x in (at.position, at.velocity))
+        self.kernel.begin(position, velocity, np.asarray(at.stuck, dtype=bool), clock)
 
     def final(self) -> ChainState:
         """Return the state at the end of a completed run, from which a run continues with the same steps."""
@@ -156,8 +163,11 @@ class Runner:
         return status
 
     def after(self, at: ChainState, time: float) -> ChainState | None:
-        """Return the state a given time after an instant, or None if the run fails; the clock starts at 0."""
-        self.begin(at, 0.0)
+        """Return the state a given time after an instant, or None if the run fails; the clock starts at 0.
+
+        at : of the model's number of blocks; Newton's method comes by states that no motion has, which are not refused
+        """
+        self._place(at, 0.0)
         return self.state() if self.run(time) == Status.COMPLETED else None
 
     def state(self) -> ChainState:
@@ -179,6 +189,31 @@ class Runner:
         """Return time, block (0 …) and kind (0 stop, 1 start) of the events kept."""
         values = self.log.events.values()
         return self.log.events.times(), values[:, 0].astype(int) - 1, values[:, 1].astype(int)
+
+
+def check_state(model: Model, at: ChainState) -> None:
+    """Check that a motion of a model may be in a state.
+
+    Raises ValueError, one line, for another number of blocks, for numbers that are not finite, for a block that sticks
+    and moves, and for one that slips backward under one-sided contact.
+    """
+    _check_blocks(model, at)
+    for name in ("position", "velocity"):
+        values = real_array(getattr(at, name), f"state.{name}")
+        if not np.isfinite(values).all():
+            raise refusal(f"state.{name}", values[~np.isfinite(values)][0], "finite numbers")
+    if not math.isfinite(real_number(at.time)):
+        raise refusal("state.time", at.time, "a finite number")
+    moving = np.flatnonzero(np.asarray(at.stuck, dtype=bool) & (values != 0.0))
+    if len(moving):
+        raise refusal(f"state.velocity[{moving[0]}]", values[moving[0]], "0, as this block sticks")
+    model.check_directions(values, "state.velocity", ROUNDING * max(1.0, model.v, np.abs(values).max()))
+
+
+def _check_blocks(model: Model, at: ChainState) -> None:
+    blocks = model.blocks
+    if not isinstance(at, ChainState) or {np.shape(x) for x in (at.position, at.velocity, at.stuck)} != {(blocks,)}:
+        raise refusal("state", at, f"a ChainState of {blocks} blocks")
 
 
 def new_observer(

@@ -1,0 +1,116 @@
+"""States from which a run begins: those that no motion has are refused, those that the program makes are not."""
+
+import math
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    Chain,
+    ChainState,
+    InitialState,
+    Model,
+    Symmetry,
+    event_exponents,
+    event_multipliers,
+    find_periodic_orbit,
+    law_of,
+    limit_cycle,
+    record_events,
+    simulate,
+    transverse_exponent,
+)
+from burridge_knopoff.attractors.attractor import perturbed
+from burridge_knopoff.motion.section_returns import state_of
+from burridge_knopoff.running.runner import ROUNDING, Runner
+from burridge_knopoff.running.status import Status
+from tests.refused import refused
+
+CHAIN, LAW = Chain(3), law_of("nonlinear", 0.5)
+MODEL = Model(CHAIN, LAW)
+ZEROS, ONES, SLIPPING, STUCK = np.zeros(3), np.ones(3), np.zeros(3, bool), np.ones(3, bool)
+
+BEGUN = {
+    "simulate": lambda state: simulate(MODEL, state, transient=0, window=5),
+    "record_events": lambda state: record_events(MODEL, state, 5.0),
+    "rk4": lambda state: record_events(MODEL, state, 5.0, solver="rk4", step=0.01),
+    "limit_cycle": lambda state: limit_cycle(MODEL, state, window=100.0),
+    "event_exponents": lambda state: event_exponents(MODEL, state, 5.0, loading="steady"),
+    "event_multipliers": lambda state: event_multipliers(MODEL, state, 5.0, loading="steady"),
+    "transverse_exponent": lambda state: transverse_exponent(MODEL, state, 100.0, 100.0),
+    "find_periodic_orbit": lambda state: find_periodic_orbit(MODEL, state, 5.0, Symmetry.ASYMMETRIC),
+}
+
+
+@pytest.mark.parametrize("begin", BEGUN)
+@pytest.mark.parametrize(
+    ("state", "message"),
+    [
+        (ChainState(ZEROS, ZEROS, SLIPPING, math.nan), "state.time: got nan, expected a finite number"),
+        (ChainState(ZEROS, -ONES, SLIPPING), "state.velocity: got -1.0, expected at least 0 under contact one_sided"),
+        (ChainState(ZEROS, [0.0, 1.0, 1.0], STUCK), "state.velocity[1]: got 1.0, expected 0, as this block sticks"),
+        (ChainState(ZEROS, [0.0, np.nan, 0.0], SLIPPING), ": got nan, expected"),
+    ],
+)
+def test_a_state_that_no_motion_has(begin, state, message):
+    with refused(message):
+        BEGUN[begin](state)
+
+
+@pytest.mark.parametrize("position", [[0.0, np.nan, 0.0], [0.0, 0.0, np.inf]])
+def test_positions_are_finite(position):
+    with refused(f"state.position: got {np.sum(position)}, expected finite numbers"):
+        record_events(MODEL, ChainState(np.array(position), ZEROS, STUCK), 5.0)
+
+
+def test_a_clock_is_a_number():
+    with refused("state.time: got 'now', expected a finite number"):
+        Runner(MODEL).begin(ChainState(ZEROS, ZEROS, STUCK, "now"))
+
+
+def test_blocks_slip_backward_under_symmetric_contact():
+    model = Model(CHAIN, LAW, contact="symmetric")
+    run = simulate(model, ChainState(ZEROS, -ONES, SLIPPING), transient=0, window=5)
+    assert run.status == "completed"
+    assert run.initially_slipping.all()
+
+
+def test_rounding_may_leave_a_stop_a_velocity_of_either_sign():
+    """The block stops at once; `Runner.after` takes more, as Newton's method passes by what no motion has."""
+    runner = Runner(MODEL, keep_events=True)
+    position = np.array([0.1, 0.2, 0.0])
+    for rounding in (-0.5 * ROUNDING, -1e-17):
+        runner.begin(ChainState(position, np.array([0.1, rounding, 0.2]), SLIPPING))
+        assert runner.run(1.0) == Status.COMPLETED
+        time, block, kind = (values[0] for values in runner.events())
+        assert (block, kind) == (1, 0)
+        assert time < 1e-11
+    assert runner.after(ChainState(position, np.array([0.1, -0.01, 0.2]), SLIPPING), 1.0) is not None
+
+
+@pytest.mark.parametrize("solver", ["series", "map"])
+@pytest.mark.parametrize("v", [0.1, 100.0])
+def test_runs_continue_from_their_events(solver, v):
+    """Mirror blocks stop together: one of them is left a rounding of velocity in the state at the other one's stop."""
+    model = Model(Chain(5, coupling=100.0), law_of("linearized", 0.3), v)
+    offset = np.array([0.01, -0.02, 0.0, -0.02, 0.01])
+    run = simulate(
+        model,
+        InitialState("own", tuple(offset - 0.9), 0.0),
+        solver=solver,
+        start="tested",
+        events="all",
+        transient=0,
+        window=60,
+    )
+    assert len(run.event_time) > 20
+    assert v < 1.0 or run.event_velocity.min() < 0.0
+    generator = np.random.default_rng(1)
+    for position, velocity in zip(run.event_position, run.event_velocity, strict=True):
+        state = state_of(np.concatenate([position - model.sliding_offset, velocity]))
+        runner = Runner(model, solver)
+        runner.begin(state)
+        assert runner.run(1.0) == Status.COMPLETED
+        pushed = perturbed(state, 1e-3, generator)
+        assert (pushed.velocity >= 0.0).all()
+        runner.begin(pushed)
