@@ -83,8 +83,31 @@ def test_recurrence_on_grids_and_networks(form, tmp_path):
     assert known["block_event_count"].sum() == events.blocks.sum() < (events.last_block - events.first_block + 1).sum()
     assert (unknown["block_event_count"] == -1).all()
     assert np.isnan(unknown["recurrence"]).all()
-    said = [text.get_text() for panel in catalogues[1].plot().axes for text in panel.texts]
-    assert "known only with profiles" in said
+    slips, recurrence, *_ = catalogues[1].plot().axes
+    for panel in (slips, recurrence):
+        assert [text.get_text() for text in panel.texts] == ["known only with profiles"]
+        assert not panel.collections
+    # Exactly the blocks that slip are drawn, not all from the first to the last.
+    (bars,) = catalogues[0].plot().axes[0].collections
+    covered = set()
+    for (low, time), (high, _) in bars.get_segments():
+        covered |= {(time, block) for block in range(round(low + 0.5), round(high + 0.5))}
+    together = zip(events.time, parts, strict=True)
+    assert covered == {(time, block) for time, part in together for block in part.tolist()}
+
+
+def test_bars_over_the_joint_of_a_ring():
+    model = Model(Chain(12, coupling=9, pulling=1, ends="ring"), law_of("carlson_langer", 3.0), v=0.01)
+    found = record_events(model, at_rest(model), 600.0)
+    over = found.first_block > found.last_block
+    assert over.any()
+    (bars,) = found.plot().axes[0].collections
+    ends = {(low[1], low[0] + 0.5, high[0] - 0.5) for low, high in bars.get_segments()}
+    expected = set()
+    for time, first, last in zip(found.time, found.first_block, found.last_block, strict=True):
+        expected |= {(time, first, last)} if first <= last else {(time, first, 12), (time, 1, last)}
+    assert ends - {(found.time[k], 1, 12) for k in np.flatnonzero(over)} <= expected
+    assert len(bars.get_segments()) == len(found.time) + (over & (found.blocks < 12)).sum()
 
 
 def test_without_events():

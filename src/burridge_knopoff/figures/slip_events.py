@@ -71,8 +71,16 @@ def say_without(panel: Axes, runs: xarray.Dataset, name: str) -> None:
     """Leave a panel empty except for the reason if none of its runs has anything of a variable."""
     if (runs["event_count"] == 0).all():
         say_nothing(panel, "no events")
+    elif name == "recurrence" and _unknown_blocks(runs):
+        # `draw_recurrence` says why.
+        return
     elif not (runs[name] > 0).any():
         say_nothing(panel, _WITHOUT[name])
+
+
+def _unknown_blocks(runs: xarray.Dataset) -> bool:
+    """Tell whether it is not known which blocks slip, as on a grid or network without profiles."""
+    return bool((runs["block_event_count"] < 0).any())
 
 
 def draw_rate(panel: Axes, run: xarray.Dataset, color: str) -> None:
@@ -108,30 +116,31 @@ def draw_interval(panel: Axes, run: xarray.Dataset, color: str) -> None:
 
 def draw_map(panel: Axes, run: xarray.Dataset, norm: Normalize) -> None:
     """Draw the last events as bars over the blocks that slip, at their times, coloured by magnitude."""
-    blocks = run.sizes["block"]
-    there = np.flatnonzero(run["shown_first_block"].values > 0)
-    # The largest on top.
-    there = there[np.argsort(run["shown_magnitude"].values[there])]
-    bars, magnitudes = [], []
-    for k in there:
-        time, magnitude, first, last = (
-            run[f"shown_{name}"].values[k] for name in ("time", "magnitude", "first_block", "last_block")
-        )
-        for low, high in [(first, last)] if first <= last else [(first, blocks), (1, last)]:
-            bars.append([(low - 0.5, time), (high + 0.5, time)])
-            magnitudes.append(magnitude)
-    if not bars:
-        return
-    panel.add_collection(LineCollection(bars, array=np.array(magnitudes), norm=norm, cmap="viridis_r", linewidth=0.9))
-    times = run["shown_time"].values[there]
     panel.xaxis.set_major_locator(MaxNLocator(integer=True))
-    panel.set(xlim=(0.5, blocks + 0.5), xlabel="block", ylabel=r"$\tau$")
+    panel.set(xlim=(0.5, run.sizes["block"] + 0.5), xlabel="block")
+    if _unknown_blocks(run):
+        # The blocks of a grid or network from the first to the last are not those that slip.
+        say(panel, "known only with profiles")
+        panel.set(yticks=[])
+        return
+    panel.set(ylabel=r"$\tau$")
+    there = np.flatnonzero(run["bar_event"].values > 0)
+    if not len(there):
+        return
+    event = run["bar_event"].values[there] - 1
+    # The largest on top.
+    order = np.argsort(run["shown_magnitude"].values[event], kind="stable")
+    there, event = there[order], event[order]
+    low, high = run["bar_first_block"].values[there] - 0.5, run["bar_last_block"].values[there] + 0.5
+    times, magnitudes = run["shown_time"].values[event], run["shown_magnitude"].values[event]
+    bars = np.stack([np.stack([low, times], axis=1), np.stack([high, times], axis=1)], axis=1)
+    panel.add_collection(LineCollection(list(bars), array=magnitudes, norm=norm, cmap="viridis_r", linewidth=0.9))
     panel.set_ylim(times.min(), max(times.max(), times.min() + 1.0))
 
 
 def draw_recurrence(panel: Axes, run: xarray.Dataset, color: str) -> None:
     """Draw the mean time between events that contain a block, with its standard deviation."""
-    if (run["block_event_count"] < 0).any():
+    if _unknown_blocks(run):
         say(panel, "known only with profiles")
         panel.set(xlabel="block", yticks=[])
         return
@@ -151,7 +160,9 @@ def magnitude_norm(runs: xarray.Dataset) -> Normalize:
 
 
 def add_magnitudes(figure: Figure, norm: Normalize, panels: list[Axes]) -> None:
-    """Add the bar of colours of maps."""
+    """Add the bar of colours of maps, if any of them shows an event."""
+    if not any(panel.collections for panel in panels):
+        return
     figure.colorbar(ScalarMappable(norm, mpl.colormaps["viridis_r"]), ax=panels, label=MAGNITUDE, aspect=30)
 
 

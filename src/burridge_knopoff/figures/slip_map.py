@@ -21,9 +21,10 @@ CATEGORY = "Slip events"
 INPUTS = ("catalogue",)
 FROM_STUDY = ("shown_law",)
 CAPTION = """\
-Slip events in space and time under the law of the figures of single runs, for up to three values of a. Each bar is one
-of the last events of the run, from its first to its last slipping block, at its time and coloured by its magnitude.
-Below, the mean time between events that contain a block, with its standard deviation (band).
+Slip events in space and time under the law of the figures of single runs, for up to three values of a. Bars cover the
+blocks that slip in one of the last events of the run, at its time and coloured by its magnitude; on a grid or network
+these are known only with profiles. Below, the mean time between events that contain a block, with its standard
+deviation (band).
 """
 
 

@@ -26,7 +26,9 @@ SHOWN = 3000
 
 _V = Variable
 _RUN = ("law", "a")
-_MAGNITUDE, _INTERVAL, _BLOCK, _SHOWN = ((*_RUN, name) for name in ("magnitude", "interval", "block", "shown_event"))
+_MAGNITUDE, _INTERVAL, _BLOCK, _SHOWN, _BAR = (
+    (*_RUN, name) for name in ("magnitude", "interval", "block", "shown_event", "bar")
+)
 VARIABLES = {
     "status": _V(_RUN, "i1", "how the run ended", STATUS_FLAG),
     "event_count": _V(_RUN, "i8", "number of events in the catalogue"),
@@ -52,8 +54,9 @@ VARIABLES = {
     "recurrence_spread": _V(_BLOCK, "f8", "standard deviation of this time"),
     "shown_time": _V(_SHOWN, "f8", "time tau of one of the last events, NaN if there are fewer"),
     "shown_magnitude": _V(_SHOWN, "f8", "magnitude of this event"),
-    "shown_first_block": _V(_SHOWN, "i4", "its first slipping block, 0 if there are fewer"),
-    "shown_last_block": _V(_SHOWN, "i4", "its last slipping block"),
+    "bar_event": _V(_BAR, "i4", "which of the last events, from 1, a stretch of blocks slips in, 0 if there are fewer"),
+    "bar_first_block": _V(_BAR, "i4", "first block of this stretch"),
+    "bar_last_block": _V(_BAR, "i4", "its last block: all between them slip"),
 }
 COORDINATES = {
     "magnitude": _V(("magnitude",), "f8", "magnitude, natural logarithm of the moment, at the middle of a bin"),
@@ -84,6 +87,9 @@ def summarize(
     for catalogue in catalogues:
         runs.append(_one(catalogue, low, high))
         attributes = {name: catalogue.attrs[name] for name in SHARED} | {"v": catalogue["v"].item()}
+    most = max(len(run["bar_event"]) for run in runs)
+    for run in runs:
+        run |= {name: _filled(run[name], 0, most) for name in VARIABLES if name.startswith("bar_")}
     values = {
         name: np.reshape([run[name] for run in runs], (len(laws), len(grid), *np.shape(runs[0][name])))
         for name in VARIABLES
@@ -98,8 +104,12 @@ def summarize(
     }
     head = {"history": "snakemake, from the catalogue files", "bin_width": WIDTH, **attributes}
     whole = summary(TITLE, VARIABLES, values, coordinates, head, module=__name__)
-    there = {"magnitude": "magnitude_count", "interval": "interval_count", "shown_event": "shown_first_block"}
-    return whole.isel({name: _extent(whole[variable], name) for name, variable in there.items()})
+    there = {
+        "magnitude": whole["magnitude_count"],
+        "interval": whole["interval_count"],
+        "shown_event": whole["shown_time"].notnull(),
+    }
+    return whole.isel({name: _extent(counts, name) for name, counts in there.items()})
 
 
 def _extent(counts: xarray.DataArray, name: str) -> slice:
@@ -113,8 +123,8 @@ def _one(catalogue: xarray.Dataset, low: float | None, high: float | None) -> di
     length = catalogue.attrs["end_time"] - catalogue.attrs["begin_time"]
     if catalogue["status"].item() != Status.COMPLETED:
         length = np.nan
-    names = ("time", "magnitude", "moment", "blocks", "first_block", "last_block", "interval")
-    time, magnitude, moment, extent, first, last, interval = (catalogue[name].values for name in names)
+    names = ("time", "magnitude", "moment", "blocks", "interval")
+    time, magnitude, moment, extent, interval = (catalogue[name].values for name in names)
     count, covered = (np.histogram(magnitude, EDGES, weights=weights)[0] for weights in (None, extent))
     with np.errstate(divide="ignore", invalid="ignore"):
         mean_extent = covered / count
@@ -138,10 +148,9 @@ def _one(catalogue: xarray.Dataset, low: float | None, high: float | None) -> di
         "block_event_count": containing,
         "recurrence": mean,
         "recurrence_spread": spread,
-        "shown_time": _last(time, np.nan),
-        "shown_magnitude": _last(magnitude, np.nan),
-        "shown_first_block": _last(first, 0),
-        "shown_last_block": _last(last, 0),
+        "shown_time": _filled(time[-SHOWN:], np.nan, SHOWN),
+        "shown_magnitude": _filled(magnitude[-SHOWN:], np.nan, SHOWN),
+        **_bars([] if members is None else members[-SHOWN:]),
     }
 
 
@@ -154,9 +163,19 @@ def _members(catalogue: xarray.Dataset) -> Sequence[np.ndarray] | None:
     return covered_blocks(catalogue["first_block"].values, catalogue["last_block"].values, catalogue.attrs["blocks"])
 
 
-def _last(values: np.ndarray, none: float) -> np.ndarray:
-    """Return the last values of all events, shape (SHOWN,), filled up."""
-    return np.pad(values[-SHOWN:], (0, max(0, SHOWN - len(values))), constant_values=none)
+def _bars(members: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
+    """Return the stretches of consecutive blocks that slip together, in the order of the events."""
+    event = np.repeat(np.arange(1, len(members) + 1), [len(part) for part in members])
+    block = np.concatenate([np.zeros(0, dtype=int), *(np.sort(part) for part in members)])
+    first = np.ones(len(block), dtype=bool)
+    first[1:] = (np.diff(event) > 0) | (np.diff(block) > 1)
+    last = np.roll(first, -1)
+    return {"bar_event": event[first], "bar_first_block": block[first], "bar_last_block": block[last]}
+
+
+def _filled(values: np.ndarray, none: float, length: int) -> np.ndarray:
+    """Return values filled up to a length."""
+    return np.pad(values, (0, length - len(values)), constant_values=none)
 
 
 def _slope(magnitude: np.ndarray, fitted: tuple[float, float], completed: bool) -> Mapping[str, float]:
