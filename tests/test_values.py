@@ -129,3 +129,18 @@ def test_aliases_that_fill_any_memory_when_they_are_written_out(tmp_path, form):
     path.write_text("a: &a [*a]")
     with pytest.raises(ConfigError, match=r"bomb.yaml: more than \d+ values"):
         read_yaml(path)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [
+        (np.float64("nan"), "nan"),
+        (np.float32(0.1), "0.1"),
+        (np.longdouble(2), "2.0"),
+        (np.int64(3), "3"),
+        (np.bool_(True), "True"),
+        ([np.float64(0.5), (np.int8(1),)], "[0.5, (1,)]"),
+    ],
+)
+def test_numbers_of_numpy_are_shown_as_plain_numbers(value, text):
+    assert shown(value) == text

@@ -155,7 +155,8 @@ def _parts(value: Any) -> Iterator[str]:
 
 def _written(value: Any) -> str:
     try:
-        return repr(value)
+        # A number of numpy is shown as the plain number that it is.
+        return str(value) if isinstance(value, np.number | np.bool) and value.dtype.kind != "m" else repr(value)
     # Whatever is given may be what cannot write itself.
     except Exception:
         return f"a {type(value).__name__}"

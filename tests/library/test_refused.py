@@ -140,3 +140,36 @@ def test_a_run_ends_where_its_law_does():
     at = model.begin(far)
     arrays = (np.tile(values, (3, 1)) for values in (at.position, at.velocity, at.stuck.astype(np.intc)))
     assert (new_ensemble(model).run(*arrays, [50.0])["end"] < 50.0).all()
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: simulate("linearized", 0.1, "minus", **{"foo\nbar": 1}),
+        lambda: find_attractors("linearized", 0.1, **{"foo\nbar": 1}),
+        lambda: sweep("linearized", a=0.1, **{"foo\nbar": [1.0]}),
+        lambda: sweep("linearized", a=0.1, **{"foo\nbar": []}),
+    ],
+)
+def test_names_of_settings_are_shown_in_a_line(call):
+    with refused("'foo\\nbar': "):
+        call()
+
+
+@pytest.mark.parametrize("content", [None, "{}", "nonsense"])
+def test_names_of_folders_are_shown_in_a_line(tmp_path, content):
+    folder = tmp_path / "a\nb"
+    if content is not None:
+        folder.mkdir()
+        (folder / "study.json").write_text(content)
+    with refused("a\\nb", "not the "):
+        open_study(folder)
+
+
+def test_attractors_need_a_state_to_begin_from():
+    for call in (
+        lambda: find_attractors("linearized", 0.1, samples=0),
+        lambda: find_attractors(MODEL, SearchSettings(samples=0)),
+    ):
+        with refused("samples: got 0, expected 1 or more, or initial states in starts"):
+            call()

@@ -28,7 +28,7 @@ from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
-from burridge_knopoff.values import instance_of
+from burridge_knopoff.values import instance_of, refusal
 
 
 def find_attractors(
@@ -49,7 +49,7 @@ def find_attractors(
     The indices have shape (settings.samples + len(starts),), those of the drawn states first; −1 where a state reaches
     nothing that settles. What no state reaches is not found, nor is a motion on which no block ever stops: attractors
     are known by the states at the stops of the outermost block that stops regularly. Raises ValueError if an initial
-    state does not fit the model.
+    state does not fit the model, and if there is none to begin from.
 
     Times are in units of 1/ω. docs/attractors.md has the search as a diagram.
 
@@ -67,6 +67,8 @@ def find_attractors(
     instance_of(model, Model, "model")
     instance_of(settings, SearchSettings, "settings")
     instance_of(motion, MotionSettings, "motion")
+    if not settings.samples and not len(starts):
+        raise refusal("samples", settings.samples, "1 or more, or initial states in starts")
     search = Search(model, settings, motion)
     labels = search.labels(search.starts(starts, start))
     return search.attractors, labels

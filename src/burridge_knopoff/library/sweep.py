@@ -23,7 +23,7 @@ from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.threads import in_threads
-from burridge_knopoff.values import refusal, shown
+from burridge_knopoff.values import joined, refusal, shown
 
 if TYPE_CHECKING:
     import xarray
@@ -116,9 +116,9 @@ def _grid(
     axes: dict[str, list[float]] = {name: given.tolist() for name, given in arrays.items() if given.ndim}
     for name, values in axes.items():
         if arrays[name].ndim > 1:
-            raise refusal(name, values, "one number or a sequence of numbers")
+            raise refusal(joined("", name), values, "one number or a sequence of numbers")
         if not values:
-            raise ValueError(f"{name}: got no value, expected at least one")
+            raise ValueError(f"{joined('', name)}: got no value, expected at least one")
     single = {name: value for name, value in parameters.items() if name not in axes}
     if isinstance(law, Model):
         base = given_model(law, None, blocks, chain, None, contact)
@@ -128,7 +128,7 @@ def _grid(
     for name in parameters:
         if name not in names_of(base):
             known = " | ".join([*names_of(base), *sorted(fields_of(Settings))])
-            raise ValueError(f"{name}: not a setting or a parameter, expected {known}")
+            raise ValueError(f"{joined('', name)}: not a setting or a parameter, expected {known}")
     base = base.at(**single)
     for name, values in axes.items():
         axes[name] = [value_of(base.at(**{name: value}), name) for value in values]

@@ -14,6 +14,7 @@ from typing import Any
 
 from burridge_knopoff.provenance.files import display_path, write_text
 from burridge_knopoff.provenance.sources import PACKAGE, SOFTWARE
+from burridge_knopoff.values import printable
 
 NAME = "study.json"
 
@@ -79,11 +80,13 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         # Records of earlier versions have no files.
         record = {"files": {}, **json.loads(path.read_text(encoding="utf-8"))}
     except OSError:
-        raise ValueError(f"{results}: not the results of a study: no {NAME} in it; `snakemake` writes it") from None
+        raise ValueError(
+            f"{printable(str(results))}: not the results of a study: no {NAME} in it; `snakemake` writes it"
+        ) from None
     except (ValueError, TypeError, RecursionError):
         record = {}
     if {key: type(value) for key, value in record.items()} != _TYPES:
-        raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
+        raise ValueError(f"{printable(str(path))}: not the record of a study; run snakemake again, it writes it")
     return record
 
 

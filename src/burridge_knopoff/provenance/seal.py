@@ -23,6 +23,7 @@ from typing import Any
 from burridge_knopoff.provenance.difference import difference
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.record import recorded_file, remake_command, study_folder
+from burridge_knopoff.values import printable
 
 _MARK = b"\n#seal "
 _SEAL = re.compile(rb"\n#seal (.+) ([a-z_]+) ([0-9a-f]{64})\n\Z")
@@ -44,7 +45,7 @@ class BadFile(ValueError):
 
     def __init__(self, path: str | Path, reason: str, kind: str = "stale") -> None:
         self.path, self.reason, self.kind = Path(path), reason, kind
-        super().__init__(f"{path}: {reason}{REMEDY}{remake_command(path)}")
+        super().__init__(f"{printable(str(path))}: {reason}{REMEDY}{remake_command(path)}")
 
 
 def identity(*parts: str) -> str:

@@ -15,7 +15,7 @@ from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.paths import VALUE
 from burridge_knopoff.study.study import Study
-from burridge_knopoff.values import joined
+from burridge_knopoff.values import joined, printable
 
 #: Keys without a default, which a complete config need not have.
 _OPTIONAL = ("chain.grid", "chain.springs", "catalogue", "catalogue.low", "catalogue.high")
@@ -29,7 +29,7 @@ def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
     """
     record, path = read_study_record(results), Path(results, NAME)
     if key := _other_key(record["config"], CONFIG):
-        raise ValueError(f"{path}: not a study of this version ({key}); run snakemake again")
+        raise ValueError(f"{printable(str(path))}: not a study of this version ({key}); run snakemake again")
     # The form of a complete config is the config itself. A default may however be refused if it is given explicitly.
     asked = {name: value for name, value in record["config"].items() if value != CONFIG.fields[name].default}
     # A comparison of solvers that is left out has no values of a; a config cannot ask for that.
@@ -37,7 +37,7 @@ def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
         asked["solvers"] = {key: value for key, value in solvers.items() if key != "a"}
     study = load_study(asked, str(path))
     if (study.config, study.parameters) != (record["config"], record["grid"]):
-        raise ValueError(f"{path}: not the record of a study; run snakemake again, it writes it")
+        raise ValueError(f"{printable(str(path))}: not the record of a study; run snakemake again, it writes it")
     return record, study
 
 
