@@ -137,3 +137,18 @@ def test_starts_that_are_apart_keep_their_order(coupling, apart):
     assert first == pytest.approx([5.0, 5.0 + apart, 5.0], abs=4 * rounding)
     if apart > 8 * rounding:
         assert first[0] < first[1] > first[2]
+
+
+@pytest.mark.parametrize("grid", [(3, 3), (4, 3), (6, 5)])
+@pytest.mark.parametrize("engine", ["series", "ensemble"])
+def test_grids_from_left_to_right(grid, engine):
+    """docs/model.md promises the bits for this reflection alone: the others change the order of the sums of forces."""
+    columns, rows = grid
+    generator = np.random.default_rng(columns)
+    left = generator.uniform(-1.2, -0.4, (rows, columns))
+    position = np.minimum(left, left[:, ::-1])
+    model = Model(Chain(grid=grid, coupling=3.0, pulling=1.0), law_of("carlson_langer", 3.0), v=0.1)
+    x, u, count = states_of(engine, model, position.ravel(), np.zeros(columns * rows), 60.0, "tested")
+    assert count > 50
+    found = np.reshape([x, u], (2, TIMES, rows, columns))
+    assert (found == found[..., ::-1]).all()
