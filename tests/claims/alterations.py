@@ -79,6 +79,13 @@ def repeating(points: int) -> Alteration:
     )
 
 
+def attracting(points: int) -> Alteration:
+    """Make the attractor that plus reaches repeat after so many section points."""
+    return both(
+        alter("attractors", "kind", PERIODIC, attractor=1), alter("attractors", "section_count", points, attractor=1)
+    )
+
+
 def line_from(first: float) -> Alteration:
     """Put the section points from plus on the line of minus from a value of a on, and below it before."""
 
@@ -455,24 +462,8 @@ CASES: list[tuple[str, str, Alteration]] = [
     # Motion that repeats after so many section points that they are a cloud, and after one less.
     ("plus_aperiodic", LOOSELY, repeating(9)),
     ("plus_aperiodic", CONVENTION, repeating(8)),
-    (
-        "plus_aperiodic",
-        LOOSELY,
-        both(
-            repeating(9),
-            alter("attractors", "kind", PERIODIC, attractor=1),
-            alter("attractors", "section_count", 9, attractor=1),
-        ),
-    ),
-    (
-        "plus_aperiodic",
-        FAILS,
-        both(
-            repeating(8),
-            alter("attractors", "kind", PERIODIC, attractor=1),
-            alter("attractors", "section_count", 8, attractor=1),
-        ),
-    ),
+    ("plus_aperiodic", LOOSELY, both(repeating(9), attracting(9))),
+    ("plus_aperiodic", FAILS, both(repeating(8), attracting(8))),
     ("plus_aperiodic", CONVENTION, reached(0, initial="plus", **OTHER)),
     # An attractor that is not known is no evidence, nor one whose motion is not.
     ("plus_aperiodic", HOLDS, reached(-1, initial="plus", **OTHER)),

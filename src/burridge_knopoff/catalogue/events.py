@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -140,5 +140,4 @@ def record_events(
         first = (ends - np.diff(ends, prepend=0))[order]
         index = np.repeat(first - np.cumsum(counts) + counts, counts) + np.arange(len(slip))
         ends, block, slip = np.cumsum(counts), block[index], slip[index]
-    final = runner.final() if status == Status.COMPLETED else replace(runner.state(), time=runner.clock)
-    return SlipEvents(**table, slip_end=ends, slip_block=block, slip=slip, status=status, final=final)
+    return SlipEvents(**table, slip_end=ends, slip_block=block, slip=slip, status=status, final=runner.final(status))

@@ -124,6 +124,8 @@ def _rests(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:
     middle = (0.5 * (begins + ends))[begins > ends]
     if len(middle):
         middle = np.unique(middle[np.abs(middle - edges[:, None]).argmin(axis=1)])
+    if start.stuck.all():
+        return middle
     # Blocks that slip at the start belong to no event.
     runner.begin(start)
     return middle[[runner.run(time) == Status.COMPLETED and bool(runner.state().stuck.all()) for time in middle]]
@@ -155,7 +157,7 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     perturbations = np.vstack([np.eye(blocks), np.zeros((blocks, blocks))])
     runner = Runner(model, perturbations=perturbations, loading=loading, groups=False)
     runner.begin(start)
-    force = -(model.chain.sparse_stiffness @ start.position)
+    force = model.chain.force(start.position + model.sliding_offset)
     pulled = np.abs(force) if model.contact == "symmetric" else force
     if not start.stuck.all() or (pulled > model.chain.thresholds * (1.0 + LENIENT)).any():
         raise refusal("start", start, "a state in which all blocks stick, none beyond its threshold")

@@ -49,17 +49,14 @@ def under_conventions(
     A claim depends on convention if it holds, at least loosely, under one convention and fails under another.
     """
     verdicts, others, unknown = {evidence.own_convention: own}, [], []
-    if "attractors" in evidence.summaries:
-        for name, attractors in evidence.conventions():
-            if name == evidence.own_convention:
-                continue
-            found, numbers = judge(attractors)
-            if found:
-                verdicts[name] = found
-            else:
-                unknown.append(name)
-            if found and found != own:
-                others.append(f"{name}: {found} ({numbers})")
+    for name, attractors in evidence.other_conventions():
+        found, numbers = judge(attractors)
+        if found:
+            verdicts[name] = found
+        else:
+            unknown.append(name)
+        if found and found != own:
+            others.append(f"{name}: {found} ({numbers})")
     if unknown:
         others.append(f"not judged under {' and '.join(unknown)}")
     changes = "; ".join([*exceptions, *others])

@@ -171,13 +171,19 @@ class Evidence:
         """The study's convention of contact and start, as tables name it."""
         return f"{self.config['contact']}, {self.config['start']}"
 
-    def conventions(self) -> Iterator[tuple[str, xarray.Dataset]]:
-        """Yield («contact, start», the attractors with the branches of the initial states) for each convention."""
+    def other_conventions(self) -> Iterator[tuple[str, xarray.Dataset]]:
+        """Yield («contact, start», the attractors with the branches of the initial states) for each convention.
+
+        The study's own is left out; a study without attractors has none.
+        """
+        if "attractors" not in self.summaries:
+            return
         self.check_blocks()
         attractors = self.summary("attractors")
         for contact in attractors["contact"].values:
             for start in attractors["start"].values:
-                yield f"{contact}, {start}", attractors.sel(contact=contact, start=start)
+                if (name := f"{contact}, {start}") != self.own_convention:
+                    yield name, attractors.sel(contact=contact, start=start)
 
     def own_attractors(self) -> xarray.Dataset:
         """Return the attractors with the branches that initial states reach under the study's convention."""

@@ -140,12 +140,8 @@ def periodic_is_synchronized(
 
 def _periodic_elsewhere(evidence: Evidence, initial: Sequence[str], a: Range) -> list[str]:
     """Return, in words, where states reach periodic motion without synchrony under the other conventions."""
-    if "attractors" not in evidence.summaries:
-        return []
     texts = []
-    for convention, attractors in evidence.conventions():
-        if convention == evidence.own_convention:
-            continue
+    for convention, attractors in evidence.other_conventions():
         inside = evidence.choose(attractors, a)
         for law in PAPER_LAWS:
             for state in initial:

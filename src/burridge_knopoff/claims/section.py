@@ -60,12 +60,7 @@ def cloud_at_lower_velocities(
     A cloud is lower if its mean W' is below that of the other state.
     """
     grid, line, cloud = _sections(evidence, initial, law, a)
-    known = np.array([len(one) > 0 for one in line], dtype=bool)
-    if known.sum() < LEAST_VALUES:
-        raise NotTestableError(
-            f"a statement on all {a} needs {LEAST_VALUES} values of a at which the run from {initial[0]} crosses the "
-            f"section; there are {known.sum()}"
-        )
+    known = _crossed(line, initial[0], a)
     many, empty = _many(cloud, points), np.array([len(other) == 0 for other in cloud])
     pairs = [known[k] and not empty[k] for k in range(len(grid))]
     lower = np.array([both and other.mean() < one.mean() for both, one, other in zip(pairs, line, cloud, strict=True)])
@@ -153,12 +148,7 @@ def line_disappears(
     near : a point is on the line if its W' differs from that of the other state at this a by at most this fraction
     """
     grid, line, other = _sections(evidence, initial, law, a)
-    known = np.array([len(one) > 0 for one in line], dtype=bool)
-    if known.sum() < LEAST_VALUES:
-        raise NotTestableError(
-            f"a statement on all {a} needs {LEAST_VALUES} values of a at which the run from {initial[0]} crosses the "
-            f"section; there are {known.sum()}"
-        )
+    known = _crossed(line, initial[0], a)
     there = np.array(
         [
             k and (np.abs(found - one.mean()) <= near * one.mean()).any()
@@ -199,6 +189,17 @@ def _sections(
     points = [section_points(evidence.summary("bifurcation_diagram"), law, name, 1) for name in initial]
     first, second = ([velocity[at == value] for value in grid] for at, velocity in points)
     return grid, first, second
+
+
+def _crossed(sections: list[np.ndarray], initial: str, a: Range) -> np.ndarray:
+    """Return at which values of a runs from a state cross the section; raises NotTestableError if these are too few."""
+    known = np.array([len(one) > 0 for one in sections], dtype=bool)
+    if known.sum() < LEAST_VALUES:
+        raise NotTestableError(
+            f"a statement on all {a} needs {LEAST_VALUES} values of a at which the run from {initial} crosses the "
+            f"section; there are {known.sum()}"
+        )
+    return known
 
 
 def _many(sections: list[np.ndarray], points: int) -> np.ndarray:

@@ -32,8 +32,6 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 if TYPE_CHECKING:
     import xarray
 
-PAPER_STEPS = "the paper's time stepping"
-
 
 def solutions_agree(
     evidence: Evidence, initial: Sequence[str], a: Range, relative: float, loose_share: float
@@ -137,7 +135,7 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
     if not len(own):
         raise NotTestableError("no run with the solver map completed")
     largest = float(own.max())
-    taken = {PAPER_STEPS: steps}
+    taken = {"the paper's time stepping": steps}
     for name in ("rk4", "series"):
         if name in found["solver"].values and np.isfinite(rate.sel(solver=name)).any():
             taken[name] = float(np.nanmax(rate.sel(solver=name)))
@@ -157,9 +155,9 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
         f"{name} takes {taken[name]:.4g}, {_more(ratio)} ({readings[f'compared with {name}']})"
         for name, ratio in ratios.items()
     ]
-    verdict, own_reading = by_readings(readings)
+    verdict, first = by_readings(readings)
     reason = f"The map takes at most {largest:.2f} steps per unit time; {'; '.join(texts)}."
-    return Verdict(verdict, reason, measured, "", readings, own_reading)
+    return Verdict(verdict, reason, measured, "", readings, first)
 
 
 def _more(times: float) -> str:

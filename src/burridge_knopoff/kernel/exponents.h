@@ -19,9 +19,8 @@ constexpr double NEVER = 1e300;
 // start_time : the perturbations start with the piece of the motion in which this time lies; until the first edge they
 //     only turn into the growing directions
 // edge : boundaries of the batches
-// at_rest : whether the perturbations are orthonormalised whenever a block starts after all have stuck: a batch whose
-// edges
-//     lie in times of rest then has the growth of whole slips, which no unit of time changes, as all velocities are 0
+// at_rest : whether the perturbations are orthonormalised whenever a block starts after all have stuck. A batch whose
+//     edges lie in times of rest then has the growth of whole slips, which depends on no unit: all velocities are 0
 class Exponents {
   public:
     Tangent tangent;

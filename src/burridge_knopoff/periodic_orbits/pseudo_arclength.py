@@ -118,14 +118,14 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
     return ParameterLine((parameter,), (value,), (min(LONGEST * size, CHANGE / max(change, 1e-300)),), units=units)
 
 
-def weights(model: Model, line: ParameterLine = ALONG_A) -> np.ndarray:
+def weights(model: Model, line: ParameterLine) -> np.ndarray:
     """Return the weight of each component of (positions and velocities, return time, parameter) in a squared length."""
     units = line.units
     state = STATE_WEIGHT / model.scale**2 * (units.velocity / units.state(model.blocks)) ** 2
     return np.concatenate([state, [TIME_WEIGHT / units.time**2, 1.0]])
 
 
-def tangent_of(orbit: PeriodicOrbit, line: ParameterLine = ALONG_A) -> np.ndarray:
+def tangent_of(orbit: PeriodicOrbit, line: ParameterLine) -> np.ndarray:
     """Return the unit tangent of the branch at an orbit, of either sign."""
     model, start, time = orbit.model, orbit.reference, orbit.return_time
     basis, units = directions(start.stuck, orbit.symmetry), line.units
@@ -143,7 +143,7 @@ def tangent_of(orbit: PeriodicOrbit, line: ParameterLine = ALONG_A) -> np.ndarra
     return vector / np.sqrt(weights(model, line) @ vector**2)
 
 
-def begin_branch(orbit: PeriodicOrbit, upward: bool, line: ParameterLine = ALONG_A) -> BranchOrbit:
+def begin_branch(orbit: PeriodicOrbit, upward: bool, line: ParameterLine) -> BranchOrbit:
     """Return an orbit with the tangent along which the parameter grows or falls."""
     tangent = tangent_of(orbit, line)
     return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent, line=line)

@@ -127,9 +127,11 @@ class Runner:
         position, velocity = (np.asarray(x, dtype=float) for x in (at.position, at.velocity))
         self.kernel.begin(position, velocity, np.asarray(at.stuck, dtype=bool), clock)
 
-    def final(self) -> ChainState:
-        """Return the state at the end of a completed run, from which a run continues with the same steps."""
+    def final(self, status: Status = Status.COMPLETED) -> ChainState:
+        """Return the state at the end of a run; from that of a completed one a run continues with the same steps."""
         at = replace(self.state(), time=self.clock)
+        if status != Status.COMPLETED:
+            return at
         object.__setattr__(at, "last_step", (self.solver, self.kernel.mark()))
         return at
 

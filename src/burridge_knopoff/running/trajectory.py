@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -110,7 +110,7 @@ def collect(
         begin_time=begun.time,
         end_time=runner.clock,
         initially_slipping=~begun.stuck,
-        final=runner.final() if completed else replace(runner.state(), time=runner.clock),
+        final=runner.final(status),
         event_count=log.count,
         step_count=runner.kernel.steps,
         mean_distance=float(batch.mean()),
