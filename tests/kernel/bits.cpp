@@ -113,7 +113,7 @@ int main() {
             EventLog log = logged();
             Observer observer = observed();
             Catalogue catalogue(n, 0.0, false, MOST_NUMBERS);
-            Exponents exponents(n, vectors, 0.0, edge);
+            Exponents exponents(n, vectors, 0.0, edge, false);
             Run run(model, log, observer, exponents, true, -1, 1LL << 40, 0.0);
             run.catalogue = &catalogue;
             run.begin(x.data(), u.data(), sticks, 0.0);

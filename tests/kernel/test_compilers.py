@@ -2,6 +2,7 @@
 
 import os
 import subprocess
+import sysconfig
 from pathlib import Path
 
 import numpy as np
@@ -108,6 +109,12 @@ def check(compile_with, run_with, folder, monkeypatch):
             bits = np.ravel(expected).astype(float).tobytes()
             assert next(found).tobytes() == bits, f"{name}: {model}"
     assert next(found, None) is None
+
+
+def test_what_reads_the_cases_compiles():
+    # Also where no other compiler is at hand.
+    compiler = sysconfig.get_config_var("CXX").split()[0]
+    subprocess.run([compiler, "-std=c++20", "-fsyntax-only", f"-I{KERNEL}", SOURCE], check=True)
 
 
 @needs("BK_CLANG")
