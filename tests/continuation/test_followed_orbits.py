@@ -11,7 +11,7 @@ from burridge_knopoff.continuation import followed_orbits
 from burridge_knopoff.continuation.branch_changes import BranchChange, Change
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
 from burridge_knopoff.periodic_orbits.branch_segment import Half
-from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A
+from burridge_knopoff.periodic_orbits.parameter_line import along_a
 from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch
 
 
@@ -32,7 +32,7 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, fail
     def alone(one, *_):
         if one.period == pytest.approx((failing or 0.0) * orbit.period, rel=1e-6):
             raise OrbitError("cannot be followed")
-        return Half([begin_branch(one, True, ALONG_A)])
+        return Half([begin_branch(one, True, along_a(one.model.chain))])
 
     monkeypatch.setattr(followed_orbits, "limit_cycle", limit_cycle)
     monkeypatch.setattr(followed_orbits, "half", alone)

@@ -10,7 +10,10 @@ from burridge_knopoff.periodic_orbits import bifurcations
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
 from burridge_knopoff.periodic_orbits.following import BranchOrbit
+from burridge_knopoff.periodic_orbits.parameter_line import along_a
 from tests.periodic_orbits.stand_in import stand_in
+
+LINE = along_a(Chain(3))
 
 
 @pytest.mark.parametrize(
@@ -44,7 +47,7 @@ def branch(monkeypatch):
         def point(length, slope=1.0):
             orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
             told = {"value": a(length), "multipliers": value(length), "length": length, "tangent": [slope]}
-            return stand_in(BranchOrbit, orbit=orbit, **told)
+            return stand_in(BranchOrbit, line=LINE, orbit=orbit, **told)
 
         monkeypatch.setattr(bifurcations, "critical_values", lambda orbit, value: {(kind, "keeping"): value})
         monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
@@ -129,7 +132,7 @@ def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeyp
         orbit = SimpleNamespace(symmetry=Symmetry.SYNCHRONIZED)
         multipliers = SimpleNamespace(keeping=values, breaking=values, length=length)
         told = {"value": 0.1 + length, "multipliers": multipliers, "length": length, "tangent": [1.0]}
-        return stand_in(BranchOrbit, orbit=orbit, **told)
+        return stand_in(BranchOrbit, line=LINE, orbit=orbit, **told)
 
     def values(orbit, found):
         sign = {"period_doubling": 1.0, "torus": -1.0, "pitchfork": -1.0, "fold": 1.0}
@@ -180,8 +183,8 @@ def test_the_period_at_a_bifurcation_is_that_of_the_orbits_before_it(before, exp
     ],
 )
 def test_an_orbit_grazes_at_the_length_that_is_left(remaining, slope, beyond, a, error, turns):
-    point = stand_in(BranchOrbit, value=0.1, remaining=remaining, tangent=[9.0, slope], corner=True)
-    following = [] if beyond is None else [stand_in(BranchOrbit, tangent=[-9.0, beyond], corner=False)]
+    point = stand_in(BranchOrbit, line=LINE, value=0.1, remaining=remaining, tangent=[9.0, slope], corner=True)
+    following = [] if beyond is None else [stand_in(BranchOrbit, line=LINE, tangent=[-9.0, beyond], corner=False)]
     (bifurcation,) = locate_bifurcations([point, *following])
     assert (bifurcation.kind, bifurcation.turns) == (BifurcationKind.GRAZING, turns)
     assert (bifurcation.a, bifurcation.error) == (
@@ -221,8 +224,8 @@ def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_that(monkeyp
     monkeypatch.setattr(bifurcations, "locate_bifurcations", located)
     simple = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=2.0)
-    point = stand_in(BranchOrbit, orbit=orbit, value=0.11, length=0.02, corner=False)
-    end = stand_in(BranchOrbit, orbit=orbit, value=0.12, length=0.03, joined=simple, corner=False)
+    point = stand_in(BranchOrbit, line=LINE, orbit=orbit, value=0.11, length=0.02, corner=False)
+    end = stand_in(BranchOrbit, line=LINE, orbit=orbit, value=0.12, length=0.03, joined=simple, corner=False)
     found = list(own([point, end]))
     assert asked == [(simple, pytest.approx(0.05), pytest.approx(0.19))] * 2
     if expected is None:

@@ -6,10 +6,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import ChainState, OrbitError
+from burridge_knopoff import Chain, ChainState, OrbitError
 from burridge_knopoff.model.own_units import OwnUnits
 from burridge_knopoff.periodic_orbits import border_collision
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.parameter_line import along_a
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 
 
@@ -46,7 +47,7 @@ def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(monkeypatch, values, l
     ],
 )
 def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
-    found = BranchOrbit(SimpleNamespace(stop_counts=stop_counts), np.zeros(4))
+    found = BranchOrbit(SimpleNamespace(stop_counts=stop_counts), np.zeros(4), along_a(Chain(1)))
 
     def step(point, length):
         if stop_counts is None:

@@ -5,12 +5,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import ChainState, Symmetry
-from burridge_knopoff.model.own_units import OwnUnits
+from burridge_knopoff import Chain, ChainState, Model, Symmetry, law_of
 from burridge_knopoff.periodic_orbits import minimal_orbit
 from burridge_knopoff.periodic_orbits.minimal_orbit import simplest
 
 STILL = np.zeros(2, dtype=bool)
+#: No mirror image of itself.
+UNEQUAL = Chain(2, threshold=(1.0, 1.1))
 
 
 @pytest.mark.parametrize(
@@ -30,8 +31,7 @@ STILL = np.zeros(2, dtype=bool)
     ],
 )
 def test_twice_a_simpler_orbit_is_near_it_with_its_stops_in_its_time(monkeypatch, away, scale, time, stops, told):
-    chain = SimpleNamespace(is_mirror_symmetric=False, own_units=OwnUnits())
-    model = SimpleNamespace(scale=scale, blocks=2, chain=chain)
+    model = Model(UNEQUAL, law_of("linearized", 0.05), 0.1 * scale)
     reference, end = (ChainState(np.array([0.3, x]), np.full(2, 0.1), STILL) for x in (0.2, 0.2 + away))
 
     def an_orbit(time, stops):

@@ -97,6 +97,12 @@ class Model(Unchanging):
         """Factor on distances given for v = 0.1: distances grow with v, in proportion under the linearized law."""
         return self.v / 0.1
 
+    @property
+    def state_scale(self) -> np.ndarray:
+        """Factors on differences of positions and velocities given for v = 0.1 in own units, shape (2 blocks,)."""
+        units = self.chain.own_units
+        return self.scale / units.velocity * units.state(self.blocks)
+
     @cached_property
     def sliding_offset(self) -> np.ndarray:
         """Positions e of uniform sliding relative to the driver, shape (blocks,)."""

@@ -83,8 +83,7 @@ def _returns(
     stops = values[:, 1] == 0
     if not stops.any():
         return
-    units = model.chain.own_units
-    own_units, scale = units.state(model.blocks), model.scale / units.velocity
+    scale = model.state_scale
     block = int(values[stops, 0].min())
     other = model.blocks + 1 - block
     own = np.flatnonzero(stops & (values[:, 0] == block))
@@ -92,7 +91,7 @@ def _returns(
     repeated = [(times[k] - begun, Symmetry.ASYMMETRIC, values[k, 2:]) for k in own[1:]]
     if model.chain.is_mirror_symmetric:
         order = mirror(model.blocks)
-        if np.abs((state - state[order]) / own_units).max() <= CLOSENESS[0] * scale:
+        if np.abs((state - state[order]) / scale).max() <= CLOSENESS[0]:
             repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, _, at in repeated]
         else:
             soonest = begun + SOONEST * (times[own[1:2]] - begun).sum()
@@ -101,7 +100,7 @@ def _returns(
     repeated.sort(key=lambda item: item[0])
     for size in CLOSENESS:
         for time, symmetry, at in repeated:
-            if np.abs((at - state) / own_units).max() <= size * scale:
+            if np.abs((at - state) / scale).max() <= size:
                 yield state_of(state), float(time), symmetry, size
                 break
 
@@ -111,14 +110,11 @@ def _stays(orbit: PeriodicOrbit, values: np.ndarray, reach: float) -> bool:
 
     reach : for v = 0.1 in the chain's own units, as CLOSENESS is
     """
-    units = orbit.model.chain.own_units
-    own_units, scale = units.state(orbit.model.blocks), orbit.model.scale / units.velocity
     block = int(np.flatnonzero(orbit.stop_counts)[0]) + 1
     around, _ = flow(orbit.model, orbit.reference, orbit.period)
-    own, seen = (_stops(events, block) / own_units for events in (around.log.events.values(), values))
+    own, seen = (_stops(events, block) / orbit.model.state_scale for events in (around.log.events.values(), values))
     first, last = (distance(turn, own, share=1.0) for turn in (seen[: len(own)], seen[-len(own) :]))
-    rounding = CLOSENESS[0] * scale
-    return last <= (rounding if multipliers(orbit).unstable else max(rounding, min(first, reach * scale)))
+    return last <= (CLOSENESS[0] if multipliers(orbit).unstable else max(CLOSENESS[0], min(first, reach)))
 
 
 def _stops(values: np.ndarray, block: int) -> np.ndarray:

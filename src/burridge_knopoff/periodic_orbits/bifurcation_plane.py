@@ -96,7 +96,7 @@ class BifurcationPlane:
             found, errors = self._grazing(_first_with(self.stops, orbit_at, longest), line)
         else:
             found, errors = self._root(orbit_at(0.0), line, longest)
-            if kind_at(BranchOrbit(found, tangent, line=line), self.key) != self.kind:
+            if kind_at(BranchOrbit(found, tangent, line), self.key) != self.kind:
                 raise OrbitError(f"{line.place(found.model)}: the bifurcation becomes another one")
         offset = safe_offset(found)
         if offset:

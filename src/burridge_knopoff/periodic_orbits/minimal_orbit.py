@@ -28,14 +28,12 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
     tolerance : largest distance, for v = 0.1 in the chain's own units, of its state from that of the simpler orbit; a
         branch of orbits of less symmetry, or of twice the period, begins at such orbits
     """
-    units = orbit.model.chain.own_units
-    own, scale = units.state(orbit.model.blocks), orbit.model.scale / units.velocity
     for time, symmetry in _simpler(orbit):
         if time > 0.0:
             end = ReturnMap(orbit.model, symmetry).end(orbit.reference, time)
         else:
             end, time = orbit.reference.mirrored(), orbit.period
-        if np.abs((end.vector() - orbit.reference.vector()) / own).max() > tolerance * scale:
+        if np.abs((end.vector() - orbit.reference.vector()) / orbit.model.state_scale).max() > tolerance:
             continue
         try:
             found = find_periodic_orbit(orbit.model, orbit.reference, time, symmetry)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
@@ -25,15 +25,15 @@ class ParameterLine:
     """A line in the space of parameters: each is its origin plus its rate times the coordinate.
 
     names : the first one tells the coordinate of a model
-    least : the least coordinate at which there is a model, if known
     units : in which changes of states and times are measured, the same all along the line
+    least : the least coordinate at which there is a model, if known
     """
 
     names: tuple[str, ...]
     origins: tuple[float, ...]
     rates: tuple[float, ...]
+    units: OwnUnits
     least: float = float("-inf")
-    units: OwnUnits = field(default=OwnUnits())
 
     @property
     def parameter(self) -> str:
@@ -61,8 +61,4 @@ class ParameterLine:
 def along_a(chain: Chain) -> ParameterLine:
     """Return the line along a, with coordinates in the chain's own unit of it."""
     units = chain.own_units
-    return ParameterLine(("a",), (0.0,), (units.slope,), least=0.0, units=units)
-
-
-#: The friction parameter of the paper's chain: coordinates are a itself.
-ALONG_A = ParameterLine(("a",), (0.0,), (1.0,), least=0.0)
+    return ParameterLine(("a",), (0.0,), (units.slope,), units, least=0.0)

@@ -21,7 +21,7 @@ import numpy as np
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distance, rate
-from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A, ParameterLine
+from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, along_a
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions, mirror
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import check_state
@@ -150,22 +150,33 @@ class PeriodicOrbit:
         return ChainState(state.position, np.where(stuck, 0.0, state.velocity), stuck)
 
 
+@dataclass(frozen=True)
+class Constraint:
+    """What fixes an orbit that is looked for along a line of parameters.
+
+    vector : over (positions and velocities, return time, coordinate on the line)
+    amount : the product of this vector with the change from the origin
+    origin : a state, a return time and a coordinate
+    """
+
+    vector: np.ndarray
+    amount: float
+    origin: tuple[np.ndarray, float, float]
+    line: ParameterLine
+
+
 def solve_return(
     model: Model,
     start: ChainState,
     time: float,
     symmetry: Symmetry,
-    constraint: tuple[np.ndarray, float] | None = None,
-    origin: tuple[np.ndarray, float, float] | None = None,
+    constraint: Constraint | None = None,
     enough: float = ENOUGH,
-    line: ParameterLine = ALONG_A,
 ) -> PeriodicOrbit:
     """Return the orbit that solves the equations, by Newton's method from a guess of its reference state.
 
-    constraint : a vector over (positions and velocities, time, a), an origin of the same form, and the required product
-        of the vector with the change from the origin; makes a another unknown
+    constraint : makes the coordinate on its line another unknown
     enough : residual at which the iteration ends; 0 iterates to rounding
-    line : takes the place of a
 
     Raises OrbitError if Newton's method does not converge.
     """
@@ -188,10 +199,10 @@ def solve_return(
         jacobian[:count, :count] = basis.T @ (changed * own / own[:, None]) @ basis - np.eye(count)
         jacobian[:count, count] = basis.T @ (mapping.time_derivative(end) * units.time / own)
         jacobian[count, :count] = phase
-        if constraint is not None and origin is not None:
-            vector, amount = constraint
-            change = np.concatenate([state - origin[0], [time - origin[1], line.coordinate(model) - origin[2]]])
-            values[-1] = vector @ change - amount
+        if constraint is not None:
+            vector, line, (position, duration, coordinate) = constraint.vector, constraint.line, constraint.origin
+            change = np.concatenate([state - position, [time - duration, line.coordinate(model) - coordinate]])
+            values[-1] = vector @ change - constraint.amount
             # Expensive, and nearly constant between iterations.
             if by_parameter is None:
                 events = mapping.event_rows()[:, 1:]
@@ -217,8 +228,10 @@ def solve_return(
         if not time > 0.0:
             break
         if constraint is not None:
+            line = constraint.line
             model = line.model(model, line.coordinate(model) + float(step[-1]))
             mapping = ReturnMap(model, symmetry)
+    line = along_a(model.chain) if constraint is None else constraint.line
     raise OrbitError(f"{line.place(model)}: no periodic orbit found near the guess")
 
 

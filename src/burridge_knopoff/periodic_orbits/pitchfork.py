@@ -13,7 +13,7 @@ import numpy as np
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, model_at
 from burridge_knopoff.periodic_orbits.parameter_line import along_a
-from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, refined, solve_return
+from burridge_knopoff.periodic_orbits.periodic import Constraint, PeriodicOrbit, orbit_of, refined, solve_return
 from burridge_knopoff.periodic_orbits.return_map import parting
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
@@ -48,9 +48,9 @@ def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrb
     difference[0], difference[blocks - 1] = 1.0 / units.length, -1.0 / units.length
     line = along_a(center.model.chain)
     origin = base, center.return_time, line.coordinate(center.model)
-    constraint = difference, asymmetry / units.length
+    constraint = Constraint(difference, asymmetry / units.length, origin, line)
     model = model_at(center.model, a)
-    found = solve_return(model, start, time, Symmetry.ASYMMETRIC, constraint, origin, enough=0.0, line=line)
+    found = solve_return(model, start, time, Symmetry.ASYMMETRIC, constraint, enough=0.0)
     if not abs(found.a - center.a) < FARTHEST * center.a:
         raise OrbitError(f"asymmetry = {asymmetry!r}: no orbit found near a = {center.a!r}")
     return found

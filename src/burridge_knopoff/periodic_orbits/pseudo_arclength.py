@@ -18,8 +18,15 @@ from burridge_knopoff.model.parameters import at, value_of
 from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, rate
 from burridge_knopoff.periodic_orbits.grazing_distances import Contacts, contacts
-from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A, ParameterLine, along_a
-from burridge_knopoff.periodic_orbits.periodic import ENOUGH, PeriodicOrbit, orbit_of, safe_offset, solve_return
+from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, along_a
+from burridge_knopoff.periodic_orbits.periodic import (
+    ENOUGH,
+    Constraint,
+    PeriodicOrbit,
+    orbit_of,
+    safe_offset,
+    solve_return,
+)
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
@@ -60,10 +67,10 @@ class BranchOrbit:
 
     orbit: PeriodicOrbit
     tangent: np.ndarray
+    line: ParameterLine
     length: float = 0.0
     joined: PeriodicOrbit | None = None
     remaining: float = np.nan
-    line: ParameterLine = ALONG_A
 
     def __repr__(self) -> str:
         return f"<BranchOrbit: {self.orbit!r}>"
@@ -146,7 +153,7 @@ def tangent_of(orbit: PeriodicOrbit, line: ParameterLine) -> np.ndarray:
 def begin_branch(orbit: PeriodicOrbit, upward: bool, line: ParameterLine) -> BranchOrbit:
     """Return an orbit with the tangent along which the parameter grows or falls."""
     tangent = tangent_of(orbit, line)
-    return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent, line=line)
+    return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent, line)
 
 
 def solve_ahead(
@@ -169,9 +176,9 @@ def solve_ahead(
     there = line.model(model, here + length * float(tangent[-1]))
     guess = base + length * tangent[:-2]
     start = ChainState(guess[:blocks], guess[blocks:], reference.stuck)
-    constraint = weights(there, line) * tangent, length
+    constraint = Constraint(weights(there, line) * tangent, length, (base, time, here), line)
     after = time + length * float(tangent[-2])
-    return solve_return(there, start, after, symmetry, constraint, (base, time, here), enough, line)
+    return solve_return(there, start, after, symmetry, constraint, enough)
 
 
 def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = None) -> BranchOrbit:
@@ -192,13 +199,13 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     following = following if cosine > 0.0 else -following
     offset = safe_offset(found)
     if offset == 0.0:
-        return BranchOrbit(found, following, length, line=line)
+        return BranchOrbit(found, following, line, length)
     carried = _carried(found, following, offset, line)
     there = flow(model, found.reference, offset)[0].state()
     moved = orbit_of(model, there, found.return_time, orbit.symmetry)
     following = tangent_of(moved, line)
     side = following @ (weights(model, line) * carried)
-    return BranchOrbit(moved, following if side > 0.0 else -following, length, line=line)
+    return BranchOrbit(moved, following if side > 0.0 else -following, line, length)
 
 
 def _carried(orbit: PeriodicOrbit, tangent: np.ndarray, time: float, line: ParameterLine) -> np.ndarray:

@@ -16,7 +16,7 @@ import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, after, rate
-from burridge_knopoff.periodic_orbits.parameter_line import ALONG_A, ParameterLine
+from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 
@@ -60,12 +60,11 @@ class ReturnMap:
         return np.stack(self._runner.events(), axis=1)
 
     def parameter_derivative(
-        self, start: ChainState, time: float, end: ChainState, events: np.ndarray, line: ParameterLine = ALONG_A
+        self, start: ChainState, time: float, end: ChainState, events: np.ndarray, line: ParameterLine
     ) -> np.ndarray:
-        """Return the derivative of the end of a return with respect to a, shape (2 blocks,).
+        """Return the derivative of the end of a return along a line of parameters, shape (2 blocks,).
 
         start, time, end : of the return; events : blocks and kinds of its events in order, shape (n, 2)
-        line : takes the place of a
 
         By finite differences; next to a grazing, where the derivative jumps, on the side of the orbit. Raises
         OrbitError if there is none.

@@ -123,7 +123,6 @@ class Runner:
             self.kernel.resume(at.last_step[1], at.time)
 
     def _place(self, at: ChainState, clock: float) -> None:
-        _check_blocks(self.model, at)
         position, velocity = (np.asarray(x, dtype=float) for x in (at.position, at.velocity))
         self.kernel.begin(position, velocity, np.asarray(at.stuck, dtype=bool), clock)
 
@@ -169,6 +168,7 @@ class Runner:
 
         at : of the model's number of blocks; Newton's method comes by states that no motion has, which are not refused
         """
+        _check_blocks(self.model, at)
         self._place(at, 0.0)
         return self.state() if self.run(time) == Status.COMPLETED else None
 
@@ -200,16 +200,16 @@ def check_state(model: Model, at: ChainState) -> None:
     and moves, and for one that slips backward under one-sided contact.
     """
     _check_blocks(model, at)
-    for name in ("position", "velocity"):
-        values = real_array(getattr(at, name), f"state.{name}")
+    position, velocity = real_array(at.position, "state.position"), real_array(at.velocity, "state.velocity")
+    for name, values in (("position", position), ("velocity", velocity)):
         if not np.isfinite(values).all():
             raise refusal(f"state.{name}", values[~np.isfinite(values)][0], "finite numbers")
     if not math.isfinite(real_number(at.time)):
         raise refusal("state.time", at.time, "a finite number")
-    moving = np.flatnonzero(np.asarray(at.stuck, dtype=bool) & (values != 0.0))
+    moving = np.flatnonzero(np.asarray(at.stuck, dtype=bool) & (velocity != 0.0))
     if len(moving):
-        raise refusal(f"state.velocity[{moving[0]}]", values[moving[0]], "0, as this block sticks")
-    model.check_directions(values, "state.velocity", ROUNDING * max(1.0, model.v, np.abs(values).max()))
+        raise refusal(f"state.velocity[{moving[0]}]", velocity[moving[0]], "0, as this block sticks")
+    model.check_directions(velocity, "state.velocity", ROUNDING * max(1.0, model.v, np.abs(velocity).max()))
 
 
 def _check_blocks(model: Model, at: ChainState) -> None:
