@@ -273,7 +273,7 @@ def _rotation() -> xarray.Dataset:
 
 def _bifurcations() -> xarray.Dataset:
     """Return twelve bifurcations of each law at which a locked orbit, at a grazing, gives way to chaos."""
-    told = {"law": np.repeat([0, 1], 12), "kind": 0, "motion_before": PERIODIC, "motion_after": CHAOTIC, "to_branch": 1}
+    told = {"law": np.repeat(LAWS, 12), "kind": 0, "motion_before": PERIODIC, "motion_after": CHAOTIC, "to_branch": 1}
     low = np.tile(A[A >= 0.1][:12], 2)
     told |= {"change": Change.CHANGE, "grid_low": low, "a": low + 0.001}
     values = {name: ("bifurcation", np.array(np.broadcast_to(value, 24))) for name, value in told.items()}

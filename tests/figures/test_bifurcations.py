@@ -20,7 +20,13 @@ def test_a_bifurcation_that_is_not_located_is_as_wide_as_its_error():
         {"law": ["linearized"], "a": [0.1, 0.2]},
     ).assign(branch_number=("number", [1]), branch_name=("number", ["alternating (1)"]))
     none = {f"orbit_{name}": ("orbit", []) for name in ("law", "a", "mean_distance", "stable", "segment", "branch")}
-    bifurcation = {"law": 0, "a": 0.14, "a_error": 0.01, "mean_distance": np.nan, "kind": int(BifurcationKind.CRISIS)}
+    bifurcation = {
+        "law": "linearized",
+        "a": 0.14,
+        "a_error": 0.01,
+        "mean_distance": np.nan,
+        "kind": int(BifurcationKind.CRISIS),
+    }
     bifurcation |= {"change": int(Change.END), "from_branch": 1, "to_branch": -1}
     bifurcations = xr.Dataset({**none, **{name: ("bifurcation", [value]) for name, value in bifurcation.items()}})
     panel, rows = draw(attractors, bifurcations).axes
@@ -39,7 +45,13 @@ def test_the_legend_names_the_branches_whose_orbits_are_drawn():
         {"law": ["linearized"], "a": [0.1]},
     ).assign(branch_number=("number", range(12)), branch_name=("number", [f"motion ({n})" for n in range(12)]))
     drawn = [0, 2, 10, 11]
-    orbits = {"law": [0] * 4, "a": [0.1] * 4, "mean_distance": [0.1] * 4, "stable": [1] * 4, "segment": range(4)}
+    orbits = {
+        "law": ["linearized"] * 4,
+        "a": [0.1] * 4,
+        "mean_distance": [0.1] * 4,
+        "stable": [1] * 4,
+        "segment": range(4),
+    }
     orbits = {f"orbit_{name}": ("orbit", list(values)) for name, values in {**orbits, "branch": drawn}.items()}
     none = {name: ("bifurcation", np.zeros(0)) for name in EDGE}
     (legend,) = draw(attractors, xr.Dataset({**orbits, **none})).legends

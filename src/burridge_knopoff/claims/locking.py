@@ -125,7 +125,7 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
     for name in PAPER_LAWS:
         if name not in laws:
             raise NotTestableError(f"the study has no {name} law")
-        own = bifurcations["law"].values == laws.index(name)
+        own = bifurcations["law"].values == name
         before, after, kinds = (bifurcations[key].values for key in ("motion_before", "motion_after", "kind"))
         changes = own & (bifurcations["change"].values != Change.PASSED) & np.isin(after, CHAOS)
         changes &= ~_chaotic_before(bifurcations, evidence.summary("refined").sel(law=name))

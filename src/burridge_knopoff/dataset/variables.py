@@ -21,6 +21,8 @@ SIMULATED = (
     "From simulations of the Burridge-Knopoff model: blocks with stick-slip friction, coupled by springs and pulled by "
     "a driver of constant velocity. All quantities are dimensionless."
 )
+#: Types of texts: any objects, such as names along a dimension, or a column of words, which may be empty.
+TEXT = ("O", "U")
 COMPRESSION_LEVEL = 5
 COMPRESSED_FROM = 64
 
@@ -39,7 +41,7 @@ class Variable:
         """Return the attributes in the order in which they are written."""
         attributes: dict[str, Any] = {"long_name": self.long_name}
         # Neither flags nor texts have a unit.
-        if "flag_values" not in self.attributes and self.dtype != "O":
+        if "flag_values" not in self.attributes and self.dtype not in TEXT:
             attributes["units"] = "1"
         attributes.update(self.attributes)
         return attributes

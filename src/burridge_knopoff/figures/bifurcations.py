@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
@@ -36,21 +37,9 @@ route from period one to chaos, enlarged, with a symbol for each bifurcation and
 period.
 """
 
-# Marker and name of each type of bifurcation that is located.
-MARKS = {
-    BifurcationKind.GRAZING: ("v", "grazing"),
-    BifurcationKind.FOLD: ("s", "fold"),
-    BifurcationKind.PERIOD_DOUBLING: ("D", "period doubling"),
-    BifurcationKind.NEIMARK_SACKER: ("o", "Neimark–Sacker"),
-    BifurcationKind.PITCHFORK: ("P", "pitchfork"),
-}
 MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.7}
-# Rows of the middle panels.
-ROWS = {
-    **{kind: name for kind, (_, name) in MARKS.items()},
-    BifurcationKind.CRISIS: "crisis",
-    BifurcationKind.UNDETERMINED: "unknown",
-}
+#: Rows of the middle panels: what is not known comes last.
+ROWS = sorted(BifurcationKind, key=lambda kind: kind < 0)
 
 #: Ranges of a and ⟨J⟩ in the lower panels.
 ROAD = ((0.108, 0.182), (0.0412, 0.0488))
@@ -72,17 +61,17 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
         law = attractors.sel(law=laws[number])
         for panel in (column[0], *column[2:]):
             _attractors(panel, law)
-            _orbits(panel, bifurcations, number, colors)
+            _orbits(panel, bifurcations, laws[number], colors)
         begin_at_zero(column[0])
         show_all(column[0], attractors["a"].values)
         if (law["branch"] < 0).all():
             say_nothing(column[0], "no attractor was found")
-        _bifurcations(column[1], bifurcations, number, colors)
+        _bifurcations(column[1], bifurcations, laws[number], colors)
         column[1].sharex(column[0])
         column[0].tick_params(labelbottom=False)
         for panel in column[2:]:
-            _marks(panel, bifurcations, number)
-            _stops(panel, bifurcations, number)
+            _marks(panel, bifurcations, laws[number])
+            _stops(panel, bifurcations, laws[number])
             panel.set(xlim=ROAD[0], ylim=ROAD[1])
         for panel in column[1:]:
             panel.set_xlabel("$a$")
@@ -109,7 +98,7 @@ def _attractors(panel: Axes, attractors: xarray.Dataset) -> None:
     panel.plot(a, attractors["mean_distance"].values[there], ".", color="#bbbbbb", markersize=2.0, zorder=0)
 
 
-def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: int, colors: dict[int, str]) -> None:
+def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str]) -> None:
     own = bifurcations["orbit_law"].values == law
     number, branch = bifurcations["orbit_segment"].values, bifurcations["orbit_branch"].values
     a, mean, stable = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "stable"))
@@ -124,7 +113,7 @@ def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: int, colors: dict[in
             panel.plot(a[piece], mean[piece], linestyle=style, linewidth=width, color=color, zorder=1)
 
 
-def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: int, colors: dict[int, str]) -> None:
+def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str]) -> None:
     """Draw each bifurcation into the row of its type: a line where it is located, else its range of a."""
     a, error, kind = (bifurcations[name].values for name in ("a", "a_error", "kind"))
     # Branches that begin are drawn above, all others below.
@@ -134,23 +123,23 @@ def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: int, colors: d
     for row, one in enumerate(ROWS):
         for k in np.flatnonzero((bifurcations["law"].values == law) & (kind == one)):
             color = colors.get(int(branch[k]), OTHER_COLOR)
-            width = 0.0 if one in MARKS else 2.0 * error[k]
+            width = 0.0 if one.mark else 2.0 * error[k]
             panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6, alpha=0.8)
-    panel.set_yticks(range(len(ROWS)), list(ROWS.values()), fontsize=7.0)
+    panel.set_yticks(range(len(ROWS)), [one.words for one in ROWS], fontsize=7.0)
     panel.tick_params(axis="y", length=0)
     panel.set_ylim(len(ROWS) - 0.4, -0.6)
 
 
-def _marks(panel: Axes, bifurcations: xarray.Dataset, law: int) -> None:
+def _marks(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
     """Draw a symbol at each located bifurcation."""
     own, kind = bifurcations["law"].values == law, bifurcations["kind"].values
     a, mean = bifurcations["a"].values, bifurcations["mean_distance"].values
-    for one, (marker, _) in MARKS.items():
+    for one in filter(attrgetter("mark"), BifurcationKind):
         chosen = own & (kind == one) & np.isfinite(mean)
-        panel.plot(a[chosen], mean[chosen], marker, zorder=3, **MARK)
+        panel.plot(a[chosen], mean[chosen], one.mark, zorder=3, **MARK)
 
 
-def _stops(panel: Axes, bifurcations: xarray.Dataset, law: int) -> None:
+def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
     """Write the number of stops of each block in a period beside the longer pieces of stable orbits."""
     own = (bifurcations["orbit_law"].values == law) & (bifurcations["orbit_stable"].values == 1)
     number, a, mean = (bifurcations[f"orbit_{name}"].values for name in ("segment", "a", "mean_distance"))
@@ -180,9 +169,9 @@ def _legend(
             if number in stable
         ),
         *(
-            Line2D([], [], linestyle="", marker=marker, label=name, **MARK)
-            for one, (marker, name) in MARKS.items()
-            if marked and one in located
+            Line2D([], [], linestyle="", marker=one.mark, label=one.words, **MARK)
+            for one in BifurcationKind
+            if marked and one.mark and one in located
         ),
         *(Line2D([], [], color=color, linewidth=1.3, label=name) for name, color in named_colors(drawn, names).items()),
     ]

@@ -13,11 +13,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 
 from scipy.optimize import brentq
 
-from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.bifurcation_kind import MULTIPLIER_TESTS, BifurcationKind
 from burridge_knopoff.periodic_orbits.floquet import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.following import follow
@@ -39,9 +38,6 @@ NEAR_JOINT = 2.0
 
 # A stick this short, in the chain's own unit, next to a grazing is the one that shrinks to nothing, as a square root.
 NO_STICK = 1e-4
-
-# Multipliers with a smaller imaginary part are real.
-REAL = 1e-6
 
 # Distance, for v = 0.1 in the chain's own units, within which an orbit at a root is a more symmetric one or one of a
 # shorter period: near a root the distance is itself a square root.
@@ -229,10 +225,9 @@ def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcation]:
 def kind_at(at: BranchOrbit, key: tuple[BifurcationKind, str]) -> BifurcationKind | None:
     """Return the kind of bifurcation at the root of a function of multipliers; None for an ordinary saddle."""
     kind, part = key
-    if kind == BifurcationKind.NEIMARK_SACKER:
-        values = at.multipliers.keeping if part == "keeping" else at.multipliers.breaking
-        pair = min(combinations(values, 2), key=lambda pair: abs(pair[0] * pair[1] - 1.0))
-        return kind if abs(pair[0].imag) > REAL else None
+    for test in MULTIPLIER_TESTS:
+        if test.kind == kind and test.is_root and not test.is_root(getattr(at.multipliers, part)):
+            return None
     if kind == BifurcationKind.FOLD and at.orbit.symmetry != Symmetry.SYNCHRONIZED:
         return _joint_kind(at.orbit, simplest(at.orbit, JOINED)) or kind
     return kind

@@ -15,11 +15,10 @@ J. W. Swift and K. Wiesenfeld, Phys. Rev. Lett. 52 (1984) 705.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import combinations
 
 import numpy as np
 
-from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.bifurcation_kind import MULTIPLIER_TESTS, BifurcationKind
 from burridge_knopoff.periodic_orbits.flow import rate
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.return_map import directions, parting
@@ -108,21 +107,13 @@ def _sorted(values: np.ndarray) -> np.ndarray:
 def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> dict[tuple[BifurcationKind, str], float]:
     """Return, for each kind of bifurcation and part of the perturbations, a smooth function that changes sign there.
 
-    They are products over multipliers: of μ − 1, of μ + 1, and over all pairs of μ_i μ_j − 1. The last is also 0 if the
-    product of two real multipliers is 1, at an ordinary saddle.
+    They are those of MULTIPLIER_TESTS, such as the products over multipliers of μ − 1.
     """
     found = multipliers(orbit) if found is None else found
-    values = {}
-    for part, own in (("keeping", found.keeping), ("breaking", found.breaking)):
-        if not len(own):
-            continue
-        plus, minus = BifurcationKind.FOLD, BifurcationKind.PERIOD_DOUBLING
-        if part == "breaking":
-            plus = BifurcationKind.PITCHFORK
-        elif orbit.symmetry == Symmetry.SYMMETRIC:
-            minus = BifurcationKind.PITCHFORK
-        values[plus, part] = float(np.prod(own - 1.0).real)
-        values[minus, part] = float(np.prod(own + 1.0).real)
-        pairs = [one * other - 1.0 for one, other in combinations(own, 2)]
-        values[BifurcationKind.NEIMARK_SACKER, part] = float(np.prod(pairs).real) if pairs else 1.0
-    return values
+    return {
+        (test.kind, part): float(test.value(own).real)
+        for part, own in (("keeping", found.keeping), ("breaking", found.breaking))
+        if len(own)
+        for test in MULTIPLIER_TESTS
+        if test.belongs(part, orbit.symmetry)
+    }
