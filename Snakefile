@@ -20,42 +20,9 @@ container: "docker://python:3.11"
 
 include: "workflow/rules/study.smk"
 include: "workflow/rules/groups.smk"
-include: "workflow/rules/seals.smk"
 include: "workflow/rules/simulate.smk"
-
-
-# Optional stages, with all files that they make.
-for stage in ("attractors", "basins", "bifurcations", "phases", "solvers", "proof"):
-    if stage not in STUDY.left_out:
-
-        include: f"workflow/rules/{stage}.smk"
-
-
-if "catalogue" in STUDY.stages:
-
-    include: "workflow/rules/catalogue.smk"
-
-
-if not STUDY.is_plane:
-
-    include: "workflow/rules/two_blocks.smk"
-
-
-include: "workflow/rules/summaries.smk"
-include: "workflow/rules/figures.smk"
-
-
-if not STUDY.is_plane:
-
-    include: "workflow/rules/chains.smk"
-
-
-if "claims" in STUDY.stages:
-
-    include: "workflow/rules/claims.smk"
-
-
-include: "workflow/rules/report.smk"
+include: "workflow/rules/common.smk"
+include: "workflow/rules/jobs.smk"
 
 
 rule all:
@@ -63,9 +30,7 @@ rule all:
     default_target: True
     input:
         rules.points.input,
-        rules.summary.input,
-        rules.figures.input,
-        rules.report.output,
+        paths(JOBS.files()),
     message:
         f"study {STUDY.name}: all points, summaries, figures and the report are in {RESULTS}"
 

@@ -23,7 +23,7 @@ def main():
     jobs = defaultdict(lambda: defaultdict(list))
     for config in sys.argv[1:]:
         plan = planned(config, "all", "chains")
-        work = work_of(plan.study)
+        work = work_of(plan.jobs)
         for job in plan.workflow.dag.jobs:
             for wall, cpu, _ in job_costs(Path(job.benchmark)) if job.benchmark else ():
                 size = sum(path.stat().st_size for path in map(Path, job.output) if path.is_file())

@@ -51,7 +51,7 @@ def recorded(config, cores=2):
 
 def told(run, took):
     """Return (moment, told, truth) of a run, in seconds, from its begin to its end."""
-    run.durations = Durations(work_of(PLAN.study))
+    run.durations = Durations(work_of(PLAN.jobs))
     # Snakemake measures no CPU time of jobs that are too short.
     seconds = {number: (cpu or wall) / run.jobs[number].threads for number, (wall, cpu) in took.items()}
     ends = schedule(run.jobs, seconds, run.cores)

@@ -6,6 +6,7 @@ import shlex
 import shutil
 from functools import reduce
 from operator import getitem
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,15 +19,17 @@ from burridge_knopoff.check.study import check_study
 from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.provenance.seal import BadFile, canonical, identity, write_sealed_text
+from burridge_knopoff.provenance.seal import BadFile, read_sealed, write_sealed, write_sealed_text
 from burridge_knopoff.running.simulation import run
+from burridge_knopoff.show.result import open_result
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.yaml_file import read_yaml
-from burridge_knopoff.summaries import mean_distance, points
-from burridge_knopoff.summaries.points import Grid
+from burridge_knopoff.summaries import points
+from tests.small_study import run_study
 
 CONFIG = """
 study: small
@@ -42,27 +45,13 @@ solvers: {a: [0.08], step: 0.02}
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     """The results of a study as Snakemake leaves them: points, points of other solvers, a summary, the record."""
-    import yaml
-
     folder = tmp_path_factory.mktemp("study")
     config_file = folder / "small.yaml"
     config_file.write_text(CONFIG)
-    study = load_study(yaml.safe_load(CONFIG), "small.yaml")
     results = folder / "results" / "small"
-    grid = Grid.of(results / "points", study.points)
-    for _, (law, initial, a) in grid:
-        names = [(None, grid.path(law, initial, a))]
-        if a == "0.0800":
-            names += [
-                (solver, results / f"solvers/{solver}/{law}/{initial}/a{a}.nc") for solver in study.other_solvers(law)
-            ]
-        for solver, path in names:
-            state, settings = study.state(initial), study.settings(law, solver)
-            write_point(run(study.model(law, grid.a[a]), state, settings), path)
-    write_summary(mean_distance.summarize(grid, 1e-6), results / "summary" / "mean_distance.nc")
-    write_study_record(
-        results, study.config, study.parameters, config_file, read_yaml(config_file), "--configfile small.yaml", {}
-    )
+    given = read_yaml(config_file)
+    study = run_study(results, given, ("points", "simulate_solver", "mean_distance")).study
+    write_study_record(results, study.config, study.parameters, config_file, given, "--configfile small.yaml")
     return results
 
 
@@ -74,6 +63,15 @@ def results(whole, tmp_path, monkeypatch):
     record.write_text(json.dumps({**content, "config_file": "small.yaml"}))
     monkeypatch.chdir(tmp_path / "study")
     return tmp_path.joinpath("study/results/small").relative_to(tmp_path / "study")
+
+
+def make(results, name):
+    """Write a file that says of itself what it must be made from; all have the same content."""
+    about = Jobs(recorded_study(results)[1]).expected(name)
+    if name.endswith(".nc"):
+        write_summary(open_summary(results / "summary/mean_distance.nc"), results / name, about)
+    else:
+        write_sealed_text(results / name, "content", about)
 
 
 def found(results):
@@ -179,7 +177,7 @@ def test_summaries(results):
 @pytest.mark.parametrize("size", [0, 5])
 def test_texts_and_pictures_are_read_too(results, name, size):
     path = results / name
-    write_sealed_text(path, "content", {})
+    make(results, name)
     assert not found(results)
     path.write_bytes(path.read_bytes()[:size])
     assert found(results) == {("corrupt", name)}
@@ -196,34 +194,53 @@ def test_a_copy_under_another_name_is_no_file_of_the_study(results, capsys):
     ]
 
 
-def test_what_a_file_was_made_from_is_compared_with_the_record(results, capsys):
+def test_what_a_file_was_made_from_follows_from_the_config(results, capsys):
     """Where a file was made from another one that is bad itself, the reason names that."""
-    names = ("attractors/linearized.nc", "summary/attractors.nc", "summary/attractors.txt", "figures/windows.png")
+    names = ("attractors/linearized.nc", "summary/attractors.nc", "summary/attractors.txt")
+    names += ("figures/basin_fractions.png",)
+    for name in names:
+        make(results, name)
+    assert not found(results)
     record = results / "study.json"
     content = json.loads(record.read_text())
-    dataset = open_summary(results / "summary/mean_distance.nc")
-
-    def abouts(samples):
-        first = {"file": names[0], "attractors": {"samples": samples}}
-        inputs = {"inputs": {names[0]: identity(canonical(first))}}
-        return first, *({"file": name, **inputs} for name in names[1:])
-
-    for name, about in zip(names, abouts(20), strict=True):
-        (results / name).parent.mkdir(exist_ok=True)
-        if name.endswith(".nc"):
-            write_summary(dataset, results / name, about)
-        else:
-            write_sealed_text(results / name, "content", about)
-    for samples, stale in ((20, set()), (30, {("stale", name) for name in names})):
-        record.write_text(json.dumps({**content, "files": dict(zip(names, abouts(samples), strict=True))}))
-        assert found(results) == stale
+    content["config"]["attractors"]["samples"] += 10
+    record.write_text(json.dumps(content))
+    assert found(results) == {("stale", name) for name in names}
     main(["check", str(results)])
     said = capsys.readouterr().out
     first = results / names[0]
-    assert f"{first}: was made with attractors.samples: got 20, expected 30\n" in said
-    assert f"{results / names[2]}: was made from {first}, which is stale\n" in said
-    with pytest.raises(BadFile, match=rf"^{first}: .* -R {first}$"):
-        open_summary(results / names[1])
+    assert f"{first}: was made with attractors.samples: got 200, expected 210\n" in said
+    assert f"{results / names[2]}: was made with attractors.samples: got 200, expected 210\n" in said
+    assert f"{results / names[3]}: was made from {results / 'summary/attractors.nc'}, which is stale\n" in said
+    for read in (open_result, lambda path: open_study(results)):
+        with pytest.raises(BadFile, match=rf"^{results / names[1]}: .* -R {results / names[1]}$"):
+            read(results / names[1])
+
+
+def resealed(path, **changes):
+    """Let a file say something else of itself."""
+    content, about, status = read_sealed(path)
+    write_sealed(path, lambda name: Path(name).write_bytes(content), {**about, **changes}, status)
+
+
+def test_files_that_other_sources_made_are_opened_and_not_those_of_another_config(results):
+    """Also if sources made the inputs, too, and if another version described files by less."""
+    name = "summary/attractors.nc"
+    make(results, name)
+    about = Jobs(recorded_study(results)[1]).expected(name)
+    config, _ = next(iter(about["inputs"].values())).split(".")
+    others = {key: f"{value.partition('.')[0]}.other" for key, value in about["inputs"].items()}
+    resealed(results / name, sources="other", make="other:made", inputs=others)
+    assert open_result(results / name).data.sizes
+    assert "attractors" in open_study(results)["summary"]
+    assert ("stale", name) in found(results)
+    content, own, _ = read_sealed(results / name)
+    del own["attractors"]
+    write_sealed(results / name, lambda name: Path(name).write_bytes(content), own)
+    assert open_result(results / name).data.sizes
+    resealed(results / name, inputs={key: value.replace(config, 16 * "0") for key, value in others.items()})
+    with pytest.raises(BadFile, match=rf"^{results / name}: was made from another attractors/linearized.nc"):
+        open_result(results / name)
 
 
 #: Of each job a file that it makes.
@@ -252,11 +269,7 @@ def test_what_was_begun_and_not_made_is_missing_and_nothing_else(results, capsys
     said = capsys.readouterr().out
     assert f"missing  {results / file}: its job failed: MemoryError: no more (log {log})\n" in said
     for path in missing:
-        path.parent.mkdir(exist_ok=True)
-        if path.suffix == ".nc":
-            shutil.copy(results / "summary/mean_distance.nc", path)
-        else:
-            write_sealed_text(path, "content", {})
+        make(results, path.relative_to(results).as_posix())
     assert main(["check", str(results)]) == 0
 
 
@@ -342,15 +355,15 @@ def test_files_of_stages_that_are_left_out_are_left_over(results, capsys):
     for name in (*OF_STAGES.split(), *kept):
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         (results / name).write_text("")
-    for name in kept[:-1]:
-        write_sealed_text(results / name, "content", {})
     file, given = results.parent.parent / "small.yaml", f"{CONFIG}without: [attractors, proof]\n"
     assert main(["check", str(results)]) == 1
     file.write_text(given)
     study = load_study(read_yaml(file), "small.yaml")
     write_study_record(
-        results, study.config, study.parameters, "small.yaml", read_yaml(file), "--configfile small.yaml", {}
+        results, study.config, study.parameters, "small.yaml", read_yaml(file), "--configfile small.yaml"
     )
+    for name in kept[:-1]:
+        make(results, name)
     capsys.readouterr()
     assert main(["check", str(results)]) == 0
     said = capsys.readouterr().out
@@ -462,7 +475,7 @@ def test_a_record_nested_without_end_is_refused(results):
         recorded_study(results)
 
 
-@pytest.mark.parametrize("key", ["laws", "solvers", "figures.a", "motion.colour", "chains.two_blocks.a", "basins"])
+@pytest.mark.parametrize("key", ["laws", "solvers", "motion.colour", "chains.two_blocks.a", "basins"])
 def test_a_study_of_another_version_is_refused_in_a_line(results, capsys, key):
     record = results / "study.json"
     content = json.loads(record.read_text())

@@ -1,4 +1,4 @@
-"""docs/extending.md: its edits, applied to a copy of the tree, give a law, an observable, a figure and a claim."""
+"""docs/extending.md: its edits, applied to a copy of the tree, give all that the page adds."""
 
 import os
 import re
@@ -7,7 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
+import xarray
 
 from tests.conftest import made_once
 from tests.pages import apply, blocks
@@ -75,7 +77,7 @@ from burridge_knopoff.claims.claim import read_claims
 from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.figures.description import picture_names
 from tests.claims.worlds import evidence
-claims = read_claims("config/claims.yaml", picture_names(["minus", "plus"]))
+claims = read_claims(picture_names(["minus", "plus"]))
 (claim,) = [claim for claim in claims if claim.name == "top_speed"]
 axes = {"law": ["linearized"], "initial": ["plus"], "a": [0.08], "block": [1, 2, 3]}
 for largest, verdict in ((0.234, "holds"), (0.24, "holds loosely"), (0.3, "fails"), (np.nan, "not testable")):
@@ -87,6 +89,22 @@ for largest, verdict in ((0.234, "holds"), (0.24, "holds loosely"), (0.3, "fails
 """
 
 
+BIFURCATION = """
+import numpy as np
+from burridge_knopoff import Chain, Model, follow, law_of, limit_cycle, locate_bifurcations, simulate
+model = Model(Chain(3), law_of("nonlinear", 0.13))
+run = simulate(model, "plus", transient=2000, window=10)
+branch = follow(limit_cycle(model, model.begin(run.initial), settling=2000.0), (0.13, 0.135))
+found = [one for one in locate_bifurcations(branch) if one.kind.name == "NODE_FOCUS"]
+assert len(found) == 2
+for one in found:
+    first, second = one.at.multipliers.keeping[:2]
+    assert abs(first - second) < 1e-3 * abs(branch[0].multipliers.keeping[0])
+    before, after = ((point.multipliers.keeping[0]).imag for point in (one.before, one.after))
+    assert (abs(before) > 1e-9) != (abs(after) > 1e-9)
+"""
+
+
 def extend(folder):
     """Make a copy of the tree with the edits of the page, and compile its kernel."""
     for name in ("config", "src", "workflow", "tests"):
@@ -94,7 +112,7 @@ def extend(folder):
     for name in (".clang-format", "pyproject.toml", "setup.py", "Snakefile"):
         shutil.copy(REPOSITORY / name, folder)
     (folder / "profiles").symlink_to("workflow/profiles")
-    assert len(apply(PAGE, folder)) == 14
+    assert len(apply(PAGE, folder)) == 18
     run(folder, sys.executable, "setup.py", "--quiet", "build_ext", "--inplace")
 
 
@@ -125,6 +143,10 @@ def test_the_observable_is_right(extended, tmp_path):
     run(extended, sys.executable, "-c", OBSERVABLE, folder=tmp_path)
 
 
+def test_the_bifurcation_is_found(extended):
+    run(extended, sys.executable, "-c", BIFURCATION)
+
+
 def test_the_claim_is_judged(extended):
     run(extended, sys.executable, "-c", CLAIM)
 
@@ -143,12 +165,16 @@ def test_the_page_prints_what_it_says(extended):
 
 def test_a_study_of_the_laws_ends_in_its_report(extended, tmp_path):
     laws, _ = (block.text for block in blocks(PAGE) if block.info == "yaml")
-    results = study(extended, tmp_path, laws + "  quadratic: {c: 1.0}\nwithout: [proof]\n")
+    results = study(extended, tmp_path, laws + "  quadratic: {c: 1.0}\nwithout: [proof]\ndriver: {v: [0.1, 0.2]}\n")
     names = {"linearized", "rational", "quadratic"}
     assert {path.name for path in (results / "points").iterdir()} == names
     assert (results / "figures" / "largest_velocity.png").is_file()
     assert "aU′(1 + U′/c)" in (results / "report.html").read_text()
     assert '"top_speed"' in (results / "summary" / "claims.json").read_text()
+    names = "driver", "mean_distance"
+    driver, mean = (xarray.load_dataset(results / f"summary/{name}.nc")["mean_distance"] for name in names)
+    np.testing.assert_array_equal(driver.sel(v=0.1), mean.sel(initial="minus", a=0.05))
+    assert (driver.sel(v=0.2) != driver.sel(v=0.1)).all()
 
 
 def test_a_study_of_the_chain_ends_in_its_report(extended, tmp_path):

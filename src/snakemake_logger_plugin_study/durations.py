@@ -9,13 +9,12 @@ from __future__ import annotations
 import json
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import prod
 from pathlib import Path
 from statistics import fmean, median
 
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.report.stages import job_costs
-from burridge_knopoff.study.stretches import stretches
-from burridge_knopoff.study.study import Study, all_points
+from burridge_knopoff.study.study import all_points
 
 FILE = Path(__file__).with_name("durations.json")
 #: {rule: rows of the work of a job, its CPU time in seconds and its size in bytes; one row or two, by work}
@@ -65,23 +64,7 @@ class Durations:
         return {rule: fmean(known[rule]) if rule in known else ratio * self.shipped(rule)[0] for rule in rules}
 
 
-def work_of(study: Study) -> dict[str, float]:
+def work_of(jobs: Jobs) -> dict[str, float]:
     """Return {rule: what one of its jobs has to do}, in units of its own; other rules read, or draw, "all points"."""
-    config, chains = study.config, study.config["chains"]
-    search, basins, phases, pairs = config["attractors"], config["basins"], config["phases"], chains["two_blocks"]
-    values, time = len(study.grid.values()), config["transient"] + config["window"]
-    of_phases = ("a", "inner_share", "amplitude", "phase_difference")
-    return {
-        "simulate": study.blocks * time,
-        "stretch": study.blocks * time * max(map(len, stretches(study).values()), default=0),
-        "simulate_solver": study.blocks * time,
-        "attractors_of_law": study.blocks * search["samples"] * (search["transient"] + search["window"]) * values,
-        "two_blocks": pairs["samples"] * len(pairs["a"]) * len(study.laws) * time,
-        "watch_chain": chains["samples"] * len(chains["a"]) * len(chains["laws"]) * chains["time_limit"],
-        "phases_of_law": phases["samples"] * prod(len(phases[name]) for name in of_phases),
-        "bifurcations_of_law": values,
-        "basin_tile": basins["pixels"] ** 2 / basins["tiles"],
-        "basin_pairs": basins["pairs"],
-        "basins": len(study.basin_maps),
-        "all points": len(all_points(study)),
-    }
+    work = {rule.name: rule.work for rule in jobs.rules.values() if rule.work}
+    return {**work, "all points": len(all_points(jobs.study))}

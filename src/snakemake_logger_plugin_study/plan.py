@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from snakemake.logging import logger
 
+from burridge_knopoff.jobs.jobs import Jobs
 from snakemake_logger_plugin_study.durations import Durations, measured, work_of
 from snakemake_logger_plugin_study.run import Job, Run
 
@@ -25,7 +25,7 @@ class Plan:
 
     results: str = ""
     workflow: Any = None
-    study: Any = None
+    jobs: Jobs | None = None
     record: Callable[[], None] = lambda: None
     first: list[str] = field(default_factory=list)
     run: Run = field(default_factory=Run)
@@ -40,10 +40,10 @@ class Plan:
 
     def look_ahead(self) -> Run:
         """Return the run of the jobs that are to run, with what is known of their durations."""
-        if self.study is None:
+        if self.jobs is None:
             return Run()
         wanted = {job.rule.name for job in self.workflow.dag.jobs}
-        return Run(self.results, self._jobs(), wanted, Durations(work_of(self.study), self._last()))
+        return Run(self.results, self._jobs(self.jobs), wanted, Durations(work_of(self.jobs), self._last()))
 
     def _last(self) -> dict[str, list[float]]:
         """Return {rule: seconds of each of its jobs in the last run, times their threads}."""
@@ -53,17 +53,15 @@ class Plan:
                 last[job.rule.name].append(seconds)
         return last
 
-    def _jobs(self) -> dict[int, Job]:
+    def _jobs(self, jobs: Jobs) -> dict[int, Job]:
         """Return {number: job} of the jobs that make files, in the order of the rules."""
         dag, rules = self.workflow.dag, list(self.workflow.rules)
         order = {rule.name: place for place, rule in enumerate(rules)}
-        # A file of rules is a stage, named after its first rule that only gathers, or the file.
-        stages = {rule.snakefile: rule.name for rule in reversed(rules) if not rule.output}
         numbers = {job: dag.jobid(job) for job in dag.needrun_jobs(exclude_finished=False) if job.output}
         return {
             numbers[job]: Job(
                 " ".join([job.rule.name, *(f"{name}={value}" for name, value in job.wildcards_dict.items())]),
-                stages.get(job.rule.snakefile, Path(str(job.rule.snakefile)).stem),
+                jobs.stage_of(job.rule.name),
                 job.rule.name,
                 threads=int(job.threads),
                 priority=float(job.priority),

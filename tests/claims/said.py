@@ -21,7 +21,7 @@ from tests.claims.worlds import evidence, paper_world
 ROOT = Path(__file__).parents[2]
 FILE = Path(__file__).with_name("said.json")
 PICTURES = picture_names(PAPER_STATES)
-CLAIMS: dict[str, Claim] = {claim.name: claim for claim in read_claims(ROOT / "config/claims.yaml", PICTURES)}
+CLAIMS: dict[str, Claim] = {claim.name: claim for claim in read_claims(PICTURES)}
 
 
 def altered(name: str, alteration: Alteration) -> Verdict:

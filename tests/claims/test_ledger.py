@@ -51,7 +51,7 @@ position:
 def read(tmp_path: Path, text: str | bytes) -> list:
     file = tmp_path / "claims.yaml"
     file.write_bytes(text.encode() if isinstance(text, str) else text)
-    return read_claims(file, PICTURES)
+    return read_claims(PICTURES, file)
 
 
 def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
@@ -129,7 +129,7 @@ def test_what_is_not_allowed_is_said_in_one_line(tmp_path: Path, text: str, old:
 
 def test_a_file_that_is_not_there_or_no_text(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"missing.yaml: cannot be read: No such file"):
-        read_claims(tmp_path / "missing.yaml", ())
+        read_claims((), tmp_path / "missing.yaml")
     with pytest.raises(ConfigError, match=r"claims.yaml: cannot be read: not UTF-8 text"):
         read(tmp_path, b"\xff\xfe\x00")
 

@@ -29,7 +29,7 @@ def folder(tmp_path_factory):
     given = {"study": "paper", "a": [0.08], "initial": {"plus": {}}, "laws": {"linearized": {}}}
     given |= {"transient": 10, "window": 20, "batches": 2}
     study = run_study(results, given).study
-    write_study_record(results, study.config, study.parameters, folder / "paper.yaml", given, "", {})
+    write_study_record(results, study.config, study.parameters, folder / "paper.yaml", given, "")
     # As in the repository.
     (folder / "results/README.md").touch()
     return folder

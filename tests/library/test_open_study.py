@@ -3,6 +3,7 @@
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -10,31 +11,22 @@ import xarray
 
 from burridge_knopoff import open_study
 from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.provenance.seal import write_sealed
+from burridge_knopoff.provenance.seal import read_sealed, write_sealed
 from burridge_knopoff.show.result import open_result
 from tests.small_study import run_study
 
 CONFIG = {"study": "few", "a": [0.05, 0.08, 0.22], "initial": {"minus": {}, "plus": {}}}
 CONFIG |= {"transient": 20, "window": 60, "batches": 2, "event_window": 50}
-SUMMARY = "summary/some.nc"
+SUMMARY = "summary/mean_distance.nc"
 MISSING = ("nonlinear", "plus", "0.0800")
 
 
 def make_study(folder):
-    """Make the points of a study but one, and something for a summary."""
-    small = run_study(folder, CONFIG)
+    """Make the points of a study but one, and its summaries of points."""
+    small = run_study(folder, {**CONFIG, "without": ["attractors"]}, ("points", "summary"))
     small.grid.path(*MISSING).unlink()
-    (folder / "summary").mkdir()
-    write_sealed(folder / SUMMARY, xarray.Dataset({"mean": ("a", [1.0, 2.0])}).to_netcdf, {"v": 0.1})
-    write_study_record(
-        folder,
-        small.study.config,
-        small.study.parameters,
-        "few.yaml",
-        CONFIG,
-        "--configfile few.yaml",
-        {SUMMARY: {"v": 0.1}},
-    )
+    study = small.study
+    write_study_record(folder, study.config, study.parameters, "few.yaml", CONFIG, "--configfile few.yaml")
 
 
 @pytest.fixture(scope="module")
@@ -44,13 +36,20 @@ def results(tmp_path_factory):
     return folder
 
 
+def resealed(path, **changes):
+    """Write a file again as one that says something else of itself."""
+    content, about, status = read_sealed(path)
+    about = {key: value for key, value in {**about, **changes}.items() if value is not None}
+    write_sealed(path, lambda name: Path(name).write_bytes(content), about, status)
+
+
 def test_nodes_are_the_files(results):
     files = [*results.rglob("*.nc")]
     # What a job is writing, or has left half-written, is none.
     (results / "summary" / ".some.part-0123abcd.nc").touch()
     study = open_study(results)
-    assert list(study["summary"]) == ["some"]
-    assert len(files) == 12
+    assert len(list(study["summary"])) == 7
+    assert len(files) == 11 + 7
     for path in files:
         node = study[str(path.relative_to(results).with_suffix(""))]
         with xarray.open_dataset(path) as expected:
@@ -100,10 +99,11 @@ POINT = "points/linearized/plus/a0.0500.nc"
         (POINT, lambda path: path.write_bytes(b"no netCDF"), "has no seal at its end"),
         (POINT, lambda path: shutil.copy(path.with_name("a0.0800.nc"), path), "is another run: --a 0.08 instead of"),
         (SUMMARY, lambda path: path.write_bytes(b""), "is empty"),
+        (SUMMARY, lambda path: resealed(path, file=None), f"is another file: got nothing, expected {SUMMARY}"),
         (
             SUMMARY,
-            lambda path: write_sealed(path, xarray.Dataset({"mean": ("a", [1.0, 3.0])}).to_netcdf, {"v": 0.3}),
-            "was made with v: got 0.3, expected 0.1",
+            lambda path: resealed(path, config={"synchronization_threshold": 0.3}),
+            "was made with config.synchronization_threshold: got 0.3, expected 1e-06",
         ),
     ],
 )

@@ -15,6 +15,7 @@ from snakemake.settings.enums import Quietness
 from snakemake_interface_logger_plugins.common import LogEvent
 
 import snakemake_logger_plugin_study as plugin
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.study.job_log import SILENT
 from burridge_knopoff.study.load import load_study
 from snakemake_logger_plugin_study.display import Lines, about, beginning, cost, elapsed, progress
@@ -78,11 +79,8 @@ class Dag:
     """Three jobs: `orbits` after `simulate`, and after `edges` that is up to date; `points` makes no file."""
 
     def __init__(self):
-        files = {"orbits": "stability", "simulate": "simulate", "points": "simulate", "bifurcations": "stability"}
-        self.rules = [
-            SimpleNamespace(name=name, snakefile=f"rules/{file}.smk", output=["x"] if name != "points" else [])
-            for name, file in files.items()
-        ]
+        names = ("orbits", "simulate", "points", "bifurcations")
+        self.rules = [SimpleNamespace(name=name, output=["x"] if name != "points" else []) for name in names]
         options = {"wildcards_dict": {}, "threads": 1, "priority": 0, "benchmark": None}
         self.jobs = [AJob(rule=rule, output=rule.output, **options) for rule in self.rules]
         orbits, simulate, points, edges = self.jobs
@@ -98,13 +96,13 @@ class Dag:
 
 
 def test_what_the_snakefile_announces(tmp_path):
-    """Stages are files of rules; jobs are those that make files, with what they need and what they took before."""
+    """Jobs are those that make files, each with its stage, with what they need and with what they took before."""
     study = load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {}}}, "x.yaml")
     dag = Dag()
-    plan = Plan(str(tmp_path), SimpleNamespace(rules=dag.rules, dag=dag), study)
+    plan = Plan(str(tmp_path), SimpleNamespace(rules=dag.rules, dag=dag), Jobs(study))
     plan.announce()
     assert list(plan.run.jobs.items()) == [
-        (7, Job("orbits", "stability", "orbits", needs=frozenset({8}))),
+        (7, Job("orbits", "summary", "orbits", needs=frozenset({8}))),
         (8, Job("simulate a=0.05", "points", "simulate")),
     ]
     assert plan.run.wanted == {"simulate", "orbits", "points", "bifurcations"}

@@ -9,7 +9,8 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff import simulate
-from burridge_knopoff.dataset.point import point_about, write_point
+from burridge_knopoff.dataset.about import point_about
+from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.provenance.seal import BadFile, check_seal, read_seal, seal_path, write_sealed, write_sealed_text
 from tests.optional import needs, setting
 

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.sources import (
     PACKAGE,
     PLUMBING,
@@ -21,6 +22,7 @@ from burridge_knopoff.provenance.sources import (
     source_fingerprint,
     sources_of,
 )
+from burridge_knopoff.study.load import load_study
 
 SCRIPTS = sorted((PACKAGE.parent.parent / "workflow" / "scripts").glob("*.py"))
 SOURCES = sorted([*PACKAGE.rglob("*.py"), *SCRIPTS])
@@ -115,14 +117,10 @@ def test_a_changed_word_of_code_is_seen_and_a_comment_is_not(path, data):
     assert code_of("".join(changed)) == code_of(text)
 
 
-# Scripts that pick the module that their rule names, and one that they may pick.
-PICKED = {
-    "summary_of_points": "burridge_knopoff.summaries.lyapunov",
-    "summary_of_models": "burridge_knopoff.summaries.orbits",
-    "merge": "burridge_knopoff.summaries.attractors",
-    "figure_of_summaries": "burridge_knopoff.figures.basins",
-    "figure_of_runs": "burridge_knopoff.figures.distance",
-}
+RULES = Jobs(load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {}}, "catalogue": {}}, "x.yaml")).rules
+
+#: {rule: the modules that make its files}
+MAKERS = {name: rule.sources for name, rule in RULES.items() if rule.make}
 
 
 # Imports what is not ours once, and then what each script imports in a process of its own.
@@ -139,32 +137,26 @@ for name, imports in json.load(sys.stdin).items():
 """
 
 
-def test_every_module_that_a_script_loads_is_among_its_sources():
-    modules = {script: [PICKED[script.stem]] if script.stem in PICKED else [] for script in SCRIPTS}
-    programs = {}
-    for script, picked in modules.items():
-        lines = script.read_text().splitlines()
-        imports = [line for line in lines if line.startswith(("from burridge", "import burridge"))]
-        programs[script.stem] = "\n".join([*imports, *(f"import {module}" for module in picked)])
+def test_every_module_that_a_rule_loads_is_among_its_sources():
+    """Of what makes its files; the worker that calls it decides nothing in them."""
+    programs = {name: "\n".join(f"import {module}" for module in modules) for name, modules in MAKERS.items()}
     ran = subprocess.run(
         [sys.executable, "-c", LOADED], input=json.dumps(programs), check=True, capture_output=True, text=True
     )
     loaded = {name: names for name, *names in map(str.split, ran.stdout.splitlines())}
-    for script, picked in modules.items():
-        needed = {file for module in loaded[script.stem] for file in files_of(module)}
+    for name, modules in MAKERS.items():
+        needed = {file for module in loaded[name] for file in files_of(module)}
         needed = {path for path in needed if not path.relative_to(PACKAGE).as_posix().startswith(PLUMBING)}
-        # A folder's own file is loaded on the way to its modules; where it says something, it is followed.
-        needed = {path for path in needed if path.name != "__init__.py"}
-        assert len(needed) > 3, script
-        assert needed <= set(sources_of(script, *picked)), script
+        # A folder's own file is loaded on the way to its modules; where it says something, it is followed. Words of
+        # error messages are loaded by what moves bytes.
+        needed = {path for path in needed if path.name not in ("__init__.py", "values.py")}
+        assert len(needed) > 3, name
+        assert needed <= set(sources_of(*modules)), name
 
 
 def test_results_depend_on_what_makes_them():
-    def names(stem):
-        script, *modules = stem.split()
-        path = next(path for path in SCRIPTS if path.stem == script)
-        found = sources_of(path, *(f"burridge_knopoff.{module}" for module in modules))
-        return {item.relative_to(PACKAGE).as_posix() for item in found if item != path}
+    def names(rule):
+        return {path.relative_to(PACKAGE).as_posix() for path in sources_of(*MAKERS[rule])}
 
     point = {path.relative_to(PACKAGE).as_posix() for path in sources_of("burridge_knopoff.dataset.point")}
     assert {
@@ -179,8 +171,9 @@ def test_results_depend_on_what_makes_them():
     assert "running/ensemble.py" not in point
     assert {"running/ensemble.py", "attractors/search.py"} <= names("attractors_of_law")
     assert not {"dataset/point.py", "basins/plane.py"} & names("attractors_of_law")
-    assert {"figures/agreement.py", "figures/style.py"} <= names("figure_of_summaries figures.agreement")
-    drawn = names("figure_of_summaries figures.agreement")
+    assert "claims/claims.yaml" in names("claims")
+    drawn = names("figure_agreement")
+    assert {"figures/agreement.py", "figures/style.py"} <= drawn
     assert not {name for name in drawn if name.startswith(("kernel", "stability", "report"))}
     assert {"report/static/style.css", "report/templates/report.html.jinja", "report/page.py"} <= names("report")
     assert not any(name.startswith(PLUMBING) for name in names("report") - {"provenance/compilation.py"})
@@ -200,7 +193,9 @@ def test_the_fingerprint_is_of_the_code(tmp_path):
 #: Names that are for people and for the display: no script that makes a result uses them.
 LOOKED_UP = ("burridge_knopoff/__init__.py",)
 LOOKED_UP += ("cli/__init__.py", "show/picture.py", "show/summary.py")
-LOOKED_UP += tuple(f"scripts/{name}.py" for name in PICKED)
+#: Modules of the name that is among their params, and in `Rule.modules`.
+LOOKED_UP += ("jobs/run.py", "summaries/of_points.py", "summaries/of_models.py")
+LOOKED_UP += ("figures/of_summaries.py", "figures/of_runs.py")
 
 
 def test_nothing_is_imported_that_would_not_be_followed():

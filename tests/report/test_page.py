@@ -9,8 +9,9 @@ import pytest
 import xarray
 
 from burridge_knopoff.dataset.summary import write_summary
-from burridge_knopoff.report.page import render
+from burridge_knopoff.report.page import Sources, render
 from tests.report.conftest import CLAIMS
+from tests.small_study import run_study
 
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 
@@ -56,13 +57,11 @@ def test_what_is_missing_is_said_in_a_line(page):
         "No synchronized orbit was computed",
         "This study has no maps of basins.",
         "W never crosses 0 upward: the section is never reached, in the window of any run;",
-        "Longer chains were not part of this study",
         "Snakemake left no benchmark files",
     ):
         assert line in page.whole_text
     charts = [attributes["data-chart"] for _, attributes in page.elements if "data-chart" in attributes]
-    assert not {"map", "chains", "multipliers", "asymmetry", "sections"} & set(charts)
-    assert {"distance", "exponents", "agreement"} <= set(charts)
+    assert set(charts) == {"distance", "exponents"}
 
 
 def test_curves_come_first_and_all_verdicts_are_rows_of_one_table(poor):
@@ -74,22 +73,12 @@ def test_curves_come_first_and_all_verdicts_are_rows_of_one_table(poor):
     assert sorted(rows) == sorted(f"claim-{name}" for name in names)
 
 
-def test_an_optional_result_of_other_sources_is_left_out(poor):
-    """It is none of what the run of a study brings up to date."""
+def test_a_summary_of_other_sources_is_refused(poor):
     found = xarray.load_dataset(poor.sources.summaries["orbits"]).assign_attrs(source_fingerprint="another")
-    path = poor.folder / "old" / "chains.nc"
+    path = poor.folder / "old" / "phases.nc"
     path.parent.mkdir(exist_ok=True)
     write_summary(found, path)
-    picture = poor.sources.figures["orbits"]
-    sources = replace(
-        poor.sources,
-        summaries={**poor.sources.summaries, "chains": path},
-        figures={**poor.sources.figures, "chains": picture},
-    )
-    page = Page(render(poor.study, sources, []))
-    assert "Left out: " in page.whole_text
-    assert "old/chains.nc: was made by other sources" in page.whole_text
-    with pytest.raises(ValueError, match=r"chains\.nc: was made by other sources"):
+    with pytest.raises(ValueError, match=r"phases\.nc: was made by other sources"):
         render(poor.study, replace(poor.sources, summaries={**poor.sources.summaries, "phases": path}))
 
 
@@ -127,3 +116,13 @@ def test_the_html_is_sound(page):
 
 def test_the_same_inputs_give_the_same_page(poor, html):
     assert render(poor.study, poor.sources, ["--configfile", "poor.yaml"]) == html
+
+
+@pytest.mark.parametrize(("values", "charts"), [([0.1, 0.2], 2), ([0.1], 0)])
+def test_a_study_of_two_parameters_has_maps_to_point_at(tmp_path, values, charts):
+    grid = {"a": values, "v": [0.1, 0.2]}
+    config = {"study": "plane", "grid": grid, "initial": {"plus": {}}, "transient": 20, "window": 20, "batches": 2}
+    small = run_study(tmp_path / "results/plane", config, ("points", "summary"))
+    html = render(small.study, Sources(None, {"grid": small.folder / "summary/grid.nc"}, {}))
+    assert html.count('data-chart="grid"') == charts
+    assert ("Plotly" in html) == ('classList.add("js")' in html) == (charts > 0)

@@ -23,7 +23,6 @@ STORED = (
     "orbits",
     "attractors",
     "basins",
-    "two_blocks",
 )
 
 
@@ -50,17 +49,12 @@ def test_every_law_has_its_charts_and_its_formula(small, html):
     charts = [attributes for _, attributes in page.elements if "data-chart" in attributes]
     for name, count in {
         "distance": len(laws),
-        "fractions": len(laws),
         "exponents": len(laws) * len(states),
-        "agreement": (len(laws) - 1) * len(states),
-        "map": small.found["basins"].sizes["map"],
     }.items():
         assert sum(chart["data-chart"] == name for chart in charts) == count, name
     for law, model in zip(laws, small.models, strict=True):
         assert f"{law}, {model.law.text}" in page.whole_text
     assert ("is the only one of the study" in page.whole_text) == (len(laws) == 1)
-    for other in laws[1:]:
-        assert f"{other.capitalize()} law compared with the {laws[0]} law" in page.whole_text
 
 
 def test_a_study_of_curves_alone(small_studies, tmp_path):

@@ -16,7 +16,7 @@ from burridge_knopoff.cli import READER_GONE, main
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.provenance.seal import canonical, identity
+from burridge_knopoff.provenance.seal import digest_of
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.show.summary import summary_lines
 from burridge_knopoff.study.formatting import plain, with_error
@@ -36,9 +36,8 @@ def study(small_studies, tmp_path_factory):
     """The summaries of a small study with its record."""
     small = small_studies("paper")
     results = tmp_path_factory.mktemp("show") / "results" / "paper"
-    for name, dataset in small.found.items():
-        write_summary(dataset, results / f"summary/{name}.nc")
-    write_study_record(results, small.study.config, small.study.parameters, "paper.yaml", {}, "", {})
+    shutil.copytree(small.folder, results)
+    write_study_record(results, small.study.config, small.study.parameters, "paper.yaml", {}, "")
     return results
 
 
@@ -124,25 +123,15 @@ def test_what_cannot_be_drawn_is_said_in_a_line(study, tmp_path, capsys):
 def test_a_part_of_a_summary_is_described_and_not_drawn(small_studies, tmp_path, capsys):
     small = small_studies("paper")
     results = tmp_path / "results" / "paper"
-    found = small.found["attractors"]
-    parts = {
-        "attractors/linearized.nc": found.isel(law=0, drop=True).assign_attrs(law="linearized", title="Attractors of"),
-        # Of the same form as the summary: known by its place in the study.
-        "bifurcations/linearized.nc": small.found["bifurcations"].assign_attrs(title="Bifurcations of"),
-        "summary/bifurcations.nc": small.found["bifurcations"],
-    }
-    for name, dataset in parts.items():
-        write_summary(dataset, results / name)
-    files = {name: {"sources": part.attrs["source_fingerprint"]} for name, part in parts.items()}
-    write_study_record(results, small.study.config, small.study.parameters, "paper.yaml", {}, "", files)
+    shutil.copytree(small.folder, results)
+    write_study_record(results, small.study.config, small.study.parameters, "paper.yaml", {}, "")
     for name in ("attractors", "bifurcations"):
         path = results / name / "linearized.nc"
         assert main(["show", str(path), "--plot", str(tmp_path / "x.png")]) == 2
         out, error = capsys.readouterr()
-        assert out.startswith(f"{path}: {name.capitalize()} of\n")
-        whole = f": {results / 'summary/bifurcations.nc'}" if name == "bifurcations" else ""
+        assert out.startswith(f"{path}: {name.capitalize()}")
         words = "no figure shows a part of a summary, only the whole one"
-        assert error == f"bk show: {path}: {words}{whole}\n"
+        assert error == f"bk show: {path}: {words}: {results / f'summary/{name}.nc'}\n"
     assert not (tmp_path / "x.png").exists()
 
 
@@ -151,7 +140,7 @@ def test_summaries_of_two_studies_are_not_drawn_together(small_studies, tmp_path
     attractors = {"file": "summary/attractors.nc", "seed": 1, "inputs": {}}
     write_summary(found["attractors"], tmp_path / "attractors.nc", attractors)
     for about, code in ((attractors, 0), ({**attractors, "seed": 2}, 2)):
-        made_from = {"summary/attractors.nc": identity(canonical(about))}
+        made_from = {"summary/attractors.nc": digest_of(about)}
         basins = {"file": "summary/basins.nc", "inputs": made_from}
         write_summary(found["basins"], tmp_path / "basins.nc", basins)
         said = shown(capsys, tmp_path / "basins.nc", "--plot", tmp_path / "basins.png", code=code)

@@ -5,6 +5,7 @@ from itertools import chain, pairwise
 import pytest
 
 from burridge_knopoff.check.leftovers import leftovers
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.points import make_points
@@ -39,7 +40,7 @@ def test_points_are_named_in_the_order_of_the_config_and_hold_their_parameters()
 
 def test_a_grid_of_a_alone_is_a():
     alone, usual = load(grid={"a": [0.1, 0.2]}), load(grid=None, a=[0.1, 0.2])
-    assert (alone.config, alone.parameters, alone.stages) == (usual.config, usual.parameters, usual.stages)
+    assert (alone.config, alone.parameters) == (usual.config, usual.parameters)
     assert not alone.is_plane
 
 
@@ -94,7 +95,7 @@ def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_pat
     small = load(grid={"a": [0.2], "v": [0.1, 0.2]})
     results = tmp_path / "results" / "plane"
     results.mkdir(parents=True)
-    write_study_record(results, small.config, small.parameters, "plane.yaml", {}, "", {})
+    write_study_record(results, small.config, small.parameters, "plane.yaml", {}, "")
     assert recorded_study(results)[1] == small
     files = {
         "points/linearized/pair/a0.2000_v0.1000.nc": False,
@@ -114,7 +115,7 @@ def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_pat
     for name in files:
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         (results / name).touch()
-    found = {path.relative_to(results).as_posix() for path in leftovers(results, small)}
+    found = {path.relative_to(results).as_posix() for path in leftovers(results, Jobs(small))}
     assert found == {name for name, left in files.items() if left}
 
 

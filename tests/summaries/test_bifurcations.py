@@ -21,11 +21,12 @@ from burridge_knopoff import (
 from burridge_knopoff.continuation.bifurcations import entries
 from burridge_knopoff.continuation.branch_changes import Change, branch_changes
 from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, _closed
+from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries import bifurcations
-from burridge_knopoff.summaries.bifurcations import VARIABLES, _branches_of_segments, _rounded, digest, merge, one_law
+from burridge_knopoff.summaries.bifurcations import _branches_of_segments, _rounded, digest, merge, one_law
 
 # Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]
@@ -228,13 +229,13 @@ def test_what_is_less_well_known_has_fewer_digits(found, name, digits):
 
 
 def test_a_negative_rounding_of_0_is_0():
-    assert not np.signbit(_rounded(VARIABLES["a"], [-1e-13], 10)).any()
+    assert not np.signbit(_rounded(np.array([-1e-13]), 10)).any()
 
 
 def test_next_to_0_eleven_digits_behind_the_point_are_kept():
-    values = _rounded(VARIABLES["stick_time"], [1.23456789e-7, 1.23456789e-2, 4e-12], 5)
+    values = _rounded(np.array([1.23456789e-7, 1.23456789e-2, 4e-12]), 5)
     assert values.tolist() == [1.2346e-7, 1.2346e-2, 0.0]
-    assert _rounded(VARIABLES["a"], [1.23456789e-8], 10).tolist() == [1.235e-8]
+    assert _rounded(np.array([1.23456789e-8]), 10).tolist() == [1.235e-8]
 
 
 def test_orbits_are_stable_on_one_side_of_the_bifurcation(found):
@@ -244,7 +245,7 @@ def test_orbits_are_stable_on_one_side_of_the_bifurcation(found):
     assert (found["orbit_period"].values > 0.0).all()
 
 
-def test_a_bifurcation_without_an_orbit_has_no_numbers_of_one(grid):
+def test_a_bifurcation_without_an_orbit_has_no_numbers_of_one(grid, tmp_path):
     """Chaos on both sides of every bifurcation: none is located, and each lies anywhere between two values of a."""
     chaotic = grid.assign(kind=xr.full_like(grid["kind"], MotionKind.CHAOTIC))
     found = one_law(MODEL, chaotic, at_all_values(chaotic))
@@ -255,15 +256,20 @@ def test_a_bifurcation_without_an_orbit_has_no_numbers_of_one(grid):
         assert (found[name].values == -1).all()
     for name in ("period", "mean_distance", "stick_time", "multiplier", "multiplier_beyond"):
         assert np.isnan(found[name].values).all()
+    # Words in a file without any are words when it is read.
+    write_summary(found, tmp_path / "none.nc")
+    again = merge([open_summary(tmp_path / "none.nc")] * 2)
+    assert again["law"].values.tolist() == ["linearized"] * 4
+    assert again["orbit_law"].dtype.kind in "UO"
 
 
 def test_bifurcations_of_laws_come_one_after_the_other(found):
     other = found.isel(bifurcation=[1], orbit=[0, 2]).assign_attrs(laws="mine")
+    other = other.assign(law=other["law"].copy(data=["mine"]), orbit_law=other["orbit_law"].copy(data=["mine"] * 2))
     both = merge([found, other])
     assert both.attrs["laws"] == "linearized mine"
-    assert both["law"].values.tolist() == [0] * found.sizes["bifurcation"] + [1]
-    assert both["orbit_law"].values.tolist() == [0] * found.sizes["orbit"] + [1, 1]
-    assert both["law"].attrs["flag_meanings"] == both["orbit_law"].attrs["flag_meanings"] == "linearized mine"
+    assert both["law"].values.tolist() == ["linearized"] * found.sizes["bifurcation"] + ["mine"]
+    assert both["orbit_law"].values.tolist() == ["linearized"] * found.sizes["orbit"] + ["mine"] * 2
     np.testing.assert_array_equal(both["a"].values, [*found["a"].values, other["a"].item()])
     np.testing.assert_array_equal(both["orbit_stops"].values[-2:], other["orbit_stops"].values)
 
@@ -272,7 +278,7 @@ def test_bifurcations_in_words(found):
     """A line each, of what is known there."""
     shown = xr.concat([found.isel(bifurcation=[0], orbit=[])] * 5, "bifurcation", data_vars="minimal").load()
     values = {
-        "law": [0, 0, 1, 1, 1],
+        "law": ["linearized"] * 2 + ["mine"] * 3,
         "a": [0.0869729047, 0.1, 0.12345678912, 0.2, 0.20125],
         "a_error": [1e-10, 1e-9, 1e-10, 5e-5, 0.00125],
         "kind": [

@@ -1,4 +1,4 @@
-"""The optional stage of longer chains: its target, its files, and their bytes."""
+"""Longer chains: their target, their files and bytes, and studies that have them as a part."""
 
 import re
 
@@ -33,7 +33,7 @@ def study(tmp_path_factory):
 def test_the_target_makes_its_files_and_no_points(study):
     made = set(study.files("chains", "summary", "figures", "points"))
     assert made == {
-        *("chains/blocks2.nc", "chains/blocks3.nc", "summary/chains.nc", "summary/two_blocks.nc"),
+        *("chains/blocks2.nc", "chains/blocks3.nc", "summary/chains.nc"),
         *("figures/chains.pdf", "figures/chains.png"),
     }
     results = study.folder / "results" / "tiny"
@@ -43,18 +43,17 @@ def test_the_target_makes_its_files_and_no_points(study):
         assert summary["a"].values.tolist() == [0.02, 0.1, 0.2]
         assert summary["outcome"].shape == (2, 2, 3, 3)
         assert all(variable.attrs["long_name"] for variable in summary.variables.values())
-    with xr.open_dataset(results / "summary" / "two_blocks.nc") as summary:
-        assert summary["mean_distance"].shape == (2, 2, 2, 2)
     assert imread(results / "figures" / "chains.png").shape[1] > 1500
-    for log in (results / "logs").rglob("*.log"):
-        # What work that is shared out has taken is logged.
-        shared = ["two blocks, train", "two blocks, both_pulled", "one block"] if log.name == "two_blocks.log" else []
-        assert [line.split(":")[0] for line in log.read_text().splitlines()] == shared
+    assert {log.read_text() for log in (results / "logs").rglob("*.log")} == {""}
 
 
-def test_the_default_target_leaves_them_out(study):
-    run = study.ok("-n")
-    assert not re.search(r"^(watch_chain|chains_summary|figure_chains) ", run, re.MULTILINE)
+def test_they_are_a_part_of_a_study_that_says_their_lengths(study):
+    with_them = re.compile(r"^(watch_chain|chains_summary|figure_chains) ", re.MULTILINE)
+    assert len(set(with_them.findall(study.ok("-n", "-F")))) == 3
+    study.config.write_text(CHAINS.replace("  blocks: [3, 2]\n", ""))
+    assert not with_them.findall(study.ok("-n", "-F"))
+    assert re.search(r"^watch_chain +7$", study.ok("chains", "-n"), re.MULTILINE)
+    study.config.write_text(CHAINS)
 
 
 def test_the_same_bytes_on_one_core_and_in_another_folder(study, tmp_path):
@@ -63,7 +62,7 @@ def test_the_same_bytes_on_one_core_and_in_another_folder(study, tmp_path):
     folders = ("chains", "summary", "figures")
     mine = study.files(*folders)
     assert {name for name, content in other.files(*folders).items() if mine[name] != content} == set()
-    assert len(mine) == 6
+    assert len(mine) == 5
 
 
 def test_the_model_reruns_them_and_the_points_do_not(study):

@@ -7,7 +7,7 @@ import sys
 
 import pytest
 
-from burridge_knopoff.check.leftovers import study_files
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_yaml
 from tests.workflow.conftest import REPOSITORY, Study
@@ -23,7 +23,7 @@ window: 20
 batches: 2
 without: [attractors, solvers, proof, claims]
 """
-ROW = '    "unseen": SummaryRow("Average J, which no figure shows.", keys=("synchronization_threshold",)),\n'
+ROW = '        of_points("unseen", "Average J, which no figure shows.", "synchronization_threshold"),\n'
 SEEN = "summary/mean_distance.nc"
 UNSEEN = "summary/unseen.nc"
 
@@ -35,8 +35,10 @@ def with_unseen(tmp_path):
     tree.mkdir()
     for name in ("Snakefile", "profiles", "config", "src", "workflow"):
         subprocess.run(["cp", "-a", str(REPOSITORY / name), str(tree)], check=True)
-    rows = tree / "src/burridge_knopoff/study/summary_rows.py"
-    rows.write_text(rows.read_text().replace("SUMMARY_ROWS = {\n", f"SUMMARY_ROWS = {{\n{ROW}"))
+    rows = tree / "src/burridge_knopoff/jobs/shown.py"
+    before = rows.read_text()
+    rows.write_text(before.replace("    return [\n        of_points(", f"    return [\n{ROW}        of_points("))
+    assert rows.read_text() != before
     shutil.copy(tree / "src/burridge_knopoff/summaries/mean_distance.py", rows.parents[1] / "summaries/unseen.py")
     return Study(tmp_path / "study", ONE_POINT, tree)
 
@@ -67,7 +69,7 @@ def test_what_rules_make_is_what_is_checked(study):
     paths = set(re.findall(r"^results/tiny/(\S+)\t", made, re.MULTILINE))
     of_points = {path for path in paths if path.startswith(("points/", "solvers/"))}
     assert len(of_points) == 22
-    assert paths - of_points == {*study_files(load_study(read_yaml(study.config), "study.yaml"))}
+    assert paths - of_points == Jobs(load_study(read_yaml(study.config), "study.yaml")).all_files().keys()
 
 
 def test_verdicts_wait_for_what_judges_read(study):

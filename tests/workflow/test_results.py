@@ -10,6 +10,7 @@ from matplotlib.image import imread
 
 from burridge_knopoff import simulate
 from burridge_knopoff.check.leftovers import leftovers
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
@@ -254,15 +255,15 @@ def test_logs_and_benchmarks(results):
 def test_what_a_smaller_study_leaves_over_is_known_by_its_names(results, key, name):
     """`bk prune` knows all that the rules have written of a state, a law or an a that is no more."""
     record, study = recorded_study(results)
-    assert leftovers(results, study) == []
+    assert leftovers(results, Jobs(study)) == []
     config, grid = record["config"], record["grid"]
     del (grid["a"] if key == "grid" else config[key])[name]
     maps = config["basins"].pop("a")
     config["basins"]["a"] = {law: [a for a in maps[law] if a in grid["a"].values()] for law in maps if law != name}
     # With one law there is nothing to compare it with.
-    compared = "|.*figures?[/_](agreement|two_blocks).*" if key == "laws" else ""
+    compared = r"|.*figures?[/_]agreement.*|.*/(figure_)?two_blocks\.[a-z]+" if key == "laws" else ""
     named = re.compile(rf".*(/a?|motion_){name}(/.*|\.[a-z]+){compared}")
-    assert {*leftovers(results, Study(config, grid))} == {
+    assert {*leftovers(results, Jobs(Study(config, grid)))} == {
         path for path in results.rglob("*") if path.is_file() and named.fullmatch(str(path))
     }
 
@@ -277,8 +278,7 @@ def test_what_a_smaller_study_leaves_over_is_known_by_its_names(results, key, na
         ),
         ("bifurcations", "(figure_)?bifurcations"),
         ("solvers", "(figure_)?solvers|simulate_solver"),
-        # Longer chains need the summary.
-        ("two_blocks", "figure_two_blocks|figures/two_blocks"),
+        ("two_blocks", "(figure_)?two_blocks"),
         ("proof", "proof"),
         ("claims", "claims"),
     ],
@@ -288,7 +288,7 @@ def test_what_a_stage_that_is_left_out_leaves_over_is_known_by_its_names(results
     study = load_study({**record["given"], "without": [stage]}, "tiny.yaml")
     named = re.compile(rf"(.*/)?({names})(/.*|\.[a-z]+)")
     paths = {path.relative_to(results).as_posix(): path for path in results.rglob("*") if path.is_file()}
-    assert {*leftovers(results, study)} == {path for name, path in paths.items() if named.fullmatch(name)}
+    assert {*leftovers(results, Jobs(study))} == {path for name, path in paths.items() if named.fullmatch(name)}
 
 
 def test_the_data_dictionary_names_every_variable(results, repository):

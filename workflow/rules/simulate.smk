@@ -1,57 +1,73 @@
 # Points: one simulation for each friction law, initial state and value of a, or of several parameters. A study of a has
 # a job for each point; one of several parameters has a job for each stretch of points.
-POINTS = all_points(STUDY)
-POINT_FILE = STUDY.point_file
-OF_POINT = POINT_FILE.removesuffix(".nc")
-POINT_SOURCES = source_fingerprint("burridge_knopoff.dataset.point")
+RUNS = JOBS.rules["simulate"]
 
 
 rule points:
     """Simulate all points: each friction law from each initial state at each a, or at each point of the grid."""
     input:
-        [
-            f"{RESULTS}/{STRETCH}".format(stretch=stretch)
-            for stretch in stretches(STUDY)
-        ]
-        if STUDY.is_plane
-        else [f"{RESULTS}/points/{POINT_FILE}".format(**point) for point in POINTS],
+        made(JOBS.there.get("stretch", RUNS)),
 
 
 rule simulate:
     """Simulate one point: one friction law from one initial state at one a, or at one point of the grid."""
     output:
-        f"{RESULTS}/points/{POINT_FILE}",
+        f"{RESULTS}/{RUNS.files[0]}",
     log:
-        f"{RESULTS}/logs/simulate/{OF_POINT}.log",
+        f"{RESULTS}/logs/{RUNS.log_name}.log",
     benchmark:
-        f"{RESULTS}/benchmarks/simulate/{OF_POINT}.tsv"
+        f"{RESULTS}/benchmarks/{RUNS.log_name}.tsv"
     priority: 3
     group:
-        fixed_group("points", POINTS)
+        fixed_group("points", RUNS.each)
     resources:
         mem_mb=150,
         runtime=10,
     params:
         command=lambda wildcards: STUDY.command(**wildcards),
-        sources=POINT_SOURCES,
+        sources=source_fingerprint(*RUNS.sources),
     message:
-        "simulate {wildcards.law} law, initial state {wildcards.initial}, "
-        + ", ".join(f"{name} = {{wildcards.{name}}}" for name in STUDY.parameters)
+        filled(RUNS.message)
     # A run that hit a limit is a result too.
     shell:
         "{params.command} --out {output} > /dev/null 2> {log} || [ $? = 3 ]"
 
 
-if STUDY.is_plane:
+if "simulate_solver" in JOBS.there:
+    AGAIN = JOBS.there["simulate_solver"]
+
+    use rule simulate as simulate_solver with:
+        """Simulate one point again with another solver."""
+        output:
+            f"{RESULTS}/{AGAIN.files[0]}",
+        log:
+            f"{RESULTS}/logs/{AGAIN.log_name}.log",
+        benchmark:
+            f"{RESULTS}/benchmarks/{AGAIN.log_name}.tsv"
+        wildcard_constraints:
+            solver="|".join(SOLVERS),
+        group:
+            fixed_group("solver_points", AGAIN.each)
+        resources:
+            mem_mb=150,
+            runtime=60,
+        params:
+            command=lambda wildcards: STUDY.command(**wildcards),
+        message:
+            filled(AGAIN.message)
+
+
+if "stretch" in JOBS.there:
+    STRETCHES = JOBS.there["stretch"]
 
     rule stretch:
         """Simulate the points of a stretch that are missing, damaged or out of date."""
         output:
-            touch(f"{RESULTS}/{STRETCH}"),
+            touch(f"{RESULTS}/{STRETCHES.files[0]}"),
         log:
-            f"{RESULTS}/logs/stretch/{{stretch}}.log",
+            f"{RESULTS}/logs/{STRETCHES.log_name}.log",
         benchmark:
-            f"{RESULTS}/benchmarks/stretch/{{stretch}}.tsv"
+            f"{RESULTS}/benchmarks/{STRETCHES.log_name}.tsv"
         wildcard_constraints:
             stretch=r"\d+",
         priority: 3
@@ -61,8 +77,8 @@ if STUDY.is_plane:
         params:
             folder=lambda wildcards: RESULTS,
             points=identity(canonical(STUDY.points)),
-            sources=sources("stretch"),
+            sources=source_fingerprint(ROOT / "workflow/scripts/stretch.py"),
         message:
-            "simulate the points of stretch {wildcards.stretch}"
+            filled(STRETCHES.message)
         script:
             "../scripts/stretch.py"

@@ -2,6 +2,7 @@
 import copy
 import json
 import os
+import re
 import shlex
 import sys
 from pathlib import Path
@@ -16,8 +17,10 @@ try:
 except KernelError as error:
     sys.exit(f"{error}")
 
-from burridge_knopoff.claims.claim import checked_claims
+from burridge_knopoff.claims.claim import read_claims
 from burridge_knopoff.figures.description import picture_names
+from burridge_knopoff.jobs.checked import damaged
+from burridge_knopoff.jobs.jobs import Jobs, made as made_files
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.provenance.files import (
     check_folder,
@@ -27,21 +30,12 @@ from burridge_knopoff.provenance.files import (
 from burridge_knopoff.provenance.record import check_owner, write_study_record
 from burridge_knopoff.provenance.seal import canonical, identity
 from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
-from burridge_knopoff.study.params import (
-    basin_keys,
-    cache_folder,
-    keys,
-    model_config,
-    motion_config,
-    other_length_config,
-    proved_config,
-)
-from burridge_knopoff.study.paths import POINT, STRETCH, VALUE
-from burridge_knopoff.study.stretches import incomplete, stretches
 from burridge_knopoff.study.load import load_study
-from burridge_knopoff.study.study import all_points, remarks
-from burridge_knopoff.study.yaml_file import read_config, read_yaml
+from burridge_knopoff.study.paths import VALUE
+from burridge_knopoff.study.study import remarks
+from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import refused_call, refused_cluster
 
@@ -67,17 +61,14 @@ try:
     update_config(GIVEN, OVERRIDES)
     STUDY = load_study(GIVEN, display_path(CONFIG_FILE), WRITTEN)
     RESULTS = f"results/{STUDY.name}"
-    CLAIMS_FILE = ROOT / "config/claims.yaml"
-    CLAIMS = read_yaml(CLAIMS_FILE)
-    checked_claims(CLAIMS, CLAIMS_FILE, picture_names({*PAPER_STATES, *STUDY.initial}))
+    JOBS = Jobs(STUDY)
+    read_claims(picture_names({*PAPER_STATES, *STUDY.initial}))
     # Snakemake itself would report this with a traceback. Results may be read-only until a job has to run.
     check_folder(os.path.abspath(".snakemake"))
     nearest_folder(RESULTS)
     check_owner(RESULTS, CONFIG_FILE, WRITTEN)
 except (ValueError, OSError) as error:
     sys.exit(f"{error}")
-
-SUMMARY, FIGURES = f"{RESULTS}/summary", f"{RESULTS}/figures"
 
 # Cores of a long job, shared among its processes. The jobs of all laws run side by side, each with at least two cores,
 # since with one core each they would not end together. Without jobs, as for --unlock, the number may be missing.
@@ -98,11 +89,11 @@ ARGUMENTS = [
 def record_study():
     """Record in the folder of results what the study is, if there are any or some are to be made."""
     arguments = shlex.join(ARGUMENTS)
-    told = (CONFIG_FILE, WRITTEN, arguments, recorded_seals())
+    told = CONFIG_FILE, WRITTEN, arguments
     write_study_record(RESULTS, STUDY.config, STUDY.parameters, *told)
 
 
-PLAN.results, PLAN.workflow, PLAN.study = RESULTS, workflow, STUDY
+PLAN.results, PLAN.workflow, PLAN.jobs = RESULTS, workflow, JOBS
 PLAN.record = record_study
 
 
@@ -125,8 +116,8 @@ def prepare_results():
     ):
         sys.exit(refusal)
     # Programs that submit jobs tell by it what their jobs would make, and from what.
-    rules = [rule.params.get("sources") for rule in workflow.rules if rule.output]
-    decides = identity(json.dumps([STUDY.config, CLAIMS, rules]))
+    made_from = [source_fingerprint(*rule.sources) for rule in JOBS.there.values()]
+    decides = identity(json.dumps([STUDY.config, made_from]))
     os.environ.update(BK_STUDY=f"{RESULTS} {decides}")
     try:
         check_folder(RESULTS, inside=True)
@@ -142,21 +133,33 @@ def prepare_results():
     PLAN.announce()
 
 
-def sources(script, *modules):
-    """Return the fingerprint of a script, of modules that it loads by name, and of all their imports."""
-    return source_fingerprint(
-        ROOT / f"workflow/scripts/{script}.py",
-        *(f"burridge_knopoff.{module}" for module in modules),
-    )
-
-
-def pictures(figures):
-    """Return the files of some figures."""
-    return [
-        expand(
-            f"{FIGURES}/{figure.file}.{{format}}",
-            initial=STUDY.initial,
-            format=("pdf", "png"),
+def remove_damaged():
+    """Remove files that are damaged and that no job would read before they are kept; the run makes them again."""
+    dry = workflow.output_settings.dryrun
+    for path, reason in damaged(JOBS, Path(RESULTS)):
+        print(
+            f"{path}: {reason}: it {'would be' if dry else 'is'} made again",
+            file=sys.stderr,
         )
-        for figure in figures
-    ]
+        if not dry:
+            path.unlink()
+
+
+# Only in the main process, not in jobs.
+if workflow.is_main_process:
+    remove_damaged()
+
+
+def paths(names):
+    """Return the paths of files of the study."""
+    return [f"{RESULTS}/{name}" for name in names]
+
+
+def made(*rules):
+    """Return the paths of the files that all jobs of some rules make."""
+    return [path for rule in rules for path in paths(made_files(rule))]
+
+
+def filled(words):
+    """Return words with wildcards as Snakemake fills them in."""
+    return re.sub(r"\{(\w+)\}", r"{wildcards.\1}", words)

@@ -9,16 +9,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.check.leftovers import leftovers, run_files, study_files, unmade
+from burridge_knopoff.check.leftovers import leftovers, run_files, unmade
 from burridge_knopoff.dataset.summary import open_summary
+from burridge_knopoff.jobs.checked import check_file
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import NAME, remake_command
-from burridge_knopoff.provenance.seal import BadFile, check_seal
+from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.running.status import ENDS
 from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.study.job_log import last_words
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.stretches import stretches
-from burridge_knopoff.study.study import Study
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.summaries.points import check_run
 
@@ -93,8 +94,9 @@ def check_study(results: str | Path) -> Check:
     """
     results = Path(results)
     record, study = recorded_study(results)
-    points = _points(results, study)
-    left = leftovers(results, study)
+    jobs = Jobs(study)
+    points = _points(results, jobs)
+    left = leftovers(results, jobs)
     notes = []
     if study.name != results.resolve().name:
         notes.append(f"this is study {study.name} under another name: Snakemake looks for it in a folder {study.name}")
@@ -107,12 +109,12 @@ def check_study(results: str | Path) -> Check:
         files = counted(len(left), "file")
         notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
     others = {path for path in results.rglob("*.nc") if not path.name.startswith(".")} - points.keys() - set(left)
-    named = {results / name for name in study_files(study)}
-    there = {path for path in named if path.is_file()}
-    rest = {**dict.fromkeys(there, Path()), **unmade(results, study)}
+    named = {results / name for name in jobs.all_files()}
+    missing = unmade(results, jobs)
+    rest = [*(path.relative_to(results).as_posix() for path in named if path.is_file()), *missing]
     found = [
-        *(_look(path, *run) for path, run in points.items()),
-        *(_look(path, log=log) for path, log in rest.items()),
+        *(_of_point(path, *run) for path, run in points.items()),
+        *(_of_file(jobs, results, name, missing.get(name, Path())) for name in rest),
     ]
     return Check(
         results,
@@ -127,13 +129,10 @@ def check_study(results: str | Path) -> Check:
     )
 
 
-def _points(results: Path, study: Study) -> dict[Path, tuple[str, Path]]:
+def _points(results: Path, jobs: Jobs) -> dict[Path, tuple[str, Path]]:
     """Return {point file: (command, log)} of all runs of a study."""
-    points = {
-        results / file.format(**run): (study.command(**run), results / f"logs/{log}.log".format(**run))
-        for (file,), log, runs in run_files(study)
-        for run in runs
-    }
+    study = jobs.study
+    points = {results / name: (study.command(**run), results / log) for name, run, log in run_files(jobs)}
     for stretch, runs in stretches(study).items():
         for run in runs:
             path = results / "points" / study.point_file.format(**run)
@@ -142,27 +141,35 @@ def _points(results: Path, study: Study) -> dict[Path, tuple[str, Path]]:
     return points
 
 
-def _look(path: Path, command: str = "", log: Path = Path()) -> Finding | None:
-    """Return the problem with the point file of a run (or with another file, without a command), or None."""
+def _of_point(path: Path, command: str, log: Path) -> Finding | None:
+    """Return the problem with the point file of a run, or None."""
     try:
-        if command:
-            status = check_run(path, command)
-        elif path.suffix == ".nc":
-            ended = open_summary(path).get("status")
-            # A catalogue is of a single run.
-            status = "completed" if ended is None or ended.dims else ENDS[ended.item()]
-        else:
-            check_seal(path)
-            return None
-        if status != "completed":
-            return Finding("failed", path, f"ended with status {status}")
+        status = check_run(path, command)
     except BadFile as error:
-        reason = error.reason if error.path == path else f"was made from {error.path}, which is {error.kind}"
-        if error.kind == "missing":
-            words = last_words(log)
-            reason = f"its job failed: {words} (log {log})" if words else "not made yet"
-        return Finding(error.kind, path, reason)
-    return None
+        return _problem(path, error, log)
+    return None if status == "completed" else Finding("failed", path, f"ended with status {status}")
+
+
+def _of_file(jobs: Jobs, results: Path, name: str, log: Path) -> Finding | None:
+    """Return the problem with another file, by its name in the results, or None."""
+    path = results / name
+    try:
+        check_file(jobs, results, name)
+        ended = open_summary(path).get("status") if path.suffix == ".nc" else None
+    except BadFile as error:
+        return _problem(path, error, log)
+    # A catalogue is of a single run.
+    if ended is None or ended.dims or ENDS[ended.item()] == "completed":
+        return None
+    return Finding("failed", path, f"ended with status {ENDS[ended.item()]}")
+
+
+def _problem(path: Path, error: BadFile, log: Path) -> Finding:
+    reason = error.reason if error.path == path else f"was made from {error.path}, which is {error.kind}"
+    if error.kind == "missing":
+        words = last_words(log)
+        reason = f"its job failed: {words} (log {log})" if words else "not made yet"
+    return Finding(error.kind, path, reason)
 
 
 def changed(results: Path, record: dict[str, Any]) -> Finding | None:

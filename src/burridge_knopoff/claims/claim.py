@@ -1,4 +1,4 @@
-"""The claims as stated in `config/claims.yaml`, each with its judge."""
+"""The claims as stated in `claims.yaml`, each with its judge."""
 
 from __future__ import annotations
 
@@ -32,6 +32,9 @@ from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.values import refusal
+
+#: The statements of the paper.
+FILE = Path(__file__).with_name("claims.yaml")
 
 TOPICS = {
     "synchronization": synchronization,
@@ -128,17 +131,13 @@ class Claim:
     depends_on: Sequence[str] = ()
 
 
-def read_claims(path: str | Path, figures: Collection[str]) -> list[Claim]:
+def read_claims(figures: Collection[str], path: str | Path = FILE) -> list[Claim]:
     """Return the claims in a YAML file, in its order.
 
     figures : names of all figures that a study can have
     Raises ConfigError, one line: file, key, value, expected values.
     """
-    return checked_claims(read_yaml(path), path, figures)
-
-
-def checked_claims(content: Mapping[str, Any], path: str | Path, figures: Collection[str]) -> list[Claim]:
-    """Return the claims in the parsed content of such a file; raises ConfigError as `read_claims` does."""
+    content = read_yaml(path)
     try:
         claims = claims_of(content)
         for claim in claims:

@@ -23,6 +23,7 @@ def run(options: argparse.Namespace) -> int:
     """Delete leftover files, and print how many."""
     from burridge_knopoff.check.leftovers import delete, leftovers
     from burridge_knopoff.check.study import changed
+    from burridge_knopoff.jobs.jobs import Jobs
     from burridge_knopoff.study.formatting import counted
     from burridge_knopoff.study.recorded import recorded_study
 
@@ -33,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
             raise ValueError(f"{folder}: {record['config_file']} has changed since the last run: run snakemake first")
         studies.append((folder, study))
     for folder, study in studies:
-        left = leftovers(folder, study)
+        left = leftovers(folder, Jobs(study))
         for path in left:
             print(path)
         if not options.dry_run:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from burridge_knopoff.dataset.about import point_about
 from burridge_knopoff.dataset.variables import (
     DIRECTION,
     KIND,
@@ -24,7 +25,7 @@ from burridge_knopoff.dataset.variables import (
 )
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.seal import write_sealed
-from burridge_knopoff.provenance.sources import SOFTWARE, source_fingerprint
+from burridge_knopoff.provenance.sources import SOFTWARE
 from burridge_knopoff.running.command import CHAIN_OPTIONS, simulate_command
 from burridge_knopoff.running.status import ENDS, Status
 from burridge_knopoff.running.trajectory import Trajectory
@@ -118,11 +119,6 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
         "batch": trajectory.begin_time + settings.transient + width * (np.arange(settings.batches) + 0.5),
     }
     return {name: special[name] if name in special else getattr(trajectory, name) for name in POINT_VARIABLES}
-
-
-def point_about(command: str) -> dict[str, str]:
-    """Return what the point file of a run is, for its seal: its `bk simulate` command and the sources that make it."""
-    return {"command": command, "sources": source_fingerprint(__name__)}
 
 
 def point_attributes(trajectory: Trajectory) -> dict[str, Any]:

@@ -19,12 +19,6 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-from burridge_knopoff.study.stages import OF_PLANE, OPTIONAL_SUMMARIES
-
-if TYPE_CHECKING:
-    from burridge_knopoff.study.study import Study
 
 
 @dataclass(frozen=True)
@@ -47,11 +41,6 @@ class Description:
         """Whether it shows single runs rather than summaries."""
         return self.inputs == ("runs",)
 
-    @property
-    def script(self) -> str:
-        """Name of the script that draws it."""
-        return "figure_of_runs" if self.of_runs else "figure_of_summaries"
-
     def caption_of(self, wildcards: Mapping[str, str]) -> str:
         """Return the caption of a picture as one paragraph, with a reference to the paper's figure."""
         paper = f" Compare the paper's {self.paper}." if self.paper else ""
@@ -72,22 +61,6 @@ def figure_descriptions() -> tuple[Description, ...]:
     found = [_described(path) for path in Path(__file__).parent.glob("*.py")]
     figures = [description for description in found if description is not None]
     return tuple(sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name)))
-
-
-def study_figures(study: Study, of_chains: Collection[str]) -> list[Description]:
-    """Return the figures of a study.
-
-    of_chains : available summaries of longer chains, besides those of the study's stages
-    """
-    figures = []
-    for figure in figure_descriptions():
-        there = of_chains if "chains" in figure.inputs else study.stage_summaries
-        missing = set(figure.inputs) & {*OPTIONAL_SUMMARIES, *OF_PLANE} - set(there)
-        if study.is_plane:
-            missing = set(figure.inputs) - set(OF_PLANE)
-        if not missing and (not figure.condition or getattr(study, figure.condition)):
-            figures.append(figure)
-    return figures
 
 
 def picture_names(states: Collection[str]) -> set[str]:

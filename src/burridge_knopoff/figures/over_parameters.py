@@ -35,9 +35,7 @@ def draw_panels(
     colors : values or colours of a map, of a Dataset over two parameters, shape (second, first, …)
     look : arguments of `pcolormesh`
     """
-    parameters = [f"{name}" for name in grid["mean_distance"].dims if name not in ("law", "initial")]
-    varied = [name for name in parameters if grid.sizes[name] > 1] or parameters[:1]
-    shown = list(_parts(grid, [name for name in parameters if name not in varied[:2]]))
+    varied, shown = varied_parameters(grid), list(panel_parts(grid))
     across = min(len(shown), ACROSS)
     down = -(-len(shown) // across)
     size = page_width(max(across, 2)), 0.6 + 2.5 * down
@@ -59,8 +57,19 @@ def draw_panels(
     return figure, panels, drawn
 
 
-def _parts(grid: xarray.Dataset, further: list[str]) -> Iterator[tuple[str, xarray.Dataset]]:
-    """Yield the title and the part of the Dataset of each panel."""
+def _parameters(grid: xarray.Dataset) -> list[str]:
+    return [f"{name}" for name in grid["mean_distance"].dims if name not in ("law", "initial")]
+
+
+def varied_parameters(grid: xarray.Dataset) -> list[str]:
+    """Return the parameters with several values, of which the first two are the axes of panels; at least one."""
+    parameters = _parameters(grid)
+    return [name for name in parameters if grid.sizes[name] > 1] or parameters[:1]
+
+
+def panel_parts(grid: xarray.Dataset) -> Iterator[tuple[str, xarray.Dataset]]:
+    """Yield the title of each panel, with formulas between dollar signs, and its part of the Dataset."""
+    further = [name for name in _parameters(grid) if name not in varied_parameters(grid)[:2]]
     chosen = [evenly_spaced(grid.sizes[name], MOST) for name in further]
     for law, initial in product(grid["law"].values, grid["initial"].values):
         for places in product(*chosen):

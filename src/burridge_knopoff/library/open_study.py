@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from threading import Lock
 from typing import Any
@@ -10,8 +9,11 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.point import POINT_VARIABLES, point_about
+from burridge_knopoff.dataset.about import point_about
+from burridge_knopoff.dataset.point import POINT_VARIABLES
 from burridge_knopoff.dataset.summary import axes
+from burridge_knopoff.jobs.checked import check_file
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.seal import check_seal
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import all_points
@@ -65,8 +67,8 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
         for index, run in zip(np.ndindex(shape), all_points(study), strict=True):
             name = f"points/{study.point_file.format(**run)}"
             if (results / name).is_file():
-                about = point_about(study.command(**run))
-                point = nodes[name.removesuffix(".nc")] = _opened(results / name, about)
+                check_seal(results / name, point_about(study.command(**run)), any_sources=True)
+                point = nodes[name.removesuffix(".nc")] = _opened(results / name)
                 for number, everywhere in found.items():
                     everywhere[index] = point.variables[number].values
         dimensions = ("law", "initial", *study.parameters)
@@ -74,9 +76,12 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
             {name: (dimensions, found[name], POINT_VARIABLES[name].all_attributes()) for name in NUMBERS},
             axes(law=study.laws, initial=study.initial, **values),
         )
+    jobs = Jobs(study)
+    files = jobs.all_files()
     for path in sorted(results.glob("summary/[!.]*.nc")):
-        if study.has_summary(path.stem):
-            nodes[f"summary/{path.stem}"] = _opened(path)
+        if (name := f"summary/{path.name}") in files:
+            check_file(jobs, results, name, any_sources=True)
+            nodes[name.removesuffix(".nc")] = _opened(path)
     return xarray.DataTree.from_dict(nodes, name=study.name)
 
 
@@ -86,8 +91,7 @@ def _absent(name: str) -> Any:
     return kind.type(np.nan if kind.kind == "f" else -1)
 
 
-def _opened(path: Path, about: Mapping[str, Any] | None = None) -> xarray.Dataset:
-    check_seal(path, about, any_sources=True)
+def _opened(path: Path) -> xarray.Dataset:
     try:
         return xarray.open_dataset(path)
     except (OSError, RuntimeError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""The record of the last run of a study, beside its results: its config, the command to repeat it, its files."""
+"""The record of the last run of a study, beside its results: its config and the command to repeat it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ NAME = "study.json"
 #: {key of a record: its type}
 _TYPES = {
     **dict.fromkeys(("software", "git_commit", "arguments", "config_file"), str),
-    **dict.fromkeys(("given", "config", "grid", "files"), dict),
+    **dict.fromkeys(("given", "config", "grid"), dict),
 }
 
 
@@ -47,18 +47,16 @@ def write_study_record(
     config_file: str | Path,
     given: dict[str, Any],
     arguments: str,
-    files: Mapping[str, Mapping[str, Any]],
 ) -> None:
     """Record a study in its folder of results; a record with the same content stays untouched.
 
     config, grid : with all defaults, and {parameter: {name in file names: value}}
     config_file, given : its config as it was given, and the content of that file
     arguments : arguments of `snakemake` besides its targets, such as `--configfile config/mine.yaml`
-    files : {name in the folder: expected content, see `provenance.seal`}, without points, which their commands describe
     Raises OSError, one line, if the folder cannot be written to.
     """
     path = Path(results, NAME)
-    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, config, grid, files)
+    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, config, grid)
     text = json.dumps(dict(zip(_TYPES, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
     if not (path.is_file() and path.read_bytes() == text.encode()):
         write_text(path, text)
@@ -71,21 +69,20 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     arguments, config_file : as they were recorded
     given, config : the config as it was given, and with all defaults
     grid : {parameter: {name in file names: value}}
-    files : {name in the folder: expected content}, without points
 
     Raises ValueError, one line, if there is no record.
     """
     path = Path(results, NAME)
     try:
-        # Records of earlier versions have no files.
-        record = {"files": {}, **json.loads(path.read_text(encoding="utf-8"))}
+        record = json.loads(path.read_text(encoding="utf-8"))
     except OSError:
         raise ValueError(
             f"{printable(str(results))}: not the results of a study: no {NAME} in it; `snakemake` writes it"
         ) from None
-    except (ValueError, TypeError, RecursionError):
-        record = {}
-    if {key: type(value) for key, value in record.items()} != _TYPES:
+    except (ValueError, RecursionError):
+        record = None
+    # Records of earlier versions have more.
+    if not isinstance(record, dict) or {key: type(record.get(key)) for key in _TYPES} != _TYPES:
         raise ValueError(f"{printable(str(path))}: not the record of a study; run snakemake again, it writes it")
     return record
 
@@ -93,16 +90,6 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
 def study_folder(path: str | Path) -> Path | None:
     """Return the folder of results that contains a file, or None."""
     return next((folder for folder in Path(path).absolute().parents if (folder / NAME).is_file()), None)
-
-
-def recorded_file(path: str | Path) -> dict[str, Any] | None:
-    """Return the expected content of a file from the record of its study's last run; None if it is not recorded."""
-    folder = study_folder(path)
-    if folder is None:
-        return None
-    with contextlib.suppress(ValueError):
-        return read_study_record(folder)["files"].get(Path(path).absolute().relative_to(folder).as_posix())
-    return None
 
 
 def check_owner(results: str | Path, config_file: str | Path, given: dict[str, Any]) -> None:

@@ -5,16 +5,14 @@ it belongs to. The seal is one line. In a netCDF file it is the last line, after
 not read past the end recorded by HDF5. The seal of a text or a picture lies beside it, in `.<name>.seal`.
 
 The description is a mapping in the types of JSON. For a point it has the `bk simulate` command and the fingerprint of
-the sources. For any other file of a study it has the name of the file, the params of its rule (the keys of the config
-and the sources that decide it), and a digest of the description of each input. The workflow records the expected
-descriptions of all files in study.json, and `check_seal` compares.
+the sources. For any other file of a study it has the name of the file, what of the config decides it, the fingerprint
+of the sources that make it, and a digest of the description of each input. `jobs.Jobs.abouts` tells what is expected.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
-import os
 import re
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -22,13 +20,15 @@ from typing import Any
 
 from burridge_knopoff.provenance.difference import difference
 from burridge_knopoff.provenance.files import write_whole
-from burridge_knopoff.provenance.record import recorded_file, remake_command, study_folder
+from burridge_knopoff.provenance.record import remake_command
 from burridge_knopoff.values import printable
 
 _MARK = b"\n#seal "
 _SEAL = re.compile(rb"\n#seal (.+) ([a-z_]+) ([0-9a-f]{64})\n\Z")
 #: Suffixes of the files that contain their seals: netCDF files and cached results.
 _INSIDE = (".nc", "")
+#: What of a description tells of the sources; digests of inputs do, too.
+OF_SOURCES = ("make", "of_points", "sources")
 #: Differences reported last, since they may follow from others.
 _LAST = ("inputs", "sources")
 #: Separates the reason why a file must not be used from the command that remakes it.
@@ -139,24 +139,30 @@ def read_sealed(path: str | Path) -> tuple[bytes, dict[str, Any], str]:
 def check_seal(path: str | Path, about: Mapping[str, Any] | None = None, *, any_sources: bool = False) -> str:
     """Check that a file is intact and the expected one; return the status of its run.
 
-    about : expected description; by default from the record of its study, and nothing outside a study
+    about : what it must be made from; None if that is not known
     any_sources : accept a file made by other sources
-
-    Raises BadFile, one line with the difference. If the file was made from another file that is wrong too, the error is
-    about that one.
+    Raises BadFile, one line with the difference.
     """
     found, status = read_seal(path)
-    expected = recorded_file(path) if about is None else json.loads(canonical(about))
-    if expected is None or canonical(found) == canonical(expected):
-        return status
-    key = min(_differing(found, expected), key=lambda key: (key != "file", key in _LAST), default="order")
-    if not (any_sources and key == "sources"):
-        if key == "inputs" and (folder := study_folder(path)):
-            for name in sorted(expected["inputs"].keys() & found.get("inputs", {}).keys()):
-                if (folder / name).is_file():
-                    check_seal(_beside(path, folder / name), any_sources=any_sources)
-        raise BadFile(path, _difference(key, found.get(key), expected.get(key)))
+    if about is not None:
+        expected = {**about, "sources": found.get("sources")} if any_sources else about
+        if key := first_difference(found, expected):
+            raise BadFile(path, told_difference(key, found, expected))
     return status
+
+
+def digest_of(about: Mapping[str, Any]) -> str:
+    """Return what a description is in those of files made from it: digits for the config, and for the sources."""
+    own = of_config(about)
+    sources = [about.get(key) for key in OF_SOURCES]
+    sources += [digest.partition(".")[2] for digest in about.get("inputs", {}).values()]
+    return f"{identity(canonical(own))}.{identity(canonical(sources))}"
+
+
+def of_config(about: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what of a description does not depend on the sources."""
+    inputs = {name: digest.partition(".")[0] for name, digest in about.get("inputs", {}).items()}
+    return {**{key: value for key, value in about.items() if key not in OF_SOURCES}, "inputs": inputs}
 
 
 def fit_together(path: str | Path, other: str | Path) -> bool:
@@ -165,40 +171,37 @@ def fit_together(path: str | Path, other: str | Path) -> bool:
     Nor from other versions of a common input. Files whose seals do not name their inputs are taken to fit.
     """
     abouts = [read_seal(each)[0] for each in (path, other)]
-    made_of = [{about["file"]: identity(canonical(about)), **about["inputs"]} for about in abouts if "inputs" in about]
+    made_of = [{about["file"]: digest_of(about), **about["inputs"]} for about in abouts if "inputs" in about]
     if len(made_of) < 2:
         return True
     first, second = made_of
     return all(first[name] == second[name] for name in first.keys() & second.keys())
 
 
-def _differing(found: Mapping[str, Any], expected: Mapping[str, Any]) -> list[str]:
-    """Return the keys whose values differ."""
+def first_difference(found: Mapping[str, Any], expected: Mapping[str, Any]) -> str:
+    """Return the key of two descriptions whose difference explains most; empty if there is none."""
     keys = {**expected, **found}
-    return [key for key in keys if canonical(found.get(key)) != canonical(expected.get(key))]
+    differing = [key for key in keys if canonical(found.get(key)) != canonical(expected.get(key))]
+    return min(differing, key=lambda key: (key != "file", key in _LAST), default="")
 
 
-def _beside(path: str | Path, other: Path) -> Path:
-    """Return the path of another file of a study, written in the same way as that of the first."""
-    return other if Path(path).is_absolute() else Path(os.path.relpath(other))
-
-
-def _difference(key: str, found: Any, expected: Any) -> str:
-    """Return the difference between two files in a key, in words."""
-    if key == "command" and found and expected:
-        return f"is another run: {difference(found, expected)}"
-    if key == "sources" and found and expected:
-        return f"was made by other sources ({found}, now {expected})"
+def told_difference(key: str, found: Mapping[str, Any], expected: Mapping[str, Any]) -> str:
+    """Return the difference between two descriptions in a key, in words."""
+    one, other = found.get(key), json.loads(canonical(expected)).get(key)
+    if key == "command" and one and other:
+        return f"is another run: {difference(one, other)}"
+    if key == "sources" and one and other:
+        return f"was made by other sources ({one}, now {other})"
     place = [key]
-    while isinstance(found, dict) and isinstance(expected, dict):
-        if keys := _differing(found, expected):
-            found, expected = found.get(keys[0]), expected.get(keys[0])
-            place.append(keys[0])
+    while isinstance(one, dict) and isinstance(other, dict):
+        if inside := first_difference(one, other):
+            one, other = one.get(inside), other.get(inside)
+            place.append(inside)
         else:
-            found, expected = list(found), list(expected)
+            one, other = list(one), list(other)
     if place[0] == "inputs" and len(place) > 1:
         return f"was made from another {place[1]}"
-    values = f"got {_words(found)}, expected {_words(expected)}"
+    values = f"got {_words(one)}, expected {_words(other)}"
     return f"is another file: {values}" if place == ["file"] else f"was made with {'.'.join(place)}: {values}"
 
 

@@ -23,7 +23,7 @@ PLUMBING = ("__init__.py", "cli/", "kernel/__init__.py", "provenance/", "running
 COMPILATION = PACKAGE / "provenance/compilation.py"
 
 #: Files of a folder that its modules read, besides Python.
-ASSETS = (".css", ".jinja", ".js")
+ASSETS = (".css", ".jinja", ".js", ".yaml")
 
 # Comments and strings. Python's own tokenizer and parser would take ten times as long, in every job.
 _TEXT = r'"{3}(?:[^"\\]|\\.|"(?!""))*"{3}'

@@ -7,16 +7,14 @@ from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-import numpy as np
 import xarray
 import yaml
 
-from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.record import git_commit
 from burridge_knopoff.provenance.sources import provenance
-from burridge_knopoff.study.formatting import counted, friction_words, text
+from burridge_knopoff.study.formatting import counted, text
 from burridge_knopoff.study.study import Study, all_points
 
 #: Distributions whose versions are reported.
@@ -155,16 +153,3 @@ def software() -> list[tuple[str, str]]:
         except PackageNotFoundError:
             continue
     return rows
-
-
-def foreign_settings(dataset: xarray.Dataset, study: Study) -> list[str]:
-    """Return the settings of longer chains that differ from the study's, which has changed since they were made."""
-    chains, first = study.config["chains"], float(dataset["a"].values[0])
-    own = {
-        **study.config["chain"],
-        "friction": friction_words(law_of(name, first, study.config["laws"][name]) for name in chains["laws"]),
-        **{key: study.config[key] for key in ("v", "contact", "start")},
-        **chains,
-    }
-    made = {key: np.asarray(dataset.attrs[key]).tolist() for key in own if key in dataset.attrs}
-    return [f"{key} = {value}, here {own[key]}" for key, value in made.items() if value != own[key]]

@@ -11,10 +11,10 @@ import jinja2
 import xarray
 from markupsafe import Markup
 
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import open_summary
-from burridge_knopoff.provenance.seal import write_sealed_text
 from burridge_knopoff.report import overview, tables
-from burridge_knopoff.report.charts.embedded import charts
+from burridge_knopoff.report.charts.embedded import Charts, charts
 from burridge_knopoff.report.numbers import embedded_json
 from burridge_knopoff.report.pictures import read_picture
 from burridge_knopoff.report.prose import prose
@@ -24,7 +24,6 @@ from burridge_knopoff.report.verdicts import SIGNS, Verdicts, read_verdicts
 from burridge_knopoff.study.formatting import text, with_error
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.agreement import digest
-from burridge_knopoff.summaries.basins import undetermined_alike
 from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD
 
 FOLDER = Path(__file__).parent
@@ -42,10 +41,8 @@ PLACED = (
     "basin_fractions",
     "agreement",
     "chains",
+    "grid_distance",
 )
-
-#: A result with a target of its own, which may be older than the study.
-OPTIONAL = "chains"
 
 
 @dataclass(frozen=True)
@@ -63,34 +60,28 @@ class Sources:
     benchmarks: Path = field(default=Path("benchmarks"))
 
 
-def write_report(
-    study: Study, sources: Sources, arguments: Sequence[str], path: str | Path, about: Mapping[str, Any]
-) -> None:
-    """Write the report of a study as one HTML file.
-
-    arguments : arguments of `snakemake` that select the study in the report's commands; none for the default study
-    about : description of the file, for its seal
-    Raises ValueError, one line that names the file, if a source cannot be read.
-    """
-    write_sealed_text(path, render(study, sources, arguments), about)
+def make(given: Given, config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:
+    """Return the report of a study: its config and its parameters, as in `Study`."""
+    claims, summaries, figures = (given.paths(name) for name in ("claims", "summaries", "figures"))
+    sources = Sources(
+        next(iter(claims), None),
+        {path.stem: path for path in summaries},
+        {path.stem: path for path in figures},
+        given.results / "benchmarks",
+    )
+    return render(Study(config, parameters), sources, given.arguments)
 
 
 def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str:
-    """Return the report as HTML; see `write_report`."""
+    """Return the report of a study as one HTML file.
+
+    arguments : arguments of `snakemake` that select the study in the report's commands; none for the default study
+    Raises ValueError, one line that names the file, if a source cannot be read.
+    """
     verdicts = read_verdicts(sources.claims)
-    summaries, left_out = {}, ""
-    for name, path in sources.summaries.items():
-        try:
-            summaries[name] = open_summary(path)
-        except ValueError as error:
-            # A target of its own makes it, so that a run of the study does not update it.
-            if name != OPTIONAL:
-                raise
-            left_out = str(error)
+    summaries = {name: open_summary(path) for name, path in sources.summaries.items()}
     # One after the other: compressing each takes about 100 MB.
-    pictures = {
-        name: read_picture(path) for name, path in sources.figures.items() if not (left_out and name == OPTIONAL)
-    }
+    pictures = {name: read_picture(path) for name, path in sources.figures.items()}
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER / "templates"),
         autoescape=True,
@@ -100,7 +91,8 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     )
     environment.filters.update(number=text, prose=prose)
     environment.globals.update(with_error=with_error)
-    over_a = {} if study.is_plane else _over_a(study, summaries, arguments, left_out, verdicts)
+    shown = charts(study, summaries)
+    over_a = _over_grid(shown) if study.is_plane else _over_a(study, summaries, shown, arguments, verdicts)
     return environment.get_template("report.html.jinja").render(
         study=study.name,
         blocks=study.blocks,
@@ -123,20 +115,19 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
 def _over_a(
     study: Study,
     summaries: Mapping[str, xarray.Dataset],
+    shown: Charts,
     arguments: Sequence[str],
-    left_out: str,
     verdicts: Verdicts,
 ) -> dict[str, Any]:
-    """Return what only the report of a study over a alone has: its charts, and what its summaries say."""
+    """Return what only the report of a study over a alone has: what its summaries say."""
     commands = Commands(study, arguments)
-    shown = charts(study, summaries)
     return {
         "setting": verdicts.setting,
         "verdicts": verdicts,
         "signs": SIGNS,
         "never_upward": NEVER_UPWARD,
         "section_words": _section_words(study),
-        "charts": shown.packed,
+        **_interactive(shown),
         "legends": shown.legends,
         "data": _data(commands, summaries, shown.dark),
         "laws": list(study.laws),
@@ -145,17 +136,23 @@ def _over_a(
         "attractors": _of(summaries, "attractors", lambda attractors: attractors.attrs),
         "sliding": _of(summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False),
         "transitions": tables.transition_table(summaries["orbits"]),
-        "maps": _of(summaries, "basins", _map_table, []),
+        "maps": _of(summaries, "basins", tables.map_table, []),
         "agreement": digest(summaries["agreement"]).splitlines(),
         "chains": _of(summaries, "chains", tables.chain_table, []),
-        "chains_command": commands.of_study("-c2", "chains"),
-        "chains_left_out": left_out,
-        "chain_laws": _of(summaries, "chains", lambda chains: chains["law"].values.tolist(), []),
-        "chain_settings": _of(summaries, "chains", lambda chains: overview.foreign_settings(chains, study), []),
         "unclear": unclear_runs(commands, summaries["mean_distance"], summaries["agreement"]),
-        "plotly": _plotly(),
-        "scripts": Markup("\n").join(_static(f"{name}.js") for name in SCRIPTS),
     }
+
+
+def _over_grid(shown: Charts) -> dict[str, Any]:
+    """Return what only the report of a study over several parameters has: maps, if two of them vary."""
+    if not shown.packed["grid"]:
+        return {"charts": {}}
+    return {"data": embedded_json({"dark": shown.dark}), **_interactive(shown)}
+
+
+def _interactive(shown: Charts) -> dict[str, Any]:
+    scripts = Markup("\n").join(_static(f"{name}.js") for name in SCRIPTS)
+    return {"charts": shown.packed, "plotly": _plotly(), "scripts": scripts}
 
 
 def _section_words(study: Study) -> str:
@@ -175,26 +172,6 @@ def _of(
 ) -> Any:
     """Return what `make` makes of a summary, or a substitute if the study does not have it."""
     return make(summaries[name]) if name in summaries else nothing
-
-
-def _map_table(basins: xarray.Dataset) -> list[dict[str, Any]]:
-    """Return law, a, and the uncertainty exponent of the boundary of each map."""
-    names = basins["law"].attrs["flag_meanings"].split()
-    rows = []
-    for number in range(basins.sizes["map"]):
-        one = basins.isel(map=number)
-        exponent = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
-        undetermined, alike = int(one["undetermined_count"]), undetermined_alike(one)
-        rows.append(
-            {
-                "law": names[int(one["law"])],
-                "a": text(one["a"].item()),
-                "exponent": with_error(*exponent),
-                "undetermined": f"{undetermined} of {one['branch'].size}"
-                + (f", {alike} of them where mirror blocks are alike, a line of no area" if alike else ""),
-            }
-        )
-    return rows
 
 
 def _static(name: str) -> Markup:

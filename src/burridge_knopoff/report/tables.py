@@ -1,4 +1,4 @@
-"""Tables of the page: branches of attractors, transitions of the synchronized orbit, longer chains."""
+"""Tables of the page: branches of attractors, maps of basins, transitions of the synchronized orbit, longer chains."""
 
 from __future__ import annotations
 
@@ -8,40 +8,27 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.attractors.lookup import branch_names, largest_basin_fraction
-from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.study.formatting import span, text, with_error
+from burridge_knopoff.summaries.branch_rows import branch_rows
+from burridge_knopoff.summaries.map_rows import map_rows
 from burridge_knopoff.summaries.orbit_flags import BifurcationSide, OrbitStatus
 
 
 def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
     """Return a row for each law and branch: range of a, ⟨J⟩, kinds of motion, and largest basin fraction."""
-    rows = []
-    names = branch_names(attractors)
-    a = attractors["a"].values
-    for law in attractors["law"].values:
-        one = attractors.sel(law=law)
-        drawn = bool(one["sample_count"].any())
-        branch = one["branch"].values
-        for number in sorted({int(n) for n in np.unique(branch) if n >= 0}):
-            members = branch == number
-            there = members.any(axis=1)
-            where = a[there]
-            distance = one["mean_distance"].values[members]
-            fraction, at = largest_basin_fraction(one, number)
-            rows.append(
-                {
-                    "law": str(law),
-                    "branch": names[number],
-                    "range": span(text(where[0]), text(where[-1])),
-                    "values": f"{len(where)} of {len(a)}",
-                    "distance": span(f"{distance.min():.4f}", f"{distance.max():.4f}"),
-                    "kinds": ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[members])),
-                    "fraction": f"{fraction:.3f} (a = {text(at)})" if drawn else "–",
-                }
-            )
-    return rows
+    return [
+        {
+            "law": row.law,
+            "branch": row.name,
+            "range": span(text(row.a[0]), text(row.a[-1])),
+            "values": f"{len(row.a)} of {row.of}",
+            "distance": span(*(f"{value:.4f}" for value in row.distance)),
+            "kinds": row.kinds,
+            "fraction": f"{row.fraction[0]:.3f} (a = {text(row.fraction[1])})" if row.fraction else "–",
+        }
+        for row in branch_rows(attractors)
+    ]
 
 
 def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
@@ -84,6 +71,20 @@ def _long(value: float) -> str:
 
 def _meaning(item: IntEnum) -> str:
     return "" if item < 0 else item.name.lower()
+
+
+def map_table(basins: xarray.Dataset) -> list[dict[str, str]]:
+    """Return a row for each map: law, a, the uncertainty exponent of the boundary, and the undetermined states."""
+    return [
+        {
+            "law": row.law,
+            "a": text(row.a),
+            "exponent": with_error(*row.exponent),
+            "undetermined": f"{row.undetermined} of {row.states}"
+            + (f", {row.alike} of them where mirror blocks are alike, a line of no area" if row.alike else ""),
+        }
+        for row in map_rows(basins)
+    ]
 
 
 def chain_table(chains: xarray.Dataset) -> list[dict[str, str]]:

@@ -50,7 +50,7 @@ def write_picture(result: Result, path: str | Path) -> str:
         return f"{path}: slips in space and time, their recurrence, rates, extents and intervals"
     if result.is_part:
         summary = f"summary/{result.name}.nc"
-        whole = f": {result.study_path(summary)}" if summary in result.record.get("files", {}) else ""
+        whole = f": {result.study_path(summary)}" if summary in result.files else ""
         raise ValueError(f"{result.path}: no figure shows a part of a summary, only the whole one{whole}")
     figure = _figure_of(result)
     inputs = [result if name == result.name else _beside(result, name) for name in figure.inputs]
@@ -84,7 +84,7 @@ def _beside(result: Result, name: str) -> Result:
     try:
         other = open_result(path)
     except ValueError as error:
-        known = f"summary/{name}.nc" in result.record.get("files", {})
+        known = f"summary/{name}.nc" in result.files
         reason = f": {error}" if path.exists() or known else ", which is not next to it"
         raise ValueError(f"{result.path}: its figure also needs {name}.nc{reason}") from None
     if not fit_together(result.path, path):

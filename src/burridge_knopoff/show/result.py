@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,11 +11,11 @@ from typing import Any
 import xarray
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES
+from burridge_knopoff.jobs.checked import check_result
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.provenance.record import read_study_record, study_folder
 from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.provenance.sources import source_fingerprint
-from burridge_knopoff.study.recorded import check_result
 
 #: {variable that only one summary has: name of the summary}, for files whose source module does not tell.
 _BY_CONTENT = {"rotation_number": "rotation", "in_grid": "refined", "basin_fraction": "attractors"}
@@ -24,13 +25,15 @@ _BY_CONTENT = {"rotation_number": "rotation", "in_grid": "refined", "basin_fract
 class Result:
     """An intact file written by this software.
 
-    study : folder of results that contains it, or None; record : of that study, or empty
+    study : folder of results that contains it, or None; record : of that study, or empty; files : names of its files
+        besides runs
     """
 
     path: Path
     data: xarray.Dataset
     study: Path | None
     record: dict[str, Any]
+    files: Collection[str] = ()
 
     @property
     def is_point(self) -> bool:
@@ -40,7 +43,7 @@ class Result:
     @property
     def is_part(self) -> bool:
         """Whether it is a part of a summary: of one law, a tile of a map, or a chain of one length."""
-        of_study = self.study_name in self.record.get("files", {}) and not self.study_name.startswith("summary/")
+        of_study = self.study_name in self.files and not self.study_name.startswith("summary/")
         return of_study or "law" in self.data.attrs
 
     @property
@@ -89,7 +92,7 @@ def open_result(path: str | Path) -> Result:
     path = Path(path)
     study = study_folder(path)
     try:
-        check_result(path)
+        files = check_result(path)
     except BadFile as error:
         # Only the file of a study has a command that remakes it.
         if study and path.suffix == ".nc":
@@ -97,4 +100,4 @@ def open_result(path: str | Path) -> Result:
         hint = "" if path.suffix == ".nc" else " (shown are points and summaries, .nc)"
         raise ValueError(f"{path}: {error.reason}{hint}") from None
     data = xarray.load_dataset(path, engine="netcdf4")
-    return Result(path, data, study, read_study_record(study) if study else {})
+    return Result(path, data, study, read_study_record(study) if study else {}, files)

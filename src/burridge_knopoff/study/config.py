@@ -26,7 +26,7 @@ from burridge_knopoff.motion.settings import ERRORS, MotionSettings
 from burridge_knopoff.running.section import SECTION_KEYS
 from burridge_knopoff.running.settings import SOLVERS, TIME, Settings
 from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS, PAPER_PHASES
-from burridge_knopoff.study.stages import OPTIONAL
+from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES
 from burridge_knopoff.values import joined
 
 NUMBER = Number(-HUGE, HUGE)
@@ -145,7 +145,12 @@ TWO_BLOCKS = {
     "samples": Field(SAMPLES, "number of initial states for the comparison of two blocks", 8),
 }
 CHAINS = {
-    "blocks": Field(Several(Whole(2, 64), 1, distinct=True), "numbers of blocks", list(range(2, 11))),
+    "blocks": Field(
+        Several(Whole(2, 64), 1, distinct=True),
+        "numbers of blocks, which make longer chains a part of the study; by default they are made for the target "
+        f"`chains` alone, for {CHAIN_LENGTHS[0]} to {CHAIN_LENGTHS[-1]} blocks",
+        FOLLOWS,
+    ),
     "a": Field(VALUES, "friction parameters", [0.005, {"from": 0.01, "to": 0.16, "step": 0.01}, 0.18, 0.2, 0.25, 0.3]),
     "laws": Field(
         Several(Text(), 1, distinct=True), "friction laws, a subset of the study's; by default the first", FOLLOWS
@@ -175,7 +180,7 @@ CONFIG = Keys(
             "block, or drawn; minus: {} and plus: {} are the paper's and need no numbers",
         ),
         "without": Field(
-            Several(OneOf(tuple(OPTIONAL)), distinct=True),
+            Several(OneOf(tuple(STAGES)), distinct=True),
             "stages to leave out, together with the stages that use their results",
             [],
         ),

@@ -91,7 +91,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
         loading = settings_from(CatalogueSettings, filled.get("catalogue", {})).loading
         for law, name in product(study.laws, study.catalogue_a):
             is_quasistatic(loading, study.model(law, study.grid[name]), filled["solver"][law])
-    for law in study.laws if has_springs and "solvers" in study.stages else ():
+    for law in study.laws if has_springs and "solvers" not in study.left_out else ():
         for solver in study.other_solvers(law):
             with rules.under("solvers."):
                 study.settings(law, solver).check_chain(chain)

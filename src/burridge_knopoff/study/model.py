@@ -14,16 +14,19 @@ from burridge_knopoff.model.parameters import at
 MODEL_KEYS = ("laws", "chain", "v", "contact")
 
 
-def models_of(config: Mapping[str, Any], a: float, blocks: int) -> list[Model]:
-    """Return a model for each law of a study, at one a; raises ValueError as `model_of` does."""
+def models_of(config: Mapping[str, Any], a: float, blocks: int | None = None) -> list[Model]:
+    """Return a model for each law of a study, at one a; blocks and errors as in `model_of`."""
     return [model_of(config, law, a, blocks) for law in config["laws"]]
 
 
-def model_of(config: Mapping[str, Any], law: str, a: float, blocks: int, **others: float) -> Model:
-    """Return the model of a study under one of its laws, at one a, and at other values of its other parameters.
+def model_of(
+    config: Mapping[str, Any], law: str, a: float, blocks: int | None = None, others: Mapping[str, float] | None = None
+) -> Model:
+    """Return the model of a study under one of its laws, at one a.
 
+    blocks : of the chain, instead of the config's; others : values of the study's other parameters
     Raises ValueError if there is none.
     """
-    chain = Chain(**{**config["chain"], "blocks": blocks})
+    chain = Chain(**{**config["chain"], **({} if blocks is None else {"blocks": blocks})})
     model = Model(chain, law_of(law, a, config["laws"][law]), config["v"], config["contact"])
     return at(model, others) if others else model

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from burridge_knopoff.dataset.point import point_about, write_point
+from burridge_knopoff.dataset.about import point_about
+from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.provenance.seal import BadFile, check_seal
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.simulation import run

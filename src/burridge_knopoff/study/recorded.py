@@ -2,23 +2,15 @@
 
 from __future__ import annotations
 
-import contextlib
-import re
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.dataset.point import point_about
-from burridge_knopoff.model.fields import Keys
-from burridge_knopoff.provenance.record import NAME, read_study_record, study_folder
-from burridge_knopoff.provenance.seal import check_seal
+from burridge_knopoff.model.fields import FOLLOWS, Keys
+from burridge_knopoff.provenance.record import NAME, read_study_record
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.load import load_study
-from burridge_knopoff.study.paths import VALUE
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.values import joined, printable
-
-#: Keys without a default, which a complete config need not have.
-_OPTIONAL = ("chain.grid", "chain.springs", "catalogue", "catalogue.low", "catalogue.high")
 
 
 def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
@@ -38,31 +30,8 @@ def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
     study = load_study(asked, str(path))
     if (study.config, study.parameters) != (record["config"], record["grid"]):
         raise ValueError(f"{printable(str(path))}: not the record of a study; run snakemake again, it writes it")
-    return record, study
-
-
-def check_result(path: Path) -> None:
-    """Check that a file is intact and, in a study, that it is the expected result; other sources may have made it.
-
-    Raises BadFile as `check_seal` does.
-    """
-    about, folder = None, study_folder(path)
-    if folder:
-        # For a file outside a run of the study, or of another version, the expected content is not known.
-        with contextlib.suppress(ValueError, KeyError):
-            study = recorded_study(folder)[1]
-            if run := _run_of(study, path.absolute().relative_to(folder).as_posix()):
-                about = point_about(study.command(**run))
-    check_seal(path, about, any_sources=True)
-
-
-def _run_of(study: Study, name: str) -> dict[str, str]:
-    """Return the wildcards of the run whose point file has a name; empty if it is none's."""
-    parts = {"law": r"\w+", "initial": r"\w+", **dict.fromkeys(study.parameters, VALUE)}
-    groups = {name: f"(?P<{name}>{pattern})" for name, pattern in parts.items()}
-    file = study.point_file.replace(".nc", r"\.nc").format(**groups)
-    found = re.fullmatch(rf"(?:points|solvers/(?P<solver>\w+))/{file}", name)
-    return found.groupdict() if found else {}
+    # Keys in the order of the run, in which files are sealed with them.
+    return record, Study(record["config"], record["grid"])
 
 
 def _other_key(config: Any, keys: Keys, place: str = "") -> str:
@@ -71,7 +40,8 @@ def _other_key(config: Any, keys: Keys, place: str = "") -> str:
         return place
     there = {name: field.range for name, field in keys.fields.items() if name in config}
     sections = {name: inside for name, inside in there.items() if isinstance(inside, Keys)}
-    found = [joined(place, name) for name in sorted(config.keys() ^ keys.fields.keys())]
-    found = [key for key in found if key not in _OPTIONAL]
+    # Without a default of its own a key may be missing.
+    own = {name for name, field in keys.fields.items() if field.default is not FOLLOWS}
+    found = [joined(place, name) for name in sorted({*config} - {*keys.fields} | own - {*config})]
     found += [_other_key(config[name], inside, joined(place, name)) for name, inside in sections.items() if not found]
     return next(filter(None, found), "")

@@ -24,6 +24,7 @@ from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.config import SOME_VALUES
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
+from burridge_knopoff.study.stages import CHAIN_LENGTHS
 from burridge_knopoff.values import MOST_NUMBERS, refusal
 
 #: States labelled at once for each pair of nearby states: basins/pair_separation.py.
@@ -232,7 +233,7 @@ def check_jobs(config: Mapping[str, Any], blocks: int, without: Collection[str])
         ("basins.tiles", 2 * blocks * rows * basins["pixels"]),
         ("basins.pairs", 2 * blocks * _STATES_OF_A_PAIR * basins["pairs"]),
         ("phases.samples", max(2 * blocks, kept) * oscillating),
-        ("chains.samples", max(len(chains["a"]), 2 * max(chains["blocks"])) * chains["samples"]),
+        ("chains.samples", max(len(chains["a"]), 2 * max(chains.get("blocks", CHAIN_LENGTHS))) * chains["samples"]),
         ("chains.two_blocks.samples", len(two_blocks["a"]) * two_blocks["samples"]),
     ):
         if numbers > MOST_NUMBERS and key.partition(".")[0] not in without:

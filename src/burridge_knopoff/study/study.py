@@ -15,10 +15,10 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
-from burridge_knopoff.study import stages
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paper import PAPER_A
 from burridge_knopoff.study.paths import point_file
+from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES
 from burridge_knopoff.study.yaml_file import ConfigError
 
 
@@ -130,36 +130,13 @@ class Study:
     @property
     def left_out(self) -> tuple[str, ...]:
         """Stages that the config leaves out, together with the stages that use their results; all in a plane."""
-        without = stages.OPTIONAL if self.is_plane else self.config["without"]
-        return tuple(stage for stage, needed in stages.OPTIONAL.items() if stage in without or needed in without)
+        without = STAGES if self.is_plane else self.config["without"]
+        return tuple(stage for stage, needed in STAGES.items() if stage in without or needed in without)
 
     @property
-    def stages(self) -> tuple[str, ...]:
-        """Optional stages that the study has."""
-        there = {
-            "basins": self.basin_maps,
-            "phases": self.config["phases"]["a"],
-            "two_blocks": self.has_several_laws and not self.single_length_key,
-            "catalogue": "catalogue" in self.config,
-            "proof": self.proved_laws,
-        }
-        return tuple(stage for stage in stages.OPTIONAL if stage not in self.left_out and there.get(stage, True))
-
-    @property
-    def stage_summaries(self) -> tuple[str, ...]:
-        """Names of the netCDF summaries made by these stages."""
-        return tuple(name for stage in self.stages for name in stages.SUMMARIES.get(stage, (stage,)))
-
-    @property
-    def chain_summaries(self) -> tuple[str, ...]:
-        """Names of the netCDF summaries of longer chains, whether or not they are requested."""
-        return () if self.single_length_key or self.is_plane else stages.CHAIN_SUMMARIES
-
-    def has_summary(self, name: str) -> bool:
-        """Return whether the study has the netCDF summary of a name, or may have it after its target `chains`."""
-        if self.is_plane or name in stages.OF_PLANE:
-            return self.is_plane and name in stages.OF_PLANE
-        return name not in stages.OPTIONAL_SUMMARIES or name in (*self.stage_summaries, *self.chain_summaries)
+    def chain_lengths(self) -> list[int]:
+        """Numbers of blocks of longer chains; chains of these numbers are a part of the study if its config has any."""
+        return self.config["chains"].get("blocks", CHAIN_LENGTHS)
 
     @property
     def basin_maps(self) -> list[tuple[str, str]]:
@@ -170,7 +147,7 @@ class Study:
     @property
     def catalogue_a(self) -> list[str]:
         """Names of the values of a with a catalogue of slip events."""
-        chosen = self.config["catalogue"]["a"] if "catalogue" in self.stages else []
+        chosen = [] if "catalogue" in self.left_out else self.config.get("catalogue", {}).get("a", [])
         return [name for name, value in self.grid.items() if value in chosen]
 
     @property
@@ -192,7 +169,7 @@ class Study:
 
     def model(self, law: str, a: float, **others: float) -> Model:
         """Return the model of the study for one of its laws at one a, and at values of its other parameters."""
-        return model_of(self.config, law, a, self.blocks, **others)
+        return model_of(self.config, law, a, others=others)
 
     def other_solvers(self, law: str) -> list[str]:
         """Return the other solvers that can do a law at the compared values, besides the one that makes the points."""

@@ -14,16 +14,35 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.attractors.labels import UNDETERMINED
-from burridge_knopoff.attractors.lookup import branch_names, largest_basin_fraction
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import NAMES, missing, name_branches
 from burridge_knopoff.continuation.law_homotopy import joined
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.study.formatting import span
+from burridge_knopoff.study.model import models_of
+from burridge_knopoff.summaries import refined, rotation
 from burridge_knopoff.summaries.attractors import VARIABLES
+from burridge_knopoff.summaries.branch_rows import branch_rows
+
+
+def make(
+    given: Given, model: Mapping[str, Any], a: float, attractors: Mapping[str, Any]
+) -> tuple[xarray.Dataset, str, xarray.Dataset, xarray.Dataset]:
+    """Return the attractors of all laws on the grid, the same in words, those at all values of a, and their rotation.
+
+    model, a : what decides the models, and one a; attractors : settings of the search
+    """
+    parts, further, models = given.summaries("grid"), given.summaries("refined"), models_of(model, a)
+    numbers = branch_numbers(parts, models, SearchSettings(**attractors), given.cores)
+    on_grid = merge(parts, numbers)
+    numbers = with_branches_between(numbers, further)
+    everywhere = merge(further, numbers, refined.VARIABLES, "Attractors at refined values of a")
+    everywhere = named_alike(everywhere, on_grid)
+    return on_grid, digest(on_grid), everywhere, rotation.summarize(everywhere, models)
 
 
 def merge(
@@ -130,31 +149,27 @@ def _renumbered(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
 def digest(dataset: xarray.Dataset) -> str:
     """Return, for each law, in a line a branch where it exists, its ⟨J⟩, kinds of motion and largest basin fraction."""
     lines = []
-    a = dataset["a"].values
-    names = branch_names(dataset)
+    a, rows = dataset["a"].values, list(branch_rows(dataset))
     for law in dataset["law"].values:
         one = dataset.sel(law=law)
-        branch = one["branch"].values
-        for number in np.unique(branch[branch >= 0]):
-            slots = branch == number
-            mean = one["mean_distance"].values[slots]
-            kinds = ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[slots]))
-            there = slots.any(axis=1)
-            where = a[there]
-            fraction, at = largest_basin_fraction(one, number)
-            largest = f"largest basin fraction {fraction:.3f} (a = {at:g})"
-            name = names[int(number)]
-            ends, means = span(f"{where[0]:g}", f"{where[-1]:g}"), span(f"{mean.min():.4f}", f"{mean.max():.4f}")
+        for row in rows:
+            if row.law != law:
+                continue
+            ends = span(*(f"{value:g}" for value in row.a[[0, -1]]))
+            basin = "no states sampled for its basin"
+            if row.fraction:
+                fraction, at = row.fraction
+                basin = f"largest basin fraction {fraction:.3f} (a = {at:g})"
             lines.append(
-                f"{law}, {name}: at {len(where)} of {len(a)} values of a, {ends}; <J> {means}; {kinds}; "
-                f"{largest if one['sample_count'].any() else 'no states sampled for its basin'}"
+                f"{law}, {row.name}: at {len(row.a)} of {row.of} values of a, {ends}; "
+                f"<J> {span(*(f'{value:.4f}' for value in row.distance))}; {row.kinds}; {basin}"
             )
         undetermined = one["undetermined_count"].values
         total = int(one["sample_count"].sum())
         line = f"{law}: {int(undetermined.sum())} of {total} sampled states are undetermined"
         sliding = one["sliding_attracts"].values == 1
         for where, words in (
-            ((branch.max(axis=1) < 0) & ~sliding, "no attractor"),
+            ((one["branch"].values.max(axis=1) < 0) & ~sliding, "no attractor"),
             (sliding, "uniform sliding, which has no stops and is not looked for, attracts"),
         ):
             if where.any():

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,17 +10,21 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.attractors.labels import UNDETERMINED, label_states
-from burridge_knopoff.attractors.lookup import branch_names
-from burridge_knopoff.attractors.stored_returns import KnownAttractors
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.attractors.stored_returns import KnownAttractors, known_attractors
 from burridge_knopoff.attractors.table import NAMES
 from burridge_knopoff.basins.pair_separation import SEPARATIONS, follow_pairs
 from burridge_knopoff.basins.plane import pixel_centres, plane, states
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_exponent
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.model import model_of
+from burridge_knopoff.summaries.map_rows import map_rows
 
 _PLANE = ("last_position", "first_position")
 _V = Variable
@@ -69,6 +73,57 @@ COORDINATES = {
     "first_position": "initial position U_1(0) of the first block",
     "last_position": "initial position U_N(0) of the last block",
 }
+
+
+def make_tile(given: Given, **params: Any) -> xarray.Dataset:
+    """Return one tile of a map; arguments as in `_known`."""
+    known, plane, search = _known(given, **params)
+    return tile(known, int(given.wildcards["tile"]), plane, search.label_limit, params["start"])
+
+
+def make_pairs(given: Given, **params: Any) -> xarray.Dataset:
+    """Return the pairs of nearby states of a map; arguments as in `_known`."""
+    known, plane, search = _known(given, **params)
+    return pairs(known, plane, search.label_limit, search.seed, params["start"])
+
+
+def _known(
+    given: Given,
+    model: Mapping[str, Any],
+    a: float,
+    state: Mapping[str, Any],
+    attractors: Mapping[str, Any],
+    basins: Mapping[str, Any],
+    start: str,
+) -> tuple[KnownAttractors, BasinSettings, SearchSettings]:
+    """Return the attractors at one a, and the settings of a map and of the search.
+
+    state : what of the plane is the same everywhere; the others as in a config
+    """
+    plane = BasinSettings(initial=InitialState(**state), threads=given.cores, **basins)
+    found = given.summary("attractors"), given.summary("returns")
+    return known_attractors(*found, model_of(model, given.law, a)), plane, SearchSettings(**attractors)
+
+
+def make(
+    given: Given,
+    model: Mapping[str, Any],
+    maps: Sequence[tuple[str, float]],
+    state: Mapping[str, Any],
+    attractors: Mapping[str, Any],
+    basins: Mapping[str, Any],
+    start: str,
+) -> tuple[xarray.Dataset, str]:
+    """Return all maps, and the same in words; maps : law and a of each; the others as in `_known`."""
+    plane = BasinSettings(initial=InitialState(**state), **basins)
+    tiles, of_pairs = given.summaries("tiles"), given.summaries("pairs")
+    parts = [
+        (model_of(model, law, a), tiles[n * plane.tiles : (n + 1) * plane.tiles], of_pairs[n])
+        for n, (law, a) in enumerate(maps)
+    ]
+    limit = SearchSettings(**attractors).label_limit
+    dataset = merge(parts, given.summary("attractors"), list(model["laws"]), plane, limit, start)
+    return dataset, digest(dataset)
 
 
 def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit: float, start: str) -> xarray.Dataset:
@@ -192,39 +247,15 @@ def merge(
 def digest(dataset: xarray.Dataset) -> str:
     """Return, in a line for each map, the shares of the basins and the uncertainty exponent of their boundary."""
     lines = []
-    names = {UNDETERMINED: "undetermined", **branch_names(dataset)}
-    laws = dataset["law"].attrs["flag_meanings"].split()
-    for number in range(dataset.sizes["map"]):
+    for number, row in enumerate(map_rows(dataset)):
         one = dataset.isel(map=number)
-        pairs, counts = np.unique(
-            np.stack([one["branch"].values.ravel(), one["side"].values.ravel()]), axis=1, return_counts=True
-        )
-        shares = []
-        for (branch, side), count in zip(pairs.T, counts, strict=True):
-            name = names[int(branch)] + {1: " (+)", -1: " (-)", 0: ""}[int(side)]
-            alike = undetermined_alike(one) if branch == UNDETERMINED else 0
-            within = f" ({alike} of {count} where mirror blocks are alike, a line of no area)" if alike else ""
-            shares.append(f"{name} {100.0 * count / one['branch'].size:.2f} %{within}")
+        shares = [f"{name} {100.0 * count / row.states:.2f} %" for name, count in row.members.items()]
+        if row.alike:
+            shares[0] += f" ({row.alike} of {row.undetermined} where mirror blocks are alike, a line of no area)"
         times = one["decision_time"].values
         decided = f"; decided at tau = {np.nanmean(times):.0f} in the mean" if np.isfinite(times).any() else ""
-        lines.append(
-            f"{laws[int(one['law'])]}, a = {one['a'].item():g}: {', '.join(shares)}; {_exponent_text(one)}{decided}"
-        )
+        lines.append(f"{row.law}, a = {row.a:g}: {', '.join(shares)}; {_exponent_text(one)}{decided}")
     return "\n".join(lines) + "\n"
-
-
-def undetermined_alike(one: xarray.Dataset) -> int:
-    """Return how many undetermined states of a map are their own mirror images: U_1(0) = U_N(0), a line of no area.
-
-    In a chain that is its own mirror image such states stay alike, and so come to no attractor where synchrony repels.
-    None is counted where all states of the map are undetermined, as this has other reasons then.
-    """
-    position, velocity = one.attrs["plane_position"], one.attrs["plane_velocity"]
-    undetermined = one["branch"].values == UNDETERMINED
-    if undetermined.all() or (position[1:-1] != position[-2:0:-1]).any() or (velocity != velocity[::-1]).any():
-        return 0
-    alike = np.equal.outer(one["last_position"].values, one["first_position"].values)
-    return int(np.count_nonzero(undetermined[alike]))
 
 
 def _exponent_text(one: xarray.Dataset) -> str:

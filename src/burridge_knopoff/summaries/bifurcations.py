@@ -7,7 +7,7 @@ to 1e-10. A bifurcation without a closed orbit on either side is only known to l
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -17,62 +17,138 @@ import xarray
 from burridge_knopoff.continuation.bifurcations import LEAST_ERROR, Entry, entries
 from burridge_knopoff.continuation.branch_changes import Change, branch_changes
 from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, followed
+from burridge_knopoff.dataset.columns import Column, filled
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import ANSWER, Variable, flag
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
-from burridge_knopoff.periodic_orbits.branch_segment import BranchSegment
+from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.study.model import model_of
 
 PARTS = ("real", "imaginary")
-_BIFURCATION, _ORBIT = ("bifurcation",), ("orbit",)
-_V = Variable
-VARIABLES = {
-    "law": _V(_BIFURCATION, "i1", "friction law, by its number in the attribute laws"),
-    "a": _V(_BIFURCATION, "f8", "friction parameter a of the bifurcation"),
-    "a_error": _V(_BIFURCATION, "f8", "its error: half the width of the interval that brackets it"),
-    "kind": _V(_BIFURCATION, "i1", "what happens there", flag("i1", BifurcationKind)),
-    "change": _V(_BIFURCATION, "i1", "what the branch of attractors does there", flag("i1", Change)),
-    "from_branch": _V(
-        _BIFURCATION, "i2", "branch below the bifurcation, or reached from above it", {"comment": "-1 undetermined"}
+_AT, _ORBIT = ("bifurcation",), ("orbit",)
+
+
+def _located(value: Callable[[Bifurcation], Any]) -> Callable[[Entry], Any]:
+    """Return the value of a column that only a bifurcation has that was found on an orbit."""
+    return lambda entry: value(entry.bifurcation) if entry.bifurcation else None
+
+
+def _multiplier(point: BranchOrbit | None) -> tuple[float, float] | None:
+    """Return real and imaginary part, not below 0, of the largest multiplier."""
+    if point is None:
+        return None
+    largest = complex(point.multipliers.whole[0])
+    return largest.real, abs(largest.imag)
+
+
+_NONE, _MOTION = {"comment": "-1 undetermined"}, flag("i1", MotionKind)
+_BELOW, _ABOVE = (
+    "branch below the bifurcation, or reached from above it",
+    "branch above the bifurcation, or reached from below it",
+)
+_TURNS = "whether the orbits on both sides of the bifurcation lie at a on one side of it"
+_LIFE = "lower end of the 95 % interval of the lifetime of chaos at grid_low or grid_high"
+_LONGER = "upper end of that interval; of the shorter life where both are chaotic"
+_LARGEST = "Floquet multiplier of the largest modulus next to the bifurcation"
+#: Of an entry.
+BIFURCATIONS = {
+    "a": Column(_AT, "f8", "friction parameter a of the bifurcation", value=lambda one: one.a),
+    "a_error": Column(
+        _AT, "f8", "its error: half the width of the interval that brackets it", value=_located(lambda at: at.error)
     ),
-    "to_branch": _V(
-        _BIFURCATION, "i2", "branch above the bifurcation, or reached from below it", {"comment": "-1 undetermined"}
+    "kind": Column(_AT, "i1", "what happens there", flag("i1", BifurcationKind), value=lambda one: one.kind),
+    "change": Column(
+        _AT, "i1", "what the branch of attractors does there", flag("i1", Change), value=lambda one: one.change
     ),
-    "grid_low": _V(_BIFURCATION, "f8", "largest a of refined.nc at which the branch is as before, NaN for none"),
-    "grid_high": _V(_BIFURCATION, "f8", "smallest a of refined.nc at which it is as after, NaN for none"),
-    "motion_before": _V(_BIFURCATION, "i1", "kind of motion at grid_low", flag("i1", MotionKind)),
-    "motion_after": _V(_BIFURCATION, "i1", "kind of motion at grid_high", flag("i1", MotionKind)),
-    "turns": _V(
-        _BIFURCATION, "i1", "whether the orbits on both sides of the bifurcation lie at a on one side of it", ANSWER
+    "from_branch": Column(_AT, "i2", _BELOW, _NONE, value=lambda one: one.from_branch),
+    "to_branch": Column(_AT, "i2", _ABOVE, _NONE, value=lambda one: one.to_branch),
+    "grid_low": Column(
+        _AT, "f8", "largest a of refined.nc at which the branch is as before, NaN for none", value=lambda one: one.low
     ),
-    "period": _V(_BIFURCATION, "f8", "period of the orbit at the bifurcation"),
-    "stops": _V(("bifurcation", "block"), "i4", "stops of each block in a period of the stable orbits"),
-    "stops_beyond": _V(("bifurcation", "block"), "i4", "the same of the orbits beyond the bifurcation"),
-    "multiplier": _V(
-        ("bifurcation", "part"), "f8", "Floquet multiplier of the largest modulus next to the bifurcation"
+    "grid_high": Column(
+        _AT, "f8", "smallest a of refined.nc at which it is as after, NaN for none", value=lambda one: one.high
     ),
-    "multiplier_beyond": _V(("bifurcation", "part"), "f8", "the same of the orbits beyond the bifurcation"),
-    "mean_distance": _V(_BIFURCATION, "f8", "<J> over a period of that orbit"),
-    "stick_time": _V(_BIFURCATION, "f8", "shortest stick at the bifurcation, 0 where it shrinks to nothing"),
-    "lifetime_low": _V(
-        _BIFURCATION, "f8", "lower end of the 95 % interval of the lifetime of chaos at grid_low or grid_high"
+    "motion_before": Column(_AT, "i1", "kind of motion at grid_low", _MOTION, value=lambda one: one.motion[0]),
+    "motion_after": Column(_AT, "i1", "kind of motion at grid_high", _MOTION, value=lambda one: one.motion[1]),
+    "turns": Column(_AT, "i1", _TURNS, ANSWER, value=_located(lambda at: at.turns)),
+    "period": Column(_AT, "f8", "period of the orbit at the bifurcation", value=_located(lambda at: at.period)),
+    "stops": Column(
+        (*_AT, "block"),
+        "i4",
+        "stops of each block in a period of the stable orbits",
+        value=_located(lambda at: at.before.orbit.stop_counts),
     ),
-    "lifetime_high": _V(_BIFURCATION, "f8", "upper end of that interval; of the shorter life where both are chaotic"),
-    "orbit_law": _V(_ORBIT, "i1", "friction law, by its number in the attribute laws"),
-    "orbit_segment": _V(_ORBIT, "i4", "number of the segment of orbits that were followed together, in this order"),
-    "orbit_branch": _V(_ORBIT, "i2", "branch of most of the attractors that lie on them"),
-    "orbit_a": _V(_ORBIT, "f8", "friction parameter a of the periodic orbit"),
-    "orbit_stable": _V(
-        _ORBIT, "i1", "whether all its multipliers but that of the flow lie inside the unit circle", ANSWER
+    "stops_beyond": Column(
+        (*_AT, "block"),
+        "i4",
+        "the same of the orbits beyond the bifurcation",
+        value=_located(lambda at: at.after.orbit.stop_counts if at.after else None),
     ),
-    "orbit_period": _V(_ORBIT, "f8", "period of the orbit"),
-    "orbit_stops": _V(("orbit", "block"), "i4", "stops of each block in a period of the orbit"),
-    "orbit_mean_distance": _V(_ORBIT, "f8", "<J> over a period of the orbit"),
+    "multiplier": Column((*_AT, "part"), "f8", _LARGEST, value=_located(lambda at: _multiplier(at.at))),
+    "multiplier_beyond": Column(
+        (*_AT, "part"),
+        "f8",
+        "the same of the orbits beyond the bifurcation",
+        value=_located(lambda at: _multiplier(at.after)),
+    ),
+    "mean_distance": Column(_AT, "f8", "<J> over a period of that orbit", value=_located(lambda at: at.mean_distance)),
+    "stick_time": Column(
+        _AT,
+        "f8",
+        "shortest stick at the bifurcation, 0 where it shrinks to nothing",
+        value=_located(lambda at: at.stick_time),
+    ),
+    "lifetime_low": Column(_AT, "f8", _LIFE, value=lambda one: one.lifetime[0]),
+    "lifetime_high": Column(_AT, "f8", _LONGER, value=lambda one: one.lifetime[1]),
+}
+_SEGMENT = "number of the segment of orbits that were followed together, in this order"
+_STABLE = "whether all its multipliers but that of the flow lie inside the unit circle"
+#: Of (number of a segment, its branch, one of its orbits).
+ORBITS = {
+    "orbit_segment": Column(_ORBIT, "i4", _SEGMENT, value=lambda one: one[0]),
+    "orbit_branch": Column(_ORBIT, "i2", "branch of most of the attractors that lie on them", value=lambda one: one[1]),
+    "orbit_a": Column(_ORBIT, "f8", "friction parameter a of the periodic orbit", value=lambda one: one[2].orbit.a),
+    "orbit_stable": Column(_ORBIT, "i1", _STABLE, ANSWER, value=lambda one: one[2].multipliers.unstable == 0),
+    "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda one: one[2].orbit.period),
+    "orbit_stops": Column(
+        (*_ORBIT, "block"),
+        "i4",
+        "stops of each block in a period of the orbit",
+        value=lambda one: one[2].orbit.stop_counts,
+    ),
+    "orbit_mean_distance": Column(
+        _ORBIT, "f8", "<J> over a period of the orbit", value=lambda one: one[2].orbit.mean_distance
+    ),
+}
+VARIABLES: dict[str, Variable] = {
+    "law": Variable(_AT, "U", "friction law"),
+    **BIFURCATIONS,
+    "orbit_law": Variable(_ORBIT, "U", "friction law"),
+    **ORBITS,
 }
 #: Significant digits of what is written: the last ones differ between machines.
 PLACES = 11
 DIGITS = {"multiplier": 5, "multiplier_beyond": 5, "stick_time": 5, "lifetime_low": 3, "lifetime_high": 3}
+
+
+def make_of_law(given: Given, model: Mapping[str, Any], a: float) -> xarray.Dataset:
+    """Return the bifurcations under one law; model, a : what decides the model, and one a."""
+    attractors, refined = (given.summary(name).sel(law=given.law) for name in ("attractors", "refined"))
+    kept = given.cache(
+        f"bifurcations {given.law}", model, source_fingerprint("burridge_knopoff.continuation.bifurcations")
+    )
+    return one_law(model_of(model, given.law, a), attractors, refined, given.cores, kept)
+
+
+def make(given: Given) -> tuple[xarray.Dataset, str]:
+    """Return the bifurcations under all laws, and the same in words."""
+    dataset = merge(given.summaries("parts"))
+    return dataset, digest(dataset)
 
 
 def one_law(
@@ -88,51 +164,43 @@ def one_law(
     attractors, refined : of this law, at the values of the grid, and at all
     processes, folder : see `followed`
     """
-    values: dict[str, list[Any]] = {name: [] for name in VARIABLES}
-    blocks = model.blocks
+    law = str(attractors["law"].item())
     one = refined.load()
     changes = branch_changes(attractors, one)
     orbits = followed(model, one, changes, processes, folder)
-    for entry in entries(one, changes, orbits):
-        _append_bifurcation(values, entry, blocks)
-    branches = _branches_of_segments(orbits, one["branch"].values)
-    for index, (branch, segment_) in enumerate(zip(branches, orbits.segments, strict=True)):
-        _append_orbits(values, index, branch, segment_)
-    rounded = {name: _rounded(item, values[name], DIGITS.get(name, 10)) for name, item in VARIABLES.items()}
+    found = list(entries(one, changes, orbits))
+    segments = enumerate(zip(_branches_of_segments(orbits, one["branch"].values), orbits.segments, strict=True))
+    points = [(number, branch, point) for number, (branch, segment) in segments for point in segment.shown]
+    sizes = {"block": model.blocks, "part": len(PARTS)}
+    values = filled(BIFURCATIONS, found, sizes)
+    rounded = {name: _rounded(value, DIGITS.get(name, 10)) for name, value in values.items()}
     rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])
     rounded["a_error"][~located] = 0.5 * (rounded["grid_high"] - rounded["grid_low"])[~located]
     # They are values of refined.nc, to be looked up there.
-    rounded["grid_low"], rounded["grid_high"] = np.array(values["grid_low"]), np.array(values["grid_high"])
-    shapes = dict.fromkeys(("stops", "stops_beyond", "orbit_stops"), (-1, blocks)) | {
-        "multiplier": (-1, 2),
-        "multiplier_beyond": (-1, 2),
-    }
-    for name, shape in shapes.items():
-        rounded[name] = rounded[name].reshape(shape)
-    rounded |= _in_order({name: rounded[name] for name, item in VARIABLES.items() if "bifurcation" in item.dimensions})
+    rounded["grid_low"], rounded["grid_high"] = values["grid_low"], values["grid_high"]
+    rounded = _in_order(rounded)
+    rounded |= {name: _rounded(value, 10) for name, value in filled(ORBITS, points, sizes).items()}
+    rounded |= {"law": np.repeat(law, len(found)), "orbit_law": np.repeat(law, len(points))}
     head = {"v": model.v, "contact": model.contact}
-    return _dataset([str(attractors["law"].item())], rounded, attractors["block"].variable, head)
+    return _dataset([law], rounded, attractors["block"].variable, head)
 
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     """Return the bifurcations of several laws in one Dataset, one law after the other."""
     values = {name: np.concatenate([part[name].values for part in parts]) for name in VARIABLES}
-    for name, dimension in (("law", "bifurcation"), ("orbit_law", "orbit")):
-        values[name] = np.repeat(np.arange(len(parts), dtype="i1"), [part.sizes[dimension] for part in parts])
     head = {name: parts[0].attrs[name] for name in ("v", "contact")}
     return _dataset([part.attrs["laws"] for part in parts], values, parts[0]["block"].variable, head)
 
 
 def digest(dataset: xarray.Dataset) -> str:
     """Return a line for each bifurcation: what happens there, to which branch, and the stops on both sides of it."""
-    laws = dataset.attrs["laws"].split()
-    columns = {name: dataset[name].values for name, item in VARIABLES.items() if item.dimensions[0] == "bifurcation"}
+    columns = {name: dataset[name].values for name in ("law", *BIFURCATIONS)}
     lines = []
     for number in range(dataset.sizes["bifurcation"]):
         one = {name: values[number] for name, values in columns.items()}
         kind = BifurcationKind(one["kind"]).name.lower() + (", turns" if one["turns"] == 1 else "")
-        parts = [f"{laws[one['law']]}, a = {one['a']:.10g} +/- {one['a_error']:.2g}: {kind}", _happening(one)]
+        parts = [f"{one['law']}, a = {one['a']:.10g} +/- {one['a_error']:.2g}: {kind}", _happening(one)]
         if np.isfinite(one["lifetime_low"]):
             parts.append(f"chaos lasts for {one['lifetime_low']:g} to {one['lifetime_high']:g} in the mean")
         if np.isfinite(one["period"]):
@@ -169,41 +237,12 @@ def _dataset(
         "part": ("part", np.array(PARTS, dtype=object), {"long_name": "part of a complex number"}),
         "block": block,
     }
-    described = {**VARIABLES, **{name: _numbered(VARIABLES[name], names) for name in ("law", "orbit_law")}}
     about = {
         "laws": " ".join(names),
         **head,
         "history": "snakemake, from the attractors and the equations of motion",
     }
-    return summary("Bifurcations of the branches of attractors", described, values, coordinates, about, module=__name__)
-
-
-def _numbered(item: Variable, names: Sequence[str]) -> Variable:
-    return Variable(item.dimensions, item.dtype, "friction law", flag("i1", dict(enumerate(names))))
-
-
-def _append_bifurcation(values: dict[str, list[Any]], entry: Entry, blocks: int) -> None:
-    for name in ("change", "from_branch", "to_branch", "kind", "a"):
-        values[name].append(getattr(entry, name))
-    values["law"].append(0)
-    values["grid_low"].append(entry.low)
-    values["grid_high"].append(entry.high)
-    values["motion_before"].append(entry.motion[0])
-    values["motion_after"].append(entry.motion[1])
-    bifurcation = entry.bifurcation
-    after = bifurcation.after if bifurcation else None
-    values["a_error"].append(bifurcation.error if bifurcation else 1.0)
-    values["turns"].append(int(bifurcation.turns) if bifurcation else -1)
-    values["period"].append(bifurcation.period if bifurcation else np.nan)
-    values["mean_distance"].append(bifurcation.mean_distance if bifurcation else np.nan)
-    values["stick_time"].append(bifurcation.stick_time if bifurcation else np.nan)
-    values["lifetime_low"].append(entry.lifetime[0])
-    values["lifetime_high"].append(entry.lifetime[1])
-    values["stops"] += bifurcation.before.orbit.stop_counts if bifurcation else [-1] * blocks
-    values["stops_beyond"] += after.orbit.stop_counts if after else [-1] * blocks
-    for name, point in (("multiplier", bifurcation.at if bifurcation else None), ("multiplier_beyond", after)):
-        largest = complex(point.multipliers.whole[0]) if point else complex(np.nan, np.nan)
-        values[name] += [largest.real, abs(largest.imag)]
+    return summary("Bifurcations of the branches of attractors", VARIABLES, values, coordinates, about, module=__name__)
 
 
 def _in_order(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
@@ -228,21 +267,10 @@ def _branches_of_segments(orbits: FollowedOrbits, branch: np.ndarray) -> list[in
     return [counted.most_common(1)[0][0] for counted in numbers]
 
 
-def _append_orbits(values: dict[str, list[Any]], number: int, branch: int, one: BranchSegment) -> None:
-    for point in one.shown:
-        values["orbit_law"].append(0)
-        values["orbit_segment"].append(number)
-        values["orbit_branch"].append(branch)
-        values["orbit_a"].append(point.orbit.a)
-        values["orbit_stable"].append(int(point.multipliers.unstable == 0))
-        values["orbit_period"].append(point.orbit.period)
-        values["orbit_stops"] += point.orbit.stop_counts
-        values["orbit_mean_distance"].append(point.orbit.mean_distance)
-
-
-def _rounded(item: Variable, values: Sequence[Any], digits: int) -> np.ndarray:
-    """Return values of a variable with so many significant digits."""
-    if item.dtype != "f8":
-        return np.array(values, dtype=item.dtype)
+def _rounded(values: np.ndarray, digits: int) -> np.ndarray:
+    """Return numbers with so many significant digits; whole numbers and texts as they are."""
+    if values.dtype.kind != "f":
+        return values
     # Next to 0 digits behind the point count as well: nothing is known to more of them. Adding 0 makes -0 a 0.
-    return np.array([float(f"{round(value, PLACES) + 0.0:.{digits - 1}e}") for value in values], dtype=float)
+    shown = [float(f"{round(value, PLACES) + 0.0:.{digits - 1}e}") for value in values.ravel().tolist()]
+    return np.reshape(shown, values.shape).astype(float)

@@ -14,8 +14,9 @@ import xarray
 
 from burridge_knopoff.catalogue.distribution import EDGES, WIDTH, covered_blocks, fit_range, recurrence
 from burridge_knopoff.catalogue.slope import fit_slope
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.point import STATUS_FLAG
-from burridge_knopoff.dataset.summary import axes, summary
+from burridge_knopoff.dataset.summary import axes, open_summary, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.running.status import Status
 
@@ -69,6 +70,11 @@ COORDINATES = {
 }
 #: Attributes of the catalogue files that all have in common.
 SHARED = ("contact", "loading", "start", "begin_time", "end_time")
+
+
+def make(given: Given, laws: Sequence[str], grid: Sequence[float], fit: Mapping[str, float]) -> xarray.Dataset:
+    """Return the statistics of all catalogues; fit : ends of the range of the fit; all as in `summarize`."""
+    return summarize(map(open_summary, given.paths("runs")), laws, grid, **fit)
 
 
 def summarize(

@@ -5,7 +5,7 @@ A chain file holds what `motion.chain_synchronization` found for one number of b
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag, global_attributes
 from burridge_knopoff.model.model import Model
@@ -24,6 +25,7 @@ from burridge_knopoff.motion.chain_synchronization import (
     watch_chain,
 )
 from burridge_knopoff.study.formatting import friction_words
+from burridge_knopoff.study.model import models_of
 
 _POINT = ("law", "a")
 _OWN_ATTRIBUTES = ("blocks", *global_attributes("", {}, module=__name__))
@@ -66,6 +68,24 @@ VARIABLES = {
         }.items()
     },
 }
+
+
+def make_of_length(
+    given: Given,
+    model: Mapping[str, Any],
+    grid: Sequence[float],
+    watch: Mapping[str, Any],
+    sample: Mapping[str, Any],
+    motion: Mapping[str, Any],
+) -> xarray.Dataset:
+    """Return the outcomes for one number of blocks; grid : values of a; the others as in a config."""
+    models = models_of(model, grid[0], int(given.wildcards["blocks"]))
+    return chain_dataset(models, grid, Sample(**sample), Watch(**watch, **motion))
+
+
+def make(given: Given) -> xarray.Dataset:
+    """Return the fractions for all numbers of blocks."""
+    return merge(given.summaries("parts"))
 
 
 def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample, watch: Watch) -> xarray.Dataset:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -11,13 +11,16 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.attractors.labels import UNDETERMINED, label_states
-from burridge_knopoff.attractors.stored_returns import KnownAttractors
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.attractors.stored_returns import KnownAttractors, known_attractors
 from burridge_knopoff.basins.initial_phases import common_phases, inner_phases, oscillating_states, slipping_amplitude
 from burridge_knopoff.basins.settings import PhaseSettings
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import AXES, STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.along_attractor import along_attractor
 
 TITLE = "Initial phases of the blocks"
@@ -62,6 +65,24 @@ COORDINATES = {
 }
 INNER_BLOCK = {"long_name": "block number, 2 to N - 1 along the chain", "units": "1"}
 ATTRIBUTES = ("history", "v", "contact", "seed", "label_limit")
+
+
+def make_of_law(
+    given: Given,
+    model: Mapping[str, Any],
+    grid: Sequence[float],
+    attractors: Mapping[str, Any],
+    phases: Mapping[str, Any],
+) -> xarray.Dataset:
+    """Return the outcomes under one law; grid : values of a; the others as in a config."""
+    found, returns = given.summary("attractors"), given.summary("returns")
+    known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
+    return one_law(known, PhaseSettings(**phases), SearchSettings(**attractors).label_limit, given.cores)
+
+
+def make(given: Given) -> xarray.Dataset:
+    """Return the outcomes under all laws."""
+    return merge(given.summaries("parts"))
 
 
 def one_law(

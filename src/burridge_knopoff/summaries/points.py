@@ -12,7 +12,8 @@ import netCDF4
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.point import point_about
+from burridge_knopoff.dataset.about import point_about
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
@@ -58,6 +59,11 @@ class Grid:
             {key: points[key] for key in MODEL_KEYS},
         )
 
+    @classmethod
+    def given(cls, given: Given) -> Grid:
+        """Return the grid of the points that a job reads."""
+        return cls.of(given.results / "points", given.points)
+
     def elsewhere(self, folder: Path, settings: Mapping[str, Mapping[str, Any]]) -> Grid:
         """Return the same points as they were run with other settings, {law: settings}, below another folder."""
         others = {law: Settings(**items) for law, items in settings.items()}
@@ -91,7 +97,7 @@ class Grid:
 
     def model(self, law: str, a: float, **others: float) -> Model:
         """Return the model of the points under one law at one a, and at values of the other parameters."""
-        return model_of(self.models, law, a, self.blocks, **others)
+        return model_of(self.models, law, a, others=others)
 
     @property
     def shape(self) -> tuple[int, ...]:

@@ -5,7 +5,7 @@ The numbers are enclosures: ends between which the true value lies, whatever rou
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,6 +13,7 @@ import numpy as np
 import xarray
 from flint import arb, fmpq
 
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import AXES, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
@@ -22,6 +23,7 @@ from burridge_knopoff.proof.balls import BITS, ProofError, arithmetic, decimal, 
 from burridge_knopoff.proof.critical import Critical, Piece, prove_branch, prove_critical
 from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit, prove_orbit
 from burridge_knopoff.proof.scope import NONLINEAR_V, is_covered, is_linearized
+from burridge_knopoff.study.model import models_of
 
 #: Number of blocks of the chain.
 CHAIN_BLOCKS = 3
@@ -72,6 +74,12 @@ _COORDINATES = {
     "mode": (MODES, "O", "Floquet mode"),
     "block": (BLOCKS, "i4", "number of the block"),
 }
+
+
+def make(given: Given, model: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
+    """Return the proofs under all laws, and the same in words; model : what decides the models."""
+    dataset = summarize(models_of(model, GIVEN[0] / GIVEN[1], CHAIN_BLOCKS))
+    return dataset, digest(dataset)
 
 
 def summarize(models: Sequence[Model]) -> xarray.Dataset:

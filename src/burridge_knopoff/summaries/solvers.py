@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 import xarray
 
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.settings import SOLVERS
@@ -44,6 +46,13 @@ VARIABLES = {
 SOLVER = Variable(("solver",), "O", "solver", coordinate=True)
 _COPIED = ("mean_distance", "mean_distance_error", "status", "step_count", "end_time")
 _READ = [*_COPIED, *EVENTS]
+
+
+def make(given: Given, others: Mapping[str, Mapping[str, Any]], step: float) -> xarray.Dataset:
+    """Return the comparison; others : {solver: {law: settings of its runs}}; step : of rk4."""
+    grid, folder = Grid.given(given), given.results / "solvers"
+    grids = {solver: grid.elsewhere(folder / solver, settings) for solver, settings in others.items()}
+    return summarize(grid, grids, step)
 
 
 def summarize(grid: Grid, others: Mapping[str, Grid], step: float) -> xarray.Dataset:

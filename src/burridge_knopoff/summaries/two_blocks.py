@@ -19,18 +19,21 @@ import xarray
 
 from burridge_knopoff.attractors.asymptotic_states import endings
 from burridge_knopoff.attractors.settings import OF_GIVEN_STATES, SearchSettings
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import fraction_interval
+from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.motion.kind import MotionKind, motion_of_run
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
+from burridge_knopoff.study.model import models_of
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare, excess
 
@@ -86,6 +89,28 @@ VARIABLES = {
     **PAIR_VARIABLES,
     **ONE_BLOCK_VARIABLES,
 }
+
+
+def make(
+    given: Given,
+    model: Mapping[str, Any],
+    two_blocks: Mapping[str, Any],
+    sample: Mapping[str, Any],
+    settings: Mapping[str, Any],
+    search: Mapping[str, Any],
+    motion: Mapping[str, Any],
+    agreement: Mapping[str, Any],
+) -> xarray.Dataset:
+    """Return the comparison.
+
+    two_blocks : values of a and number of states; sample, settings : of the states and of the runs; the others as in a
+        config
+    """
+    grid = two_blocks["a"]
+    initial = Sample(samples=two_blocks["samples"], symmetric_samples=0, **sample).initial(BLOCKS)
+    judged = SearchSettings(**search), MotionSettings(**motion), agreement
+    models = models_of(model, grid[0], BLOCKS)
+    return summarize(models, initial, grid, run_settings(**settings), *judged, processes=given.cores)
 
 
 def train(chain: Chain, blocks: int) -> Chain:

@@ -1,4 +1,4 @@
-"""⟨J⟩ of runs and attractors, basin fractions, and the branches reached, against a."""
+"""⟨J⟩ of runs and attractors against a."""
 
 from __future__ import annotations
 
@@ -7,22 +7,13 @@ import plotly.graph_objects as go
 import xarray
 
 from burridge_knopoff.attractors.lookup import branch_names
-from burridge_knopoff.figures.branches import (
-    OTHER_COLOR,
-    OTHERS,
-    UNDETERMINED_COLOR,
-    branch_colors,
-    fraction_curves,
-    named_colors,
-    undetermined_share,
-)
-from burridge_knopoff.figures.mean_distance import MARKERS, branches_reached
-from burridge_knopoff.figures.style import cells
+from burridge_knopoff.figures.branches import OTHER_COLOR, OTHERS, branch_colors, named_colors
+from burridge_knopoff.figures.mean_distance import MARKERS
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.charts.legend import Entry
-from burridge_knopoff.report.charts.look import SYMBOLS, a_axis, axis, bars, chart, scatter, steps
+from burridge_knopoff.report.charts.look import SYMBOLS, a_axis, axis, bars, chart, scatter
 from burridge_knopoff.report.charts.theme import INK
-from burridge_knopoff.study.formatting import text, with_error
+from burridge_knopoff.study.formatting import with_error
 
 # Of the branches that have a colour of their own; all others share one.
 _SHAPES = (
@@ -127,54 +118,3 @@ def attractor_marks(attractors: xarray.Dataset, branches: Branches) -> list[go.S
             )
         )
     return traces
-
-
-def fractions(attractors: xarray.Dataset, branches: Branches) -> go.Figure:
-    """Return the basin fractions of one law with their 95 % Wilson intervals, and the share of undetermined states."""
-    a = attractors["a"].values
-    traces = []
-    for name, color, interval in fraction_curves(attractors, branches.colors):
-        fraction, low, high = interval.T
-        traces.append(
-            scatter(
-                a,
-                fraction,
-                color,
-                f"{name}<br>a = %{{x}}<br>fraction %{{y:.4f}} (%{{customdata[0]:.4f}} to %{{customdata[1]:.4f}})",
-                mode="lines+markers",
-                customdata=interval[:, 1:],
-                error_y=bars(high - fraction, f"{color}73", fraction - low),
-                line_width=1,
-                marker={"size": 5, "symbol": branches.shape(name)},
-            )
-        )
-    words = "undetermined<br>a = %{x}<br>fraction %{y:.4f}"
-    look = {"size": 5, "symbol": "x-thin-open"}
-    traces.append(scatter(a, undetermined_share(attractors), UNDETERMINED_COLOR, words, mode="markers", marker=look))
-    return chart(traces, xaxis=a_axis(a), yaxis=axis("fraction of initial states", range=[-0.03, 1.03]))
-
-
-def conventions(attractors: xarray.Dataset, branches: Branches) -> go.Figure:
-    """Return which branch of one law each initial state reaches under each convention; no colour where undetermined."""
-    a, groups = attractors["a"].values, list(branches.groups)
-    names, reached = branches_reached(attractors)
-    position = {number: groups.index(branches.group(number)) for number in branches.colors}
-    words = [
-        [
-            f"{name}<br>a = {text(value)}: {branches.names.get(number, 'undetermined')}"
-            for value, number in zip(a, row, strict=True)
-        ]
-        for name, row in zip(names, reached.tolist(), strict=True)
-    ]
-    trace = go.Heatmap(
-        x=cells(a),
-        y=names,
-        z=[[position.get(number) for number in row] for row in reached.tolist()],
-        text=words,
-        ygap=2,
-        hoverongaps=True,
-        hovertemplate="%{text}<extra></extra>",
-        **steps(list(branches.groups.values())),
-    )
-    rows = axis("", autorange="reversed", showgrid=False, ticks="", tickfont={"size": 11}, automargin=True)
-    return chart([trace], xaxis=a_axis(a, showgrid=False, nticks=4), yaxis=rows, margin={"l": 10})

@@ -6,24 +6,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 import xarray
 
 from burridge_knopoff.figures.lyapunov import frame
-from burridge_knopoff.report.charts import agreement, branches, exponents, maps, orbits, sections
-from burridge_knopoff.report.charts.legend import Entry
+from burridge_knopoff.report.charts import branches, exponents, grid, sections
 from burridge_knopoff.report.charts.look import Packer
 from burridge_knopoff.study.study import Study
-from burridge_knopoff.summaries.orbit_flags import OrbitStatus
 
 
 @dataclass(frozen=True)
 class Charts:
     """The charts of a page.
 
-    packed : {kind of chart: packed charts, by law or by (law, initial state); of maps, by their number}; those of
-        summaries that the study lacks are missing
-    legends : {name: entries}, those of maps by their number
+    packed : {kind of chart: packed charts, by law or by (law, initial state); of a grid, by their titles}
+    legends : {name: entries}
     dark : {colour: colour in the dark theme}
     """
 
@@ -34,7 +30,10 @@ class Charts:
 
 def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
     """Return the charts of a study, one packed after the other: together they would take hundreds of MB."""
-    pack, laws, states = Packer(), study.laws, study.initial
+    pack = Packer()
+    if "grid" in summaries:
+        return Charts({"grid": {title: pack(one) for title, one in grid.maps(summaries["grid"])}}, {}, pack.dark)
+    laws, states = study.laws, study.initial
     packed: dict[str, Any] = {}
     runs, compared, lyapunov = (summaries[name] for name in ("mean_distance", "agreement", "lyapunov"))
     kind, found = compared["kind"], summaries.get("attractors")
@@ -42,7 +41,6 @@ def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
     legends: dict[str, Any] = {
         "runs": branches.run_legend(list(states)),
         "kinds": exponents.kind_legend(kind.values, depth),
-        "agreement": agreement.agreement_legend(compared.attrs),
         "branches": [],
     }
     marks: dict[str, list[Any]] = {law: [] for law in laws}
@@ -50,8 +48,6 @@ def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
         groups = branches.Branches(found)
         legends["branches"] = groups.legend()
         marks = {law: branches.attractor_marks(found.sel(law=law), groups) for law in laws}
-        packed["fractions"] = [pack(branches.fractions(found.sel(law=law), groups)) for law in laws]
-        packed["conventions"] = [pack(branches.conventions(found.sel(law=law), groups)) for law in laws]
     top = branches.top_distance(runs, found)
     packed["distance"] = [
         pack(branches.distance(runs.sel(law=law), kind.sel(law=law), top, marks[law])) for law in laws
@@ -70,28 +66,4 @@ def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
             ]
             for law in laws
         ]
-    packed["agreement"] = [
-        [pack(agreement.agreement(compared, name, law)) for name in states] for law in compared["other_law"].values
-    ]
-    if (summaries["orbits"]["status"].values == OrbitStatus.FOUND).any():
-        legends["orbits"] = orbits.orbit_legend(list(laws))
-        packed["multipliers"] = pack(orbits.multipliers(summaries["orbits"]))
-        if np.isfinite(summaries["orbits"]["branch_offset"]).any():
-            packed["asymmetry"] = pack(orbits.asymmetry(summaries["orbits"]))
-    if "basins" in summaries and found is not None:
-        packed["map"], legends["map"] = _maps(pack, summaries["basins"], found, study)
-    if "chains" in summaries:
-        chains = summaries["chains"]
-        packed["chains"] = [pack(maps.chain_fractions(chains.sel(law=law))) for law in chains["law"].values]
     return Charts(packed, legends, pack.dark)
-
-
-def _maps(
-    pack: Packer, basins: xarray.Dataset, attractors: xarray.Dataset, study: Study
-) -> tuple[list[str], list[list[Entry]]]:
-    packed, legends = [], []
-    for number in range(basins.sizes["map"]):
-        figure, legend = maps.basin_map(basins, number, attractors, study.marked_states)
-        packed.append(pack(figure))
-        legends.append(legend)
-    return packed, legends

@@ -71,10 +71,9 @@ def scatter(x: Any, y: Any, color: str, hover: str, **more: Any) -> go.Scatter:
     return go.Scatter(x=x, y=y, **look, **more)
 
 
-def bars(above: np.ndarray, color: str, below: np.ndarray | None = None) -> dict[str, Any]:
-    """Return the error bars of a curve; those below are as long as those above, if not given."""
-    more = {} if below is None else {"symmetric": False, "arrayminus": np.nan_to_num(below)}
-    return {"array": np.nan_to_num(above), "color": color, "thickness": 0.8, "width": 0, **more}
+def bars(error: np.ndarray, color: str) -> dict[str, Any]:
+    """Return the error bars of a curve."""
+    return {"array": np.nan_to_num(error), "color": color, "thickness": 0.8, "width": 0}
 
 
 def axis(title: str, **more: Any) -> dict[str, Any]:
@@ -87,18 +86,6 @@ def a_axis(a: np.ndarray, **more: Any) -> dict[str, Any]:
     first, last = cells(a)[[0, -1]]
     margin = 0.02 * (last - first)
     return axis("<i>a</i>", range=[first - margin, last + margin], **{"nticks": 8, **more})
-
-
-def log_axis(title: str, ends: tuple[float, float], **more: Any) -> dict[str, Any]:
-    """Return a logarithmic axis between two powers of ten, with no more labels than a small panel holds."""
-    step = max(1, int(np.ceil((ends[1] - ends[0]) / 5)))
-    return axis(title, type="log", range=list(ends), exponentformat="power", dtick=step, **more)
-
-
-def powers(values: np.ndarray, least: float = np.inf, largest: float = -np.inf) -> tuple[float, float]:
-    """Return the powers of ten around all positive values, and around `least` and `largest`."""
-    found = np.log10(values[values > 0.0])
-    return float(found.min(initial=least)) - 0.1, float(found.max(initial=largest)) + 0.1
 
 
 def steps(colors: Sequence[str]) -> dict[str, Any]:

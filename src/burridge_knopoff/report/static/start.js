@@ -1,4 +1,4 @@
 startTheme();
-startRuns();
+if (runs) startRuns();
 startPictures();
 startCharts();

@@ -1,0 +1,77 @@
+"""Whether files are those that their study has there: made from its config, by these sources, from these inputs."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+from collections.abc import Collection
+from pathlib import Path
+
+from burridge_knopoff.jobs.jobs import Jobs
+from burridge_knopoff.provenance.record import study_folder
+from burridge_knopoff.provenance.seal import BadFile, first_difference, of_config, read_seal, told_difference
+from burridge_knopoff.study.recorded import recorded_study
+from burridge_knopoff.study.stretches import incomplete
+
+
+def check_file(jobs: Jobs, results: Path, name: str, *, any_sources: bool = False) -> str:
+    """Check a file of a study, by its name in the results; return the status of its run, "made" if it is no run's.
+
+    any_sources : accept a file that other sources made
+
+    Raises BadFile, one line with the difference, if the file is missing, damaged, or not the expected one. If it was
+    made from another file that is wrong too, the error is about that one.
+    """
+    path = results / name
+    found, status = read_seal(path)
+    expected = jobs.expected(name)
+    if expected is None:
+        return status
+    if any_sources:
+        found, expected = of_config(found), of_config(expected)
+        # Another version may describe files by more, or less.
+        both = {"file"} | found.keys() & expected.keys()
+        found, expected = ({key: one[key] for key in one if key in both} for one in (found, expected))
+    if key := first_difference(found, expected):
+        for other in expected.get("inputs", {}) if key == "inputs" else ():
+            if found["inputs"].get(other) != expected["inputs"][other] and (results / other).is_file():
+                check_file(jobs, results, other, any_sources=any_sources)
+        raise BadFile(path, told_difference(key, found, expected))
+    return status
+
+
+def damaged(jobs: Jobs, results: Path) -> list[tuple[Path, str]]:
+    """Return texts and pictures that are damaged, which hardly any job reads, and marks of stretches without points.
+
+    With the reason of each, in words.
+    """
+    found = []
+    for name in jobs.all_files():
+        path = results / name
+        if path.suffix != ".nc" and path.is_file():
+            try:
+                read_seal(path)
+            except BadFile as error:
+                found.append((path, error.reason))
+    marks = incomplete(jobs.study, results)
+    return [*found, *((mark, "a point of it is missing or was changed") for mark in marks)]
+
+
+def check_result(path: Path, *, any_sources: bool = True) -> Collection[str]:
+    """Check that a file is intact and, in a study, that it is the expected result.
+
+    any_sources : accept a file that other sources made
+
+    Returns the names of all files of the study besides runs; none if it is not known, or of another version.
+    Raises BadFile as `check_file` does.
+    """
+    folder, jobs = study_folder(path), None
+    if folder is not None:
+        with contextlib.suppress(ValueError, KeyError):
+            jobs = Jobs(recorded_study(folder)[1])
+    if folder is None or jobs is None:
+        read_seal(path)
+        return ()
+    results = folder if path.is_absolute() else Path(os.path.relpath(folder))
+    check_file(jobs, results, path.absolute().relative_to(folder).as_posix(), any_sources=any_sources)
+    return jobs.all_files()

@@ -1,0 +1,204 @@
+"""Attractors, and what follows from them: basins, bifurcations and phases."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import prod
+from typing import Any
+
+from burridge_knopoff.jobs.params import basin_keys, keys, model_config, motion_config, of_laws
+from burridge_knopoff.jobs.rule import Rule, Shown, Wildcards
+from burridge_knopoff.study.study import Study
+
+
+def attractors(study: Study) -> list[Rule]:
+    """Attractors: found for each law along the grid of a and between its values, then merged."""
+    config, grid = study.config["attractors"], list(study.grid.values())
+    settings = {**keys(study, "initial", "start", "attractors", "refine"), "motion": motion_config(study)}
+    return [
+        Rule(
+            "attractors_of_law",
+            "Search for the coexisting attractors of one friction law at every a, and refine a where they change.",
+            "attractors of the {law} law along a",
+            ("attractors/{law}.nc", "refined/{law}.nc", "returns/{law}.nc"),
+            "summaries.attractors_of_law:make",
+            params=lambda job: {**settings, "grid": grid, "model": model_config(study, [job["law"]])},
+            each=of_laws(study),
+            stage="attractors",
+            cores=0,
+            memory=300,
+            minutes=240,
+            # The longest jobs of a study, started right after the points and the figures of the paper.
+            priority=2,
+            work=study.blocks * config["samples"] * (config["transient"] + config["window"]) * len(grid),
+        ),
+        Rule(
+            "attractors",
+            "Merge the attractors of all friction laws, with their branches, basin fractions and rotation numbers.",
+            "attractors of all laws",
+            ("summary/attractors.nc", "summary/attractors.txt", "summary/refined.nc", "summary/rotation.nc"),
+            "summaries.all_laws:make",
+            reads={"grid": "attractors/{law}.nc", "refined": "refined/{law}.nc"},
+            params=lambda job: {
+                **keys(study, "attractors"),
+                "model": model_config(study),
+                "a": grid[0],
+            },
+            stage="attractors",
+            shown={"summary/attractors.txt": Shown("attractors in words", "Attractors", "attractors_txt")},
+            cores=0,
+            memory=400,
+            minutes=10,
+        ),
+    ]
+
+
+def basins(study: Study) -> list[Rule]:
+    """Basins of attraction: tiles of maps over a plane of initial states, and their merge."""
+    config = study.config["basins"]
+    maps = [{"law": law, "a": a} for law, a in study.basin_maps]
+    state = {"name": config["initial"], **study.config["initial"][config["initial"]]}
+    settings = {"state": state, **keys(study, "start", "attractors")}
+    known = {"attractors": "summary/attractors.nc", "returns": "returns/{law}.nc"}
+
+    def part(*unused: str) -> Callable[[Wildcards], dict[str, Any]]:
+        return lambda job: {
+            **settings,
+            "a": study.value(job["a"]),
+            "model": model_config(study, [job["law"]]),
+            "basins": basin_keys(study, *unused),
+        }
+
+    return [
+        Rule(
+            "basin_tile",
+            "Map one tile of the basins of attraction over a plane of initial states.",
+            "basins of the {law} law at a = {a}, tile {tile}",
+            ("basins/{law}/a{a}/tile{tile}.nc",),
+            "summaries.basins:make_tile",
+            reads=known,
+            params=part("pairs"),
+            each=[{**one, "tile": str(tile)} for one in maps for tile in range(config["tiles"])],
+            stage="basins",
+            cores=config["threads"],
+            minutes=240,
+            work=config["pixels"] ** 2 / config["tiles"],
+        ),
+        Rule(
+            "basin_pairs",
+            "Measure how rough the basin boundaries are, from pairs of nearby initial states.",
+            "pairs of near states, {law} law, a = {a}",
+            ("basins/{law}/a{a}/pairs.nc",),
+            "summaries.basins:make_pairs",
+            reads=known,
+            params=part("pixels", "tiles"),
+            each=maps,
+            stage="basins",
+            cores=config["threads"],
+            minutes=240,
+            work=config["pairs"],
+        ),
+        Rule(
+            "basins",
+            "Merge the tiles and pairs into basin maps.",
+            "maps of basins of attraction",
+            ("summary/basins.nc", "summary/basins.txt"),
+            "summaries.basins:make",
+            reads={
+                "attractors": "summary/attractors.nc",
+                "tiles": "basins/{law}/a{a}/tile{tile}.nc",
+                "pairs": "basins/{law}/a{a}/pairs.nc",
+            },
+            params=lambda job: {
+                **settings,
+                "maps": [(law, study.value(a)) for law, a in study.basin_maps],
+                "model": model_config(study),
+                "basins": basin_keys(study),
+            },
+            stage="basins",
+            there=bool(maps),
+            shown={"summary/basins.txt": Shown("basins in words", "Attractors", "basins_txt")},
+            group="summaries",
+            work=len(maps),
+        ),
+    ]
+
+
+def bifurcations(study: Study) -> list[Rule]:
+    """Bifurcations and crises of the branches of attractors, for each law, then merged."""
+    return [
+        Rule(
+            "bifurcations_of_law",
+            "Continue the periodic orbits of one friction law in a to the bifurcations where their branches begin or "
+            "end.",
+            "bifurcations of the branches of attractors, {law} law",
+            ("bifurcations/{law}.nc",),
+            "summaries.bifurcations:make_of_law",
+            reads={"attractors": "summary/attractors.nc", "refined": "summary/refined.nc"},
+            params=lambda job: {
+                "model": model_config(study, [job["law"]]),
+                "a": min(study.grid.values()),
+            },
+            each=of_laws(study),
+            stage="bifurcations",
+            cores=0,
+            memory=350,
+            minutes=60,
+            work=len(study.grid),
+        ),
+        Rule(
+            "bifurcations",
+            "Merge the bifurcations of all friction laws.",
+            "bifurcations of all laws",
+            ("summary/bifurcations.nc", "summary/bifurcations.txt"),
+            "summaries.bifurcations:make",
+            reads={"parts": "bifurcations/{law}.nc"},
+            stage="bifurcations",
+            shown={"summary/bifurcations.txt": Shown("bifurcations in words", "Attractors", "bifurcations_txt")},
+            group="summaries",
+        ),
+    ]
+
+
+def phases(study: Study) -> list[Rule]:
+    """Initial states by the phases of their end blocks, labelled for each law by the known attractors, then merged."""
+    config = study.config["phases"]
+    of_phases = {key: value for key, value in config.items() if key != "a"}
+    return [
+        Rule(
+            "phases_of_law",
+            "Find out which initial phases of the end blocks lead to synchrony under one friction law.",
+            "phases of the end blocks, {law} law",
+            ("phases/{law}.nc",),
+            "summaries.phases:make_of_law",
+            reads={"attractors": "summary/attractors.nc", "returns": "returns/{law}.nc"},
+            params=lambda job: {
+                **keys(study, "attractors"),
+                "grid": config["a"],
+                "phases": of_phases,
+                "model": model_config(study, [job["law"]]),
+            },
+            each=of_laws(study),
+            stage="phases",
+            there=bool(config["a"]),
+            cores=0,
+            memory=300,
+            minutes=60,
+            work=config["samples"]
+            * prod(len(config[name]) for name in ("a", "inner_share", "amplitude", "phase_difference")),
+        ),
+        Rule(
+            "phases",
+            "Merge the outcomes of initial phases of all friction laws.",
+            "phases of the end blocks, all laws",
+            ("summary/phases.nc",),
+            "summaries.phases:make",
+            reads={"parts": "phases/{law}.nc"},
+            stage="phases",
+            group="summaries",
+        ),
+    ]
+
+
+#: All of these, each after those whose files it reads.
+STAGES = (attractors, basins, bifurcations, phases)

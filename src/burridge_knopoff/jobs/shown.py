@@ -1,0 +1,203 @@
+"""The summaries of points and of models, and what shows and judges them: figures, claims and the report."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from burridge_knopoff.claims.evidence import READ_BY_JUDGES
+from burridge_knopoff.figures.description import Description, figure_descriptions
+from burridge_knopoff.jobs.params import keys, model_config
+from burridge_knopoff.jobs.rule import Rule, Shown
+from burridge_knopoff.study.study import Study
+
+#: Priority of the figures of the paper, which a reader wants first, and of the summaries in them.
+FIRST = 4
+
+
+def summaries(study: Study) -> list[Rule]:
+    """Summaries of points, and of models alone: one netCDF file a question, by the module of its name."""
+    of_paper = {name for figure in figure_descriptions() if figure.paper for name in figure.inputs}
+
+    def of_points(
+        name: str,
+        purpose: str,
+        *used: str,
+        read: Sequence[str] = (),
+        texts: Mapping[str, str] | None = None,
+        memory: int = 400,
+        over: str = "a",
+    ) -> Rule:
+        """used : keys of the config; read : other summaries; texts : {suffix of a text that comes with it: title}."""
+        shown = {
+            f"summary/{name}.{suffix}": Shown(title, "Friction laws", f"{name}_{suffix}")
+            for suffix, title in (texts or {}).items()
+        }
+        return Rule(
+            name,
+            purpose,
+            f"summary: {name}",
+            (f"summary/{name}.nc", *shown),
+            "summaries.of_points:make",
+            (f"summaries.{name}",),
+            reads={"summaries": [f"summary/{other}.nc" for other in read]},
+            if_there=True,
+            points=lambda job: study.points,
+            params=lambda job: {"summary": name, "config": keys(study, *used)},
+            over=over,
+            shown=shown,
+            memory=memory,
+            minutes=30,
+            priority=FIRST * (name in of_paper),
+            group="summaries",
+        )
+
+    def of_models(name: str, purpose: str) -> Rule:
+        return Rule(
+            name,
+            purpose,
+            f"summary: {name}",
+            (f"summary/{name}.nc",),
+            "summaries.of_models:make",
+            (f"summaries.{name}",),
+            params=lambda job: {
+                "summary": name,
+                "model": model_config(study),
+                "grid": list(study.grid.values()),
+            },
+            memory=400,
+            minutes=30,
+            priority=FIRST * (name in of_paper),
+            group="summaries",
+        )
+
+    return [
+        of_points(
+            "mean_distance",
+            "Average the distance J between the end blocks over each run.",
+            "synchronization_threshold",
+        ),
+        of_points(
+            "bifurcation_diagram",
+            "Collect the section points of all runs for the bifurcation diagrams.",
+            memory=1000,
+        ),
+        of_points(
+            "lyapunov",
+            "Estimate the Lyapunov exponents of each run and tell its kind of motion.",
+            *("lyapunov_exponents", "synchronization_threshold", "motion"),
+        ),
+        of_points(
+            "agreement",
+            "Judge where each friction law agrees with the first one.",
+            *("synchronization_threshold", "agreement"),
+            read=("lyapunov", "attractors"),
+            texts={"csv": "table of the agreement", "txt": "agreement in words"},
+        ),
+        of_points(
+            "stick_slip",
+            "Measure the stick-slip cycles of each block in each run.",
+            *("transient", "window", "batches"),
+        ),
+        of_models(
+            "orbits",
+            "Follow the synchronized orbit in a to where it loses its stability, and the orbit that branches off "
+            "there.",
+        ),
+        of_models(
+            "equilibrium",
+            "Find uniform sliding and the eigenvalues of its perturbations.",
+        ),
+        of_points(
+            "grid",
+            "Collect the numbers of all runs over the study's parameters.",
+            *("lyapunov_exponents", "synchronization_threshold", "motion"),
+            over="several",
+        ),
+    ]
+
+
+def figures(study: Study) -> list[Rule]:
+    """Figures: one for each module of `figures` that has a caption, as PDF for print and PNG for the screen."""
+    return [_figure(study, figure) for figure in figure_descriptions()]
+
+
+def _figure(study: Study, figure: Description) -> Rule:
+    files = tuple(f"figures/{figure.file}.{suffix}" for suffix in ("pdf", "png"))
+    # A picture of the runs from one initial state has the name of the state.
+    of_states = "{initial}" in figure.file
+    words = figure.caption_of({"initial": "{initial}"})
+    return Rule(
+        f"figure_{figure.name}",
+        f"Draw {figure.subject}",
+        f"figure: {figure.title}",
+        files,
+        f"figures.{'of_runs' if figure.of_runs else 'of_summaries'}:make",
+        (f"figures.{figure.name}",),
+        reads={} if figure.of_runs else {"summaries": [f"summary/{name}.nc" for name in figure.inputs]},
+        points=study.shown_runs if figure.of_runs else None,
+        params=lambda job: {
+            "figure": figure.name,
+            "from_study": {name: getattr(study, name) for name in figure.from_study},
+        },
+        each=[{"initial": initial} for initial in study.initial] if of_states else ({},),
+        stage="figures",
+        over="a" if figure.of_runs else "any",
+        there=not figure.condition or bool(getattr(study, figure.condition)),
+        shown={files[1]: Shown(figure.title, figure.category, "figure", figure.paper or "none", words)},
+        priority=FIRST if figure.paper else 0,
+        group="figures",
+    )
+
+
+def claims(study: Study, pictures: Sequence[str]) -> list[Rule]:
+    """The verdict on each statement of the paper, from the summaries that judges read; pictures : of the study."""
+    return [
+        Rule(
+            "claims",
+            "Judge every claim of the paper from the summaries.",
+            "verdicts on the claims of the paper",
+            tuple(f"summary/claims.{suffix}" for suffix in ("json", "csv", "md")),
+            "claims.making:make",
+            reads={"summaries": [f"summary/{name}.nc" for name in READ_BY_JUDGES]},
+            if_there=True,
+            params=lambda job: {
+                "study": study.name,
+                "figures": pictures,
+                "config": keys(
+                    study,
+                    *("v", "contact", "start", "transient", "window", "initial", "motion", "laws", "chain"),
+                ),
+            },
+            stage="claims",
+            shown={"summary/claims.csv": Shown("claims of the paper", "Claims", "claims_csv", "all")},
+            memory=1000,
+            minutes=10,
+            group="summaries",
+        )
+    ]
+
+
+def report(study: Study, files: Sequence[str]) -> list[Rule]:
+    """One HTML file that opens offline, with all that the study makes; files : names of those besides points."""
+    return [
+        Rule(
+            "report",
+            "Write the report of the study, one HTML file that opens offline.",
+            f"report: results/{study.name}/report.html",
+            ("report.html",),
+            "report.page:make",
+            reads={
+                "claims": ["summary/claims.json"],
+                "summaries": [file for file in files if file.startswith("summary/") and file.endswith(".nc")],
+                "figures": [file for file in files if file.endswith(".png")],
+            },
+            if_there=True,
+            # The report shows the whole config.
+            params=lambda job: {"config": study.config, "parameters": study.points["parameters"]},
+            stage="report",
+            over="any",
+            memory=600,
+            minutes=10,
+            group="figures",
+        )
+    ]

@@ -1,0 +1,241 @@
+"""The runs of a study, the stages that need no attractors, and the list of all stages."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+
+from burridge_knopoff.attractors.settings import OF_GIVEN_STATES
+from burridge_knopoff.jobs import searches
+from burridge_knopoff.jobs.params import (
+    catalogue_keys,
+    catalogue_run,
+    keys,
+    model_config,
+    motion_config,
+    other_length_config,
+    refused_length,
+)
+from burridge_knopoff.jobs.rule import Rule, Shown
+from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
+from burridge_knopoff.running.settings import SOLVERS
+from burridge_knopoff.study.paths import STRETCH
+from burridge_knopoff.study.stretches import stretches
+from burridge_knopoff.study.study import Study, all_points, solver_points
+
+
+def _time(study: Study) -> float:
+    return study.config["transient"] + study.config["window"]
+
+
+def runs(study: Study) -> list[Rule]:
+    """Points, which the workflow makes: a job each, or one for each stretch of a grid over several parameters."""
+    file, parts = study.point_file, stretches(study)
+    return [
+        Rule(
+            "simulate",
+            "Simulate one point: one friction law from one initial state at one a, or at one point of the grid.",
+            "simulate {law} law, initial state {initial}, "
+            + ", ".join(f"{name} = {{{name}}}" for name in study.parameters),
+            (f"points/{file}",),
+            each=all_points(study),
+            stage="points",
+            over="any",
+            log=f"simulate/{file.removesuffix('.nc')}",
+            work=study.blocks * _time(study),
+        ),
+        Rule(
+            "stretch",
+            "Simulate the points of a stretch that are missing, damaged or out of date.",
+            "simulate the points of stretch {stretch}",
+            (STRETCH,),
+            each=[{"stretch": stretch} for stretch in parts],
+            stage="points",
+            over="several",
+            log="stretch/{stretch}",
+            work=study.blocks * _time(study) * max(map(len, parts.values()), default=0),
+        ),
+        Rule(
+            "simulate_solver",
+            "Simulate one point again with another solver.",
+            "simulate {law} law by {solver}, initial state {initial}, a = {a}",
+            (f"solvers/{{solver}}/{file}",),
+            each=solver_points(study),
+            stage="solvers",
+            log=f"simulate_solver/{{solver}}/{file.removesuffix('.nc')}",
+            work=study.blocks * _time(study),
+        ),
+    ]
+
+
+def solvers(study: Study) -> list[Rule]:
+    """The points at a few values of a, repeated with every other solver of each law, and their comparison."""
+    of_laws = {solver: [law for law in study.laws if solver in study.other_solvers(law)] for solver in SOLVERS}
+    return [
+        Rule(
+            "solvers",
+            "Compare independent solvers of the equations of motion.",
+            "independent solvers of the same equations",
+            ("summary/solvers.nc",),
+            "summaries.solvers:make",
+            reads={"others": f"solvers/{{solver}}/{study.point_file}"},
+            points=lambda job: {**study.points, "parameters": {"a": study.compared}},
+            params=lambda job: {
+                "others": {
+                    solver: {law: asdict(study.settings(law, solver)) for law in laws}
+                    for solver, laws in of_laws.items()
+                },
+                "step": study.config["solvers"]["step"],
+            },
+            stage="solvers",
+            group="summaries",
+        )
+    ]
+
+
+def proof(study: Study) -> list[Rule]:
+    """The synchronized orbit of the paper's chain, and where it is lost, in ball arithmetic."""
+    return [
+        Rule(
+            "proof",
+            "Prove by ball arithmetic that the synchronized orbit exists and where it loses its stability.",
+            "proof: the loss of synchrony in ball arithmetic",
+            ("summary/proof.nc", "summary/proof.txt"),
+            "summaries.proof:make",
+            params=lambda job: {"model": model_config(study, study.proved_laws)},
+            stage="proof",
+            there=bool(study.proved_laws),
+            refused=f"study {study.name}: nothing to prove: the proof is of the paper's chain of 3 blocks and its two "
+            f"laws (linearized: any v, at most {LARGEST_V:g} under a symmetric contact; nonlinear: v = "
+            f"{NONLINEAR_V:g})",
+            shown={"summary/proof.txt": Shown("what is proved, and what is assumed", "Synchronization", "proof_txt")},
+            group="summaries",
+        )
+    ]
+
+
+def catalogue(study: Study) -> list[Rule]:
+    """Catalogues of slip events: a run for each law and a, and the statistics of their events."""
+    config = study.config.get("catalogue")
+    if config is None:
+        config = {"initial": next(iter(study.initial)), "a": []}
+    state = {"name": config["initial"], **study.config["initial"][config["initial"]]}
+    return [
+        Rule(
+            "catalogue_of_run",
+            "Record the slip events of one run.",
+            "slip events, {law} law, a = {a}",
+            ("catalogues/{law}/a{a}.nc",),
+            "summaries.catalogue_of_run:make",
+            params=lambda job: {
+                "model": model_config(study, [job["law"]]),
+                "a": study.value(job["a"]),
+                "state": state,
+                "run": catalogue_run(study, job["law"]),
+                "catalogue": catalogue_keys(study),
+            },
+            each=[{"law": law, "a": a} for law in study.laws for a in study.catalogue_a],
+            stage="catalogue",
+            memory=1000,
+            minutes=240,
+            # Long runs start first.
+            priority=1,
+        ),
+        Rule(
+            "catalogue",
+            "Count the slip events by magnitude and fit the slope, and measure extents, intervals and recurrence.",
+            "statistics of slip events, all laws",
+            ("summary/catalogue.nc",),
+            "summaries.catalogue:make",
+            reads={"runs": "catalogues/{law}/a{a}.nc"},
+            params=lambda job: {
+                "laws": list(study.laws),
+                "grid": config["a"],
+                "fit": {key: config[key] for key in ("low", "high") if key in config},
+            },
+            stage="catalogue",
+            there=bool(study.catalogue_a),
+            memory=1000,
+            group="summaries",
+        ),
+    ]
+
+
+def two_blocks(study: Study) -> list[Rule]:
+    """Two blocks under each law: every study judges a statement of the paper about them."""
+    config, search = study.config["chains"], study.config["attractors"]
+    pair = config["two_blocks"]
+    return [
+        Rule(
+            "two_blocks",
+            "Compare the motion of two blocks under each friction law with that under the first law.",
+            "two blocks: each law against the first one",
+            ("summary/two_blocks.nc",),
+            "summaries.two_blocks:make",
+            params=lambda job: {
+                **keys(study, "agreement"),
+                "model": other_length_config(study),
+                "sample": {key: config[key] for key in ("seed", "position", "velocity")},
+                "two_blocks": pair,
+                "settings": keys(study, "start", "transient", "window"),
+                "search": {key: search[key] for key in OF_GIVEN_STATES},
+                # The block of the study's section may not exist here; the sum always does.
+                "motion": {key: value for key, value in motion_config(study).items() if key != "section"},
+            },
+            stage="two_blocks",
+            there=study.has_several_laws and not study.single_length_key,
+            refused=refused_length(study),
+            cores=0,
+            memory=300,
+            minutes=30,
+            # A long job that waits for nothing: started early, so that it does not run alone at the end.
+            priority=1,
+            work=pair["samples"] * len(pair["a"]) * len(study.laws) * _time(study),
+        )
+    ]
+
+
+def chains(study: Study) -> list[Rule]:
+    """Longer chains: made for the target `chains`, and as a part of the study if its config has `chains.blocks`."""
+    config = study.config["chains"]
+    sample = ("samples", "symmetric_samples", "seed", "position", "velocity")
+    return [
+        Rule(
+            "watch_chain",
+            "Find out which sampled initial states of a longer chain end in mirror synchrony.",
+            "mirror synchrony of sampled states, {blocks} blocks",
+            ("chains/blocks{blocks}.nc",),
+            "summaries.chains:make_of_length",
+            params=lambda job: {
+                "model": other_length_config(study, config["laws"]),
+                "grid": config["a"],
+                "watch": {key: config[key] for key in ("time_limit", "synchronization_distance")},
+                "sample": {**keys(study, "start"), **{key: config[key] for key in sample}},
+                "motion": keys(study, "synchronization_threshold"),
+            },
+            # Long chains take longest and start first.
+            each=[{"blocks": str(number)} for number in sorted(study.chain_lengths, reverse=True)],
+            stage="chains",
+            there=not study.single_length_key,
+            refused=refused_length(study),
+            asked="blocks" in config,
+            minutes=30,
+            priority=1,
+            work=config["samples"] * len(config["a"]) * len(config["laws"]) * config["time_limit"],
+        ),
+        Rule(
+            "chains_summary",
+            "Merge the fractions of synchronizing initial states over chain length and a.",
+            "fraction of synchronizing states over number of blocks and a",
+            ("summary/chains.nc",),
+            "summaries.chains:make",
+            reads={"parts": "chains/blocks{blocks}.nc"},
+            stage="chains",
+            there=not study.single_length_key,
+            refused=refused_length(study),
+            group="summaries",
+        ),
+    ]
+
+
+#: All of these, each after those whose files it reads.
+STAGES = (runs, *searches.STAGES, solvers, proof, catalogue, two_blocks, chains)

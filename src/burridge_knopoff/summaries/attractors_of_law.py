@@ -1,0 +1,40 @@
+"""The attractors of one law along a: on the grid, at values between, and the section returns of those on the grid."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import xarray
+
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.attractors.stored_returns import returns_of_law
+from burridge_knopoff.continuation.along_a import continue_attractors
+from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.dataset.given import Given
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.motion.settings import MotionSettings
+from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.study.model import model_of
+from burridge_knopoff.summaries import attractors, refined
+
+
+def make(given: Given, model: Mapping[str, Any], grid: Sequence[float], **config: Any) -> tuple[xarray.Dataset, ...]:
+    """Return the attractors of a law on the grid, at all values of a, and their section returns.
+
+    model, grid : what decides the model, and the values of a
+    config : initial, start, attractors, refine and motion, as in a config
+    """
+    models, start = [model_of(model, given.law, a) for a in grid], config["start"]
+    initial = [InitialState(name, **state) for name, state in config["initial"].items()]
+    settings, motion = SearchSettings(**config["attractors"]), MotionSettings(**config["motion"])
+    refine = Refine(**config["refine"])
+    kept = given.cache(
+        f"attractors {given.law}", config, model, source_fingerprint("burridge_knopoff.continuation.along_a")
+    )
+    found = continue_attractors(
+        models, settings, motion, refine, starts=initial, start=start, processes=given.cores, folder=kept
+    )
+    on_grid = attractors.one_law(found, initial, settings, motion, start)
+    between = refined.one_law(found, settings, motion, refine, start)
+    return on_grid, between, returns_of_law(models, [found.rows(k) for k in found.grid], on_grid.attrs)

@@ -1,0 +1,50 @@
+"""The branches of attractors under each law, a row each, for tables and texts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.attractors.lookup import branch_names, largest_basin_fraction
+from burridge_knopoff.motion.kind import MotionKind
+
+
+@dataclass(frozen=True)
+class BranchRow:
+    """A branch under one law.
+
+    a : the values at which it exists, ascending; of : number of values of a
+    distance : least and largest ⟨J⟩; kinds : of motion, in words
+    fraction : largest basin fraction, both sides together, and the a of it; None if no states were sampled
+    """
+
+    law: str
+    name: str
+    a: np.ndarray
+    of: int
+    distance: tuple[float, float]
+    kinds: str
+    fraction: tuple[float, float] | None
+
+
+def branch_rows(attractors: xarray.Dataset) -> Iterator[BranchRow]:
+    """Yield the branches of each law, by their numbers."""
+    a, names = attractors["a"].values, branch_names(attractors)
+    for law in attractors["law"].values:
+        one = attractors.sel(law=law)
+        branch = one["branch"].values
+        for number in np.unique(branch[branch >= 0]).tolist():
+            slots = branch == number
+            mean = one["mean_distance"].values[slots]
+            yield BranchRow(
+                str(law),
+                names[number],
+                a[slots.any(axis=1)],
+                len(a),
+                (mean.min(), mean.max()),
+                ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[slots])),
+                largest_basin_fraction(one, number) if one["sample_count"].any() else None,
+            )

@@ -1,0 +1,71 @@
+"""The maps of basins of attraction, a row each, for tables and texts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.attractors.lookup import branch_names
+
+#: What the branch of a state is called that reaches no known one; summaries have −1 for it.
+UNDETERMINED, _UNDETERMINED = "undetermined", -1
+
+
+@dataclass(frozen=True)
+class MapRow:
+    """A map of basins.
+
+    states : in all; members : {branch and side: number of the states that reach it}, the undetermined ones first
+    alike : how many undetermined states are their own mirror images, see `undetermined_alike`
+    exponent : uncertainty exponent of the boundary and its standard error, NaN if there is none
+    """
+
+    law: str
+    a: float
+    states: int
+    members: Mapping[str, int]
+    alike: int
+    exponent: tuple[float, float]
+
+    @property
+    def undetermined(self) -> int:
+        """Number of states that reach no known branch."""
+        return self.members.get(UNDETERMINED, 0)
+
+
+def map_rows(basins: xarray.Dataset) -> Iterator[MapRow]:
+    """Yield the maps of a file in their order."""
+    names = {_UNDETERMINED: UNDETERMINED, **branch_names(basins)}
+    laws = basins["law"].attrs["flag_meanings"].split()
+    for number in range(basins.sizes["map"]):
+        one = basins.isel(map=number)
+        reached = np.stack([one["branch"].values.ravel(), one["side"].values.ravel()])
+        pairs, counts = np.unique(reached, axis=1, return_counts=True)
+        yield MapRow(
+            laws[int(one["law"])],
+            one["a"].item(),
+            one["branch"].size,
+            {
+                names[branch] + {1: " (+)", -1: " (-)", 0: ""}[side]: count
+                for (branch, side), count in zip(pairs.T.tolist(), counts.tolist(), strict=True)
+            },
+            undetermined_alike(one),
+            (one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()),
+        )
+
+
+def undetermined_alike(one: xarray.Dataset) -> int:
+    """Return how many undetermined states of a map are their own mirror images: U_1(0) = U_N(0), a line of no area.
+
+    In a chain that is its own mirror image such states stay alike, and so come to no attractor where synchrony repels.
+    None is counted where all states of the map are undetermined, as this has other reasons then.
+    """
+    position, velocity = one.attrs["plane_position"], one.attrs["plane_velocity"]
+    undetermined = one["branch"].values == _UNDETERMINED
+    if undetermined.all() or (position[1:-1] != position[-2:0:-1]).any() or (velocity != velocity[::-1]).any():
+        return 0
+    alike = np.equal.outer(one["last_position"].values, one["first_position"].values)
+    return int(np.count_nonzero(undetermined[alike]))

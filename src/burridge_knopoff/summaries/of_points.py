@@ -1,0 +1,23 @@
+"""Summaries of the points of a study, each made by the module of its name."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from typing import Any
+
+import xarray
+
+from burridge_knopoff.dataset.given import Given
+from burridge_knopoff.summaries.points import Grid
+
+
+def make(given: Given, summary: str, config: Mapping[str, Any]) -> tuple[xarray.Dataset | str, ...]:
+    """Return a summary of points and of other summaries, then the `table` and the `digest` of it if its module has any.
+
+    config : its keys that the module uses
+    """
+    module = import_module(f"burridge_knopoff.summaries.{summary}")
+    dataset = module.summarize(Grid.given(given), *given.summaries("summaries"), **config)
+    texts = [getattr(module, text)(dataset) for text in ("table", "digest") if hasattr(module, text)]
+    return dataset, *texts

@@ -1,0 +1,176 @@
+"""What an edit makes out of date: which jobs have other files to make, by the sources and by each key of the config."""
+
+import pytest
+import yaml
+
+from burridge_knopoff.jobs.jobs import Jobs
+from burridge_knopoff.provenance.sources import PACKAGE, sources_of
+from burridge_knopoff.study.config import CONFIG
+from burridge_knopoff.study.load import load_study
+from tests.workflow.conftest import TINY
+
+POINTS = ("simulate", "simulate_solver")
+
+
+def jobs_of(changes):
+    """Return the jobs of the tiny study with some keys of its config changed."""
+    config = yaml.safe_load(TINY)
+    for key, value in changes.items():
+        *path, last = key.split(".")
+        section = config
+        for part in path:
+            section = section.setdefault(part, {})
+        section[last] = value
+    return Jobs(load_study(config, "tiny.yaml"))
+
+
+def told(jobs):
+    """Return {(rule, files of a job): what these must be made from}."""
+    return {
+        (rule.name, tuple(form.format(**job) for form in rule.files)): jobs.expected(rule.files[0].format(**job))
+        for rule in jobs.there.values()
+        for job in rule.each
+        if rule.asked
+    }
+
+
+BEFORE = jobs_of({})
+TOLD = told(BEFORE)
+
+
+def counts(jobs):
+    """Return {rule: number of its jobs whose files are others than before}."""
+    found = [rule for (rule, files), about in told(jobs).items() if TOLD.get((rule, files)) != about]
+    return {rule: found.count(rule) for rule in found}
+
+
+def after(*roots):
+    """Return {rule: number of its jobs} of some rules and of all that need their output."""
+    found, more = {}, {*roots}
+    while more:
+        found |= {name: len(BEFORE.there[name].each) for name in more}
+        files = {file for name in found for file in BEFORE.there[name].files}
+        more = {
+            rule.name
+            for rule in BEFORE.there.values()
+            if files & {file for read in rule.inputs.values() for file in read} or ("simulate" in found and rule.points)
+        } - {*found}
+    return found
+
+
+#: Changes of keys that make the same rules run again, besides the report.
+KEYS = [
+    ({"sampling": 4, "trajectory": 20, "trajectory_sampling": 0.1, "events": "all", "event_window": 100}, POINTS),
+    ({"transient": 120, "window": 180}, (*POINTS, "two_blocks")),
+    ({"batches": 5, "lyapunov_alignment": 50}, POINTS),
+    ({"v": 0.11}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "proof")),
+    ({"chain.coupling": 1.5}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "figure_sketch")),
+    ({"section": {"of": "block", "block": 2}}, (*POINTS, "attractors_of_law")),
+    ({"contact": "symmetric"}, (*POINTS, "attractors_of_law", "orbits", "equilibrium", "two_blocks", "proof")),
+    ({"start": "tested"}, (*POINTS, "attractors_of_law", "two_blocks")),
+    ({"step": 0.002, "basins.threads": 2, "chains.time_limit": 900}, ()),
+    (
+        {"synchronization_threshold": 1.0e-5},
+        ("mean_distance", "lyapunov", "agreement", "attractors_of_law", "two_blocks"),
+    ),
+    (
+        {"motion.zero_exponent": 1.0e-3, "motion.longest_period": 1000.0},
+        ("lyapunov", "attractors_of_law", "two_blocks"),
+    ),
+    ({"agreement.relative_tolerance": 0.2, "agreement.standard_errors": 2}, ("agreement", "two_blocks")),
+    ({"figures.a": 0.05}, ("figure_motion", "figure_distance", "figure_friction_laws")),
+    ({"figures.law": "nonlinear"}, ("figure_motion", "figure_distance", "figure_stick_slip")),
+    ({"attractors.samples": 7, "attractors.fraction_width": 0.2}, ("attractors_of_law",)),
+    ({"attractors.seed": 2, "attractors.lifetime": 900}, ("attractors_of_law", "two_blocks")),
+    ({"refine.resolution": 0.5}, ("attractors_of_law",)),
+    ({"basins.pixels": 9}, ("basin_tile",)),
+    ({"basins.pairs": 21}, ("basin_pairs",)),
+    ({"basins.first_position": [-1.4, 1.5]}, ("basin_tile", "basin_pairs")),
+    ({"phases.samples": 4, "phases.seed": 2}, ("phases_of_law",)),
+    ({"chains.seed": 2, "chains.two_blocks.samples": 3}, ("two_blocks",)),
+]
+#: Keys whose rules get more or less input as well, so that counts are not those of running them again.
+RESHAPED = [
+    # rk4 computes none.
+    (
+        "lyapunov_exponents",
+        2,
+        {"simulate": 16, "simulate_solver": 2, "lyapunov": 1},
+        ("attractors_of_law", "two_blocks"),
+    ),
+    (
+        "a",
+        [0.05, 0.06, 0.08, 0.2, 0.22],
+        {"simulate": 4, "attractors_of_law": 2, "orbits": 1, "equilibrium": 1},
+        ("two_blocks",),
+    ),
+    ("chains.blocks", [2, 3], {"watch_chain": 2, "claims": 1, "report": 1}, ("two_blocks", "simulate")),
+    ("solvers.a", [0.08], {"simulate_solver": 6, "solvers": 1}, ("simulate", "mean_distance", "attractors_of_law")),
+    ("solvers.step", 0.02, {"simulate_solver": 4, "solvers": 1}, ("simulate", "mean_distance", "attractors_of_law")),
+    ("basins.tiles", 3, {"basin_tile": 9, "basins": 1}, ("basin_pairs", "attractors_of_law", "simulate")),
+    ("basins.a", {"nonlinear": []}, {"basins": 1}, ("basin_tile", "basin_pairs", "attractors_of_law", "simulate")),
+    (
+        "laws",
+        {"linearized": {}, "nonlinear": {}, "exponential": {}},
+        {"simulate": 8, "simulate_solver": 2, "attractors_of_law": 1},
+        (),
+    ),
+    (
+        "a_digits",
+        5,
+        {"simulate": 16, "simulate_solver": 6},
+        ("attractors_of_law", "orbits", "equilibrium", "two_blocks"),
+    ),
+]
+
+
+def test_every_key_is_there():
+    """A key that is added to the config needs a row here, or a test of its own."""
+    known = {key.split(".")[0] for key in (*(key for keys, _ in KEYS for key in keys), *(key for key, *_ in RESHAPED))}
+    elsewhere = {"study", "initial", "solver", "without", "grid", "catalogue"}
+    assert known | elsewhere == set(CONFIG.fields)
+
+
+@pytest.mark.parametrize(("changes", "roots"), KEYS, ids=["+".join(keys) for keys, _ in KEYS])
+def test_a_key_remakes_only_what_uses_it(changes, roots):
+    assert counts(jobs_of(changes)) == after(*roots, "report")
+
+
+@pytest.mark.parametrize(("key", "value", "expected", "spared"), RESHAPED, ids=[key for key, *_ in RESHAPED])
+def test_a_key_that_adds_or_takes_away(key, value, expected, spared):
+    found = counts(jobs_of({key: value}))
+    assert {name: found.get(name) for name in expected} == expected
+    assert not set(spared) & set(found)
+
+
+def test_a_solver_remakes_its_law_alone():
+    found = counts(jobs_of({"solver": {"nonlinear": "rk4"}}))
+    assert found["simulate"] == 8
+
+
+@pytest.mark.parametrize(
+    ("name", "roots"),
+    [
+        ("kernel/series.h", {*POINTS, "attractors_of_law", "basin_tile", "phases_of_law", "orbits", "two_blocks"}),
+        ("running/runner.py", {*POINTS, "attractors_of_law", "basin_pairs", "bifurcations_of_law"}),
+        ("dataset/point.py", {*POINTS, "mean_distance"}),
+        ("attractors/search.py", {"attractors_of_law", "two_blocks"}),
+        ("motion/chain_synchronization.py", {"watch_chain", "chains_summary", "figure_chains"}),
+        ("basins/plane.py", {"basin_tile", "basin_pairs", "basins"}),
+        ("basins/initial_phases.py", {"phases_of_law", "phases"}),
+        ("summaries/mean_distance.py", {"mean_distance"}),
+        ("summaries/orbits.py", {"orbits"}),
+        ("figures/lyapunov.py", {"figure_lyapunov", "report"}),
+        ("figures/style.py", {"figure_motion", "figure_basins"}),
+        ("claims/history.py", {"claims"}),
+        ("claims/claims.yaml", {"claims", "report"}),
+        ("report/page.py", {"report"}),
+        ("cli/simulate.py", set()),
+        ("provenance/files.py", set()),
+        ("jobs/run.py", set()),
+    ],
+)
+def test_a_source_belongs_to_what_depends_on_it(name, roots):
+    """And a single-purpose module to nothing else."""
+    of = {rule.name for rule in BEFORE.there.values() if PACKAGE / name in sources_of(*rule.sources)}
+    assert roots <= of if len(of) > 3 else roots == of

@@ -1,0 +1,167 @@
+"""The rules of studies: which a study has, what they read and make, and that their functions are there."""
+
+import inspect
+from importlib import import_module
+
+import pytest
+
+from burridge_knopoff.jobs import stages
+from burridge_knopoff.jobs.jobs import Jobs
+from burridge_knopoff.jobs.rule import Rule
+from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.stages import STAGES
+from tests.refused import refused
+
+STATES = {"minus": {}, "plus": {}}
+CONFIG = {"study": "some", "a": [0.05, 0.08], "initial": STATES}
+
+
+def jobs_of(**config):
+    return Jobs(load_study({**CONFIG, **config}, "some.yaml"))
+
+
+ALL = jobs_of(catalogue={}, chains={"blocks": [2, 3]})
+PLANE = {"study": "plane", "grid": {"a": [0.05], "v": [0.1, 0.2]}, "initial": STATES}
+
+
+@pytest.mark.parametrize(
+    ("config", "missing"),
+    [
+        ({}, {"catalogue"}),
+        ({"catalogue": {}}, set()),
+        ({"without": ["solvers", "claims"]}, {"solvers", "claims", "catalogue"}),
+        ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases", "catalogue"}),
+        ({"laws": {"linearized": {}}}, {"two_blocks", "catalogue"}),
+        ({"a": [0.31]}, {"basins", "phases", "catalogue"}),
+        ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof", "catalogue"}),
+        ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"two_blocks", "proof", "phases", "catalogue"}),
+    ],
+)
+def test_the_stages_of_a_study(config, missing):
+    there = jobs_of(**config).there
+    assert {name for name in STAGES if name not in there} == missing
+
+
+def test_what_is_left_out_has_no_values_of_a():
+    """So that nobody who looks at the section alone takes it for wanted."""
+    study = jobs_of(without=["attractors", "solvers"]).study
+    assert (study.basin_maps, study.config["phases"]["a"], study.config["solvers"]["a"]) == ([], [], [])
+    assert study.left_out == ("attractors", "bifurcations", "basins", "phases", "solvers")
+
+
+def test_stages_that_are_left_out_take_with_them_what_needs_their_results():
+    """What `study.stages` says for configs is what the rules say."""
+    for stage in STAGES:
+        gone = {rule.stage for rule in ALL.there.values()} - {
+            rule.stage for rule in jobs_of(catalogue={}, without=[stage]).there.values()
+        }
+        assert gone - {"chains"} == {stage, *(other for other, needed in STAGES.items() if needed == stage)}
+
+
+def test_figures_of_a_study_without_attractors():
+    there = jobs_of(without=["attractors"]).there
+    assert {"figure_mean_distance", "figure_bifurcation_diagram", "figure_distance"} <= there.keys()
+    assert not {"figure_bifurcations", "figure_branches_reached", "figure_bifurcation_diagram_refined"} & there.keys()
+
+
+def test_longer_chains_are_made_by_name_or_by_the_config():
+    files = {"summary/chains.nc", "figures/chains.pdf", "figures/chains.png", "chains/blocks2.nc"}
+    by_name, by_config = jobs_of(), jobs_of(chains={"blocks": [2, 3]})
+    assert files <= by_name.all_files().keys()
+    assert not files & {*by_name.files()}
+    assert files <= {*by_config.files()}
+    for jobs, is_read in ((by_name, False), (by_config, True)):
+        read = jobs.inputs(jobs.there["report"], {})
+        assert ("summary/chains.nc" in read["summaries"], "figures/chains.png" in read["figures"]) == (is_read, is_read)
+    assert len(by_name.there["watch_chain"].each) == 9
+    refused = jobs_of(chain={"mass": [1, 2, 1]})
+    assert not files & refused.all_files().keys()
+    assert "expected one number for chains of another length" in refused.defined["watch_chain"].refused
+
+
+def test_several_parameters():
+    jobs = Jobs(load_study(PLANE, "plane.yaml"))
+    assert jobs.files("summary/") == ["summary/grid.nc"]
+    assert {rule.stage for rule in jobs.there.values()} == {"points", "summary", "figures", "report"}
+    assert jobs.point_files(jobs.there["grid"], {}) == ["stretches/0000.done"]
+    assert "stretch" not in ALL.there
+
+
+def test_every_function_takes_what_the_rule_gives():
+    """Also of rules that load a module by its name."""
+    jobs = [*ALL.there.values(), Jobs(load_study(PLANE, "plane.yaml")).there["grid"]]
+    made = [rule for rule in jobs if rule.make]
+    assert len(made) > 45
+    for rule in made:
+        room, _, function = rule.make.partition(":")
+        make = getattr(import_module(f"burridge_knopoff.{room}"), function)
+        inspect.signature(make).bind("given", **rule.params(rule.each[0]))
+        for module in rule.modules:
+            import_module(f"burridge_knopoff.{module}")
+
+
+def test_files_have_one_rule_and_jobs_wait_for_their_inputs_alone():
+    made = ALL.all_files()
+    assert len(made) == sum(len(rule.files) * len(rule.each) for rule in ALL.there.values() if rule.make)
+    rule = ALL.there["basin_tile"]
+    job = {"law": "nonlinear", "a": "0.0800", "tile": "0"}
+    assert ALL.inputs(rule, job) == {"attractors": ["summary/attractors.nc"], "returns": ["returns/nonlinear.nc"]}
+    assert len(ALL.inputs(ALL.there["attractors"], {})["grid"]) == 2
+    # The longest jobs of a study are about no statement of the paper.
+    assert not {"summary/basins.nc", "summary/catalogue.nc"} & {*ALL.inputs(ALL.there["claims"], {})["summaries"]}
+    jobs = jobs_of(solvers={"a": [0.08]})
+    points = jobs.point_files(jobs.there["solvers"], {})
+    assert points == [f"points/{law}/{state}/a0.0800.nc" for law in ("linearized", "nonlinear") for state in STATES]
+
+
+@pytest.mark.parametrize("name", sorted(name for name, (rule, _) in ALL.all_files().items() if rule.stage != "figures"))
+def test_a_file_is_known_by_its_name(name):
+    rule, job = ALL.all_files()[name]
+    about = ALL.expected(name)
+    assert about == ALL.abouts(rule, job)[name]
+    assert (about["file"], about["make"]) == (name, rule.make)
+
+
+def test_points_are_known_by_their_commands():
+    about = ALL.expected("points/linearized/minus/a0.0500.nc")
+    assert about["command"] == ALL.study.command("linearized", "minus", "0.0500")
+    again = ALL.expected("solvers/map/linearized/minus/a0.0800.nc")
+    assert "--solver map" in again["command"]
+    for name in ("points/linearized/minus/a0.0600.nc", "points/other/minus/a0.0500.nc", "summary/mine.nc"):
+        assert ALL.expected(name) is None
+
+
+#: {change of a config: rules whose files it changes}; all after them change too.
+CHANGES = [
+    ({"basins": {"pixels": 8}}, {"basin_tile", "basins"}),
+    ({"basins": {"pairs": 8}}, {"basin_pairs", "basins"}),
+    ({"basins": {"threads": 3}}, set()),
+    ({"phases": {"samples": 8}}, {"phases_of_law"}),
+    ({"agreement": {"standard_errors": 2}}, {"agreement", "two_blocks"}),
+    ({"catalogue": {"low": -1.0}}, {"catalogue"}),
+    ({"catalogue": {"window": 100.0}}, {"catalogue_of_run"}),
+    ({"chains": {"blocks": [2, 3], "time_limit": 500}}, {"watch_chain"}),
+    ({"solvers": {"step": 0.002}}, {"solvers"}),
+]
+
+
+@pytest.mark.parametrize(("change", "rules"), CHANGES)
+def test_a_key_changes_what_depends_on_it_and_nothing_else(change, rules):
+    other = jobs_of(**{"catalogue": {}, "chains": {"blocks": [2, 3]}, **change})
+    changed = {rule.name for name, (rule, _) in ALL.all_files().items() if ALL.expected(name) != other.expected(name)}
+    after, more = set(), set(rules)
+    while more:
+        after |= more
+        files = {file for name in after for file in ALL.rules[name].files}
+        more = {rule.name for rule in ALL.there.values() for read in rule.inputs.values() if files & {*read}} - after
+    assert changed == (after | {"report"})
+
+
+def test_a_rule_that_reads_what_nothing_makes_is_refused(monkeypatch):
+    """It would be left out of every study in silence."""
+    wrong = Rule(
+        "mine", "Make it.", "mine", ("summary/mine.nc",), "summaries.mine:make", reads={"x": "summary/typo.nc"}
+    )
+    monkeypatch.setattr(stages, "STAGES", (*stages.STAGES, lambda study: [wrong]))
+    with refused("rule mine: reads summary/typo.nc, which no rule declared before it makes"):
+        jobs_of()
