@@ -6,7 +6,6 @@ import shlex
 import shutil
 from functools import reduce
 from operator import getitem
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,7 +20,7 @@ from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.provenance.seal import BadFile, read_sealed, write_sealed, write_sealed_text
+from burridge_knopoff.provenance.seal import BadFile, write_sealed_text
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.study.load import load_study
@@ -29,6 +28,7 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.yaml_file import read_yaml
 from burridge_knopoff.summaries import points
+from tests.seals import resealed
 from tests.small_study import run_study
 
 CONFIG = """
@@ -217,12 +217,6 @@ def test_what_a_file_was_made_from_follows_from_the_config(results, capsys):
             read(results / names[1])
 
 
-def resealed(path, **changes):
-    """Let a file say something else of itself."""
-    content, about, status = read_sealed(path)
-    write_sealed(path, lambda name: Path(name).write_bytes(content), {**about, **changes}, status)
-
-
 def test_files_that_other_sources_made_are_opened_and_not_those_of_another_config(results):
     """Also if sources made the inputs, too, and if another version described files by less."""
     name = "summary/attractors.nc"
@@ -234,9 +228,7 @@ def test_files_that_other_sources_made_are_opened_and_not_those_of_another_confi
     assert open_result(results / name).data.sizes
     assert "attractors" in open_study(results)["summary"]
     assert ("stale", name) in found(results)
-    content, own, _ = read_sealed(results / name)
-    del own["attractors"]
-    write_sealed(results / name, lambda name: Path(name).write_bytes(content), own)
+    resealed(results / name, attractors=None)
     assert open_result(results / name).data.sizes
     resealed(results / name, inputs={key: value.replace(config, 16 * "0") for key, value in others.items()})
     with pytest.raises(BadFile, match=rf"^{results / name}: was made from another attractors/linearized.nc"):

@@ -13,7 +13,7 @@ from burridge_knopoff.study.yaml_file import read_yaml
 
 def test_the_page_names_files_of_the_default_study(repository):
     study = load_study(read_yaml(repository / "config/paper.yaml"), "paper.yaml")
-    known = {*Jobs(study).all_files(), NAME, f"points/{study.point_file.replace('{a}', '<value>')}"}
+    known = {*Jobs(study).all_files, NAME, f"points/{study.point_file.replace('{a}', '<value>')}"}
     text = (repository / "results/README.md").read_text(encoding="utf-8")
     named = re.findall(r"`((?:summary|figures|points)/\S+|\w+\.(?:html|json))`", text)
     assert len(named) > 10

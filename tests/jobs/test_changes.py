@@ -12,8 +12,8 @@ from tests.workflow.conftest import TINY
 POINTS = ("simulate", "simulate_solver")
 
 
-def jobs_of(changes):
-    """Return the jobs of the tiny study with some keys of its config changed."""
+def changed_config(changes):
+    """Return the config of the tiny study with some keys changed."""
     config = yaml.safe_load(TINY)
     for key, value in changes.items():
         *path, last = key.split(".")
@@ -21,7 +21,12 @@ def jobs_of(changes):
         for part in path:
             section = section.setdefault(part, {})
         section[last] = value
-    return Jobs(load_study(config, "tiny.yaml"))
+    return config
+
+
+def jobs_of(changes):
+    """Return the jobs of the tiny study with some keys of its config changed."""
+    return Jobs(load_study(changed_config(changes), "tiny.yaml"))
 
 
 def told(jobs):

@@ -67,7 +67,7 @@ def test_figures_of_a_study_without_attractors():
 def test_longer_chains_are_made_by_name_or_by_the_config():
     files = {"summary/chains.nc", "figures/chains.pdf", "figures/chains.png", "chains/blocks2.nc"}
     by_name, by_config = jobs_of(), jobs_of(chains={"blocks": [2, 3]})
-    assert files <= by_name.all_files().keys()
+    assert files <= by_name.all_files.keys()
     assert not files & {*by_name.files()}
     assert files <= {*by_config.files()}
     for jobs, is_read in ((by_name, False), (by_config, True)):
@@ -75,7 +75,7 @@ def test_longer_chains_are_made_by_name_or_by_the_config():
         assert ("summary/chains.nc" in read["summaries"], "figures/chains.png" in read["figures"]) == (is_read, is_read)
     assert len(by_name.there["watch_chain"].each) == 9
     refused = jobs_of(chain={"mass": [1, 2, 1]})
-    assert not files & refused.all_files().keys()
+    assert not files & refused.all_files.keys()
     assert "expected one number for chains of another length" in refused.defined["watch_chain"].refused
 
 
@@ -101,7 +101,7 @@ def test_every_function_takes_what_the_rule_gives():
 
 
 def test_files_have_one_rule_and_jobs_wait_for_their_inputs_alone():
-    made = ALL.all_files()
+    made = ALL.all_files
     assert len(made) == sum(len(rule.files) * len(rule.each) for rule in ALL.there.values() if rule.make)
     rule = ALL.there["basin_tile"]
     job = {"law": "nonlinear", "a": "0.0800", "tile": "0"}
@@ -114,9 +114,9 @@ def test_files_have_one_rule_and_jobs_wait_for_their_inputs_alone():
     assert points == [f"points/{law}/{state}/a0.0800.nc" for law in ("linearized", "nonlinear") for state in STATES]
 
 
-@pytest.mark.parametrize("name", sorted(name for name, (rule, _) in ALL.all_files().items() if rule.stage != "figures"))
+@pytest.mark.parametrize("name", sorted(name for name, (rule, _) in ALL.all_files.items() if rule.stage != "figures"))
 def test_a_file_is_known_by_its_name(name):
-    rule, job = ALL.all_files()[name]
+    rule, job = ALL.all_files[name]
     about = ALL.expected(name)
     assert about == ALL.abouts(rule, job)[name]
     assert (about["file"], about["make"]) == (name, rule.make)
@@ -148,7 +148,7 @@ CHANGES = [
 @pytest.mark.parametrize(("change", "rules"), CHANGES)
 def test_a_key_changes_what_depends_on_it_and_nothing_else(change, rules):
     other = jobs_of(**{"catalogue": {}, "chains": {"blocks": [2, 3]}, **change})
-    changed = {rule.name for name, (rule, _) in ALL.all_files().items() if ALL.expected(name) != other.expected(name)}
+    changed = {rule.name for name, (rule, _) in ALL.all_files.items() if ALL.expected(name) != other.expected(name)}
     after, more = set(), set(rules)
     while more:
         after |= more

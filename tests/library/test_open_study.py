@@ -3,7 +3,6 @@
 import shutil
 import subprocess
 import sys
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,8 +10,8 @@ import xarray
 
 from burridge_knopoff import open_study
 from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.provenance.seal import read_sealed, write_sealed
 from burridge_knopoff.show.result import open_result
+from tests.seals import resealed
 from tests.small_study import run_study
 
 CONFIG = {"study": "few", "a": [0.05, 0.08, 0.22], "initial": {"minus": {}, "plus": {}}}
@@ -34,13 +33,6 @@ def results(tmp_path_factory):
     folder = tmp_path_factory.mktemp("results") / "few"
     make_study(folder)
     return folder
-
-
-def resealed(path, **changes):
-    """Write a file again as one that says something else of itself."""
-    content, about, status = read_sealed(path)
-    about = {key: value for key, value in {**about, **changes}.items() if value is not None}
-    write_sealed(path, lambda name: Path(name).write_bytes(content), about, status)
 
 
 def test_nodes_are_the_files(results):

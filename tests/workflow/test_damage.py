@@ -15,11 +15,12 @@ from burridge_knopoff import open_study, simulate
 from burridge_knopoff.check.study import check_study
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary
-from burridge_knopoff.provenance.seal import BadFile, read_sealed, write_sealed
+from burridge_knopoff.provenance.seal import BadFile, read_sealed
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.summaries import agreement, bifurcation_diagram, lyapunov, mean_distance, solvers, stick_slip
 from burridge_knopoff.summaries.points import Grid, open_point
+from tests.seals import resealed
 from tests.workflow.conftest import TINY, copied
 from tests.workflow.faults import check_end, failures, remedies
 from tests.workflow.snakemake import run_snakemake
@@ -43,12 +44,6 @@ def noise_inside(content: bytes) -> bytes:
     """Return the content with 64 bytes in the middle changed: HDF5 reads it without an error."""
     middle = len(content) // 2
     return content[:middle] + noise(64) + content[middle + 64 :]
-
-
-def resealed(path: Path, **changes) -> None:
-    """Let a file be one that something else has made and sealed."""
-    content, about, status = read_sealed(path)
-    write_sealed(path, lambda name: Path(name).write_bytes(content), {**about, **changes}, status)
 
 
 def other_version(content: bytes) -> bytes:

@@ -69,7 +69,7 @@ def test_what_rules_make_is_what_is_checked(study):
     paths = set(re.findall(r"^results/tiny/(\S+)\t", made, re.MULTILINE))
     of_points = {path for path in paths if path.startswith(("points/", "solvers/"))}
     assert len(of_points) == 22
-    assert paths - of_points == Jobs(load_study(read_yaml(study.config), "study.yaml")).all_files().keys()
+    assert paths - of_points == Jobs(load_study(read_yaml(study.config), "study.yaml")).all_files.keys()
 
 
 def test_verdicts_wait_for_what_judges_read(study):

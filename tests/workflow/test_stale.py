@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 import yaml
 
-from tests.jobs.test_changes import counts, jobs_of
+from tests.jobs.test_changes import changed_config, counts, jobs_of
 from tests.workflow.conftest import REPOSITORY, TINY, Study, copied
 from tests.workflow.test_runs import jobs
 
@@ -130,14 +130,7 @@ def edited(finished, tmp_path_factory):
 
 def changed(edited, changes):
     """Return the study with some keys of its config changed."""
-    config = yaml.safe_load(TINY)
-    for key, value in changes.items():
-        *path, last = key.split(".")
-        section = config
-        for part in path:
-            section = section.setdefault(part, {})
-        section[last] = value
-    edited.config.write_text(yaml.safe_dump(config))
+    edited.config.write_text(yaml.safe_dump(changed_config(changes)))
     return edited
 
 

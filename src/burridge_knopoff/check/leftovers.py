@@ -40,7 +40,7 @@ def unmade(results: Path, jobs: Jobs) -> dict[str, Path]:
 
     A file without a log was not requested yet, or waits for other missing files.
     """
-    logs = {name: results / log_of(*made) for name, made in jobs.all_files().items()}
+    logs = {name: results / log_of(*made) for name, made in jobs.all_files.items()}
     return {name: log for name, log in logs.items() if log.exists() and not (results / name).exists()}
 
 
@@ -51,10 +51,9 @@ def log_of(rule: Rule, job: Wildcards) -> str:
 
 def run_files(jobs: Jobs) -> Iterator[tuple[str, Wildcards, str]]:
     """Yield the point file of each run, its wildcards, and its log."""
-    for name in ("simulate", "simulate_solver"):
-        if rule := jobs.there.get(name):
-            for job in rule.each:
-                yield rule.files[0].format(**job), job, log_of(rule, job)
+    for rule in jobs.runs():
+        for job in rule.each:
+            yield rule.files[0].format(**job), job, log_of(rule, job)
 
 
 def delete(results: Path, paths: list[Path]) -> None:

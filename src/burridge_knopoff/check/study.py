@@ -109,7 +109,7 @@ def check_study(results: str | Path) -> Check:
         files = counted(len(left), "file")
         notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
     others = {path for path in results.rglob("*.nc") if not path.name.startswith(".")} - points.keys() - set(left)
-    named = {results / name for name in jobs.all_files()}
+    named = {results / name for name in jobs.all_files}
     missing = unmade(results, jobs)
     rest = [*(path.relative_to(results).as_posix() for path in named if path.is_file()), *missing]
     found = [

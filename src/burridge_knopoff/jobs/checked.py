@@ -46,7 +46,7 @@ def damaged(jobs: Jobs, results: Path) -> list[tuple[Path, str]]:
     With the reason of each, in words.
     """
     found = []
-    for name in jobs.all_files():
+    for name in jobs.all_files:
         path = results / name
         if path.suffix != ".nc" and path.is_file():
             try:
@@ -74,4 +74,4 @@ def check_result(path: Path, *, any_sources: bool = True) -> Collection[str]:
         return ()
     results = folder if path.is_absolute() else Path(os.path.relpath(folder))
     check_file(jobs, results, path.absolute().relative_to(folder).as_posix(), any_sources=any_sources)
-    return jobs.all_files()
+    return jobs.all_files

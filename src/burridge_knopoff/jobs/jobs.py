@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import cached_property
 from itertools import product
 from typing import Any
 
@@ -86,6 +87,10 @@ class Jobs:
         """Return the rules of the files that the target `all` makes, besides runs."""
         return [rule for rule in self.there.values() if rule.asked and rule.make]
 
+    def runs(self) -> list[Rule]:
+        """Return the rules of the point files, whose wildcards are arguments of `Study.command`."""
+        return [self.there[name] for name in ("simulate", "simulate_solver") if name in self.there]
+
     def stage_of(self, name: str) -> str:
         """Return the stage of a rule, whose name a workflow that imports this one has put a word before."""
         known = [own for own in self.rules if f"_{name}".endswith(f"_{own}")]
@@ -99,8 +104,9 @@ class Jobs:
         """Return the rules of the figures of the paper."""
         return [rule for rule in self.asked() if rule.stage == "figures" and rule.priority]
 
+    @cached_property
     def all_files(self) -> dict[str, tuple[Rule, Wildcards]]:
-        """Return {name: its job} of all files of the study besides runs, also of those that are made by name only."""
+        """{name: its job} of all files of the study besides runs, also of those that are made by name only."""
         return {
             form.format(**job): (rule, job)
             for rule in self.there.values()
@@ -165,11 +171,12 @@ class Jobs:
 
     def expected(self, name: str) -> dict[str, Any] | None:
         """Return what a file must be made from, by its name in the results; None if the study has no such file."""
-        for rule in self.there.values():
-            for form in rule.files:
-                found = re.fullmatch(self.pattern(form), name)
-                if found and (job := found.groupdict()) in list(rule.each):
-                    return self._about(rule, job, name) if rule.make else point_about(self.study.command(**job))
+        if name in self.all_files:
+            return self._about(*self.all_files[name], name)
+        for rule in self.runs():
+            found = re.fullmatch(self.pattern(rule.files[0]), name)
+            if found and (job := found.groupdict()) in list(rule.each):
+                return point_about(self.study.command(**job))
         return None
 
     def pattern(self, form: str) -> str:

@@ -77,7 +77,7 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
             axes(law=study.laws, initial=study.initial, **values),
         )
     jobs = Jobs(study)
-    files = jobs.all_files()
+    files = jobs.all_files
     for path in sorted(results.glob("summary/[!.]*.nc")):
         if (name := f"summary/{path.name}") in files:
             check_file(jobs, results, name, any_sources=True)

@@ -145,9 +145,9 @@ def check_seal(path: str | Path, about: Mapping[str, Any] | None = None, *, any_
     """
     found, status = read_seal(path)
     if about is not None:
-        expected = {**about, "sources": found.get("sources")} if any_sources else about
-        if key := first_difference(found, expected):
-            raise BadFile(path, told_difference(key, found, expected))
+        one, other = (of_config(found), of_config(about)) if any_sources else (found, about)
+        if key := first_difference(one, other):
+            raise BadFile(path, told_difference(key, one, other))
     return status
 
 

@@ -1,0 +1,15 @@
+"""Files that say something else of themselves than what has made them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from burridge_knopoff.provenance.seal import read_sealed, write_sealed
+
+
+def resealed(path: Path, **changes: Any) -> None:
+    """Let a file be one that something else has made and sealed; None takes a key away."""
+    content, about, status = read_sealed(path)
+    about = {key: value for key, value in {**about, **changes}.items() if value is not None}
+    write_sealed(path, lambda name: Path(name).write_bytes(content), about, status)
