@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.lifetime import Lifetime
+from burridge_knopoff.dataset.columns import Column, filled
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
@@ -32,10 +34,42 @@ class Row:
     side: int
 
 
-NOTHING = {"comment": "-1 where there is none or it is undetermined"}
+@dataclass(frozen=True, eq=False)
+class Slot:
+    """A row with its model; lasting : mean lifetime that chaos has to exceed, or its kind is transient chaos."""
 
-# What is 0, not −1, in an empty slot.
-_COUNTS = ("side", "initial_side", "section_period", "basin_count", "sample_count", "undetermined_count", "in_grid")
+    row: Row
+    model: Model
+    lasting: float
+
+    @property
+    def kind(self) -> int:
+        """The kind of motion, of chaos also by its lifetime."""
+        life = self.row.lifetime
+        lasts = life is None or life.lasts(self.lasting)
+        return self.row.attractor.motion.kind if lasts else MotionKind.TRANSIENT_CHAOS
+
+    @property
+    def position(self) -> np.ndarray:
+        """Positions of one state, relative to the driver, shape (N,)."""
+        return self.row.attractor.motion.state().position + self.model.sliding_offset
+
+    @property
+    def velocity(self) -> np.ndarray:
+        """Velocities of that state, shape (N,)."""
+        return self.row.attractor.motion.state().velocity
+
+
+NOTHING = {"comment": "-1 where there is none or it is undetermined"}
+_SYMMETRY = flag("i1", {-1: "none", **{int(item): item.name.lower() for item in Symmetry}})
+_SLOW = flag("i1", {-1: "none", 0: "no", 1: "yes"})
+_SIDE = "side of the branch: 1 and -1 for mirror images of each other, 0 for its own mirror image"
+_POINTS = "upward section points after which the state of all blocks repeats, 0 if it does not"
+_LIFE = "mean lifetime of chaos, inf if none of an ensemble ended; NaN for other motion"
+_RETURNS = "successive returns within the radius after which a trajectory is captured"
+_PATIENCE = "time by which a captured trajectory may still come to a closed orbit in the midst; 0 without one"
+_POSITION = "positions of one state on the attractor, at a stop of the block nearest to an end that stops often"
+_DRIVER = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
 #: What a branch is called, over all numbers of branches of a file.
 NAMES = {
@@ -46,80 +80,49 @@ NAMES = {
 }
 
 
-def slot_variables(place: str) -> dict[str, Variable]:
+def slot_variables(place: str) -> dict[str, Column]:
     """Return the variables of a slot, over (place, attractor), `place` being the dimension of a."""
-    slot = (place, "attractor")
-    described = {
-        "branch": ("i2", "branch of attractors along a; 0 is the synchronized one", NOTHING),
-        "side": ("i1", "side of the branch: 1 and -1 for mirror images of each other, 0 for its own mirror image", {}),
-        "symmetry": (
-            "i1",
-            "mirror symmetry of the attractor",
-            flag("i1", {-1: "none", **{int(item): item.name.lower() for item in Symmetry}}),
-        ),
-        "mean_distance": ("f8", "time average <J> of the phase-space distance between the end blocks", {}),
-        "mean_distance_error": ("f8", "standard error of <J> from batch means", {}),
-        "kind": ("i1", "kind of motion", flag("i1", MotionKind)),
-        "section_period": (
-            "i2",
-            "upward section points after which the state of all blocks repeats, 0 if it does not",
-            {},
-        ),
-        "period": ("f8", *PERIOD),
-        "lifetime": ("f8", "mean lifetime of chaos, inf if none of an ensemble ended; NaN for other motion", {}),
-        "lifetime_low": ("f8", "lower end of the 95 % confidence interval of the lifetime", {}),
-        "lifetime_high": ("f8", "upper end of the 95 % confidence interval of the lifetime", {}),
-        "radius": ("f8", "distance from its returns within which trajectories are captured", {}),
-        "close_returns": ("i4", "successive returns within the radius after which a trajectory is captured", {}),
-        "patience": (
-            "f8",
-            "time by which a captured trajectory may still come to a closed orbit in the midst; 0 without one",
-            {},
-        ),
-        "slow": (
-            "i1",
-            "whether motion on the attractor is too slow to settle",
-            flag("i1", {-1: "none", 0: "no", 1: "yes"}),
-        ),
-    }
-    along: dict[str, tuple[str, str, dict[str, Any]]] = {
-        "stop_rate": ("block", "stops of a block in a unit of time", {}),
-        "lyapunov_exponent": ("exponent", "Lyapunov exponents, the largest first", {}),
-        "position": (
-            "block",
-            "positions of one state on the attractor, at a stop of the block nearest to an end that stops often",
-            {"comment": "relative to the driver: U - v*tau, U the position of the paper"},
-        ),
-        "velocity": ("block", "velocities U' of that state", {}),
-    }
+
+    def column(path: str, dtype: str, text: str, more: Mapping[str, Any] | None = None, *last: str) -> Column:
+        return Column((place, "attractor", *last), dtype, text, more or {}, value=attrgetter(path))
+
+    def life(text: str, value: Callable[[Lifetime], float]) -> Column:
+        return replace(
+            column("row.lifetime", "f8", text), value=lambda one: one.row.lifetime and value(one.row.lifetime)
+        )
+
+    of = "row.attractor"
+    mean = "time average <J> of the phase-space distance between the end blocks"
     return {
-        **{name: Variable(slot, *item) for name, item in described.items()},
-        **{name: Variable((*slot, last), "f8", text, more) for name, (last, text, more) in along.items()},
+        "branch": column("row.branch", "i2", "branch of attractors along a; 0 is the synchronized one", NOTHING),
+        "side": replace(column("row.side", "i1", _SIDE), nothing=0),
+        "symmetry": column(f"{of}.symmetry", "i1", "mirror symmetry of the attractor", _SYMMETRY),
+        "mean_distance": column(f"{of}.motion.mean_distance", "f8", mean),
+        "mean_distance_error": column(
+            f"{of}.motion.mean_distance_error", "f8", "standard error of <J> from batch means"
+        ),
+        "kind": column("kind", "i1", "kind of motion", flag("i1", MotionKind)),
+        "section_period": replace(column(f"{of}.motion.section_period", "i2", _POINTS), nothing=0),
+        "period": column(f"{of}.motion.period", "f8", *PERIOD),
+        "lifetime": life(_LIFE, lambda one: one.mean),
+        "lifetime_low": life("lower end of the 95 % confidence interval of the lifetime", lambda one: one.interval[0]),
+        "lifetime_high": life("upper end of the 95 % confidence interval of the lifetime", lambda one: one.interval[1]),
+        "radius": column(f"{of}.radius", "f8", "distance from its returns within which trajectories are captured"),
+        "close_returns": column(f"{of}.close_returns", "i4", _RETURNS),
+        "patience": column(f"{of}.patience", "f8", _PATIENCE),
+        "slow": column(f"{of}.slow", "i1", "whether motion on the attractor is too slow to settle", _SLOW),
+        "stop_rate": column(f"{of}.motion.stop_rate", "f8", "stops of a block in a unit of time", None, "block"),
+        "lyapunov_exponent": column(
+            f"{of}.motion.exponent", "f8", "Lyapunov exponents, the largest first", None, "exponent"
+        ),
+        "position": column("position", "f8", _POSITION, _DRIVER, "block"),
+        "velocity": column("velocity", "f8", "velocities U' of that state", None, "block"),
     }
 
 
 def slot_coordinates(blocks: int) -> dict[str, Any]:
     """Return the coordinates that slots have besides a."""
     return {"block": ("block", np.arange(1, blocks + 1, dtype="i4"), {"long_name": "block number", "units": "1"})}
-
-
-def missing(name: str, item: Variable) -> Any:
-    """Return what stands in an empty slot of a variable."""
-    if item.dtype == "f8":
-        return np.nan
-    return 0 if name in _COUNTS else -1
-
-
-def empty(variables: Mapping[str, Variable], shape: Mapping[str, int], *beginnings: str) -> dict[str, np.ndarray]:
-    """Return an array of missing values for each variable whose dimensions are given.
-
-    beginnings : of the names that are wanted; none for all
-    """
-    return {
-        name: np.full([shape[key] for key in item.dimensions], missing(name, item), dtype=item.dtype)
-        for name, item in variables.items()
-        if all(key in shape for key in item.dimensions) and (not beginnings or name.startswith(beginnings))
-    }
 
 
 def slot_values(
@@ -136,25 +139,12 @@ def slot_values(
         "block": models[0].blocks,
         "exponent": EXPONENTS,
     }
-    values = empty(slot_variables(dimension), shape)
-    for k, (model, here) in enumerate(zip(models, rows, strict=True)):
-        for slot, row in enumerate(here):
-            at, motion = (k, slot), row.attractor.motion
-            values["branch"][at], values["side"][at] = row.branch, row.side
-            for name in ("symmetry", "radius", "slow", "close_returns", "patience"):
-                values[name][at] = getattr(row.attractor, name)
-            for name in ("mean_distance", "mean_distance_error", "kind", "section_period", "period", "stop_rate"):
-                values[name][at] = getattr(motion, name)
-            if row.lifetime is not None:
-                values["lifetime"][at] = row.lifetime.mean
-                values["lifetime_low"][at], values["lifetime_high"][at] = row.lifetime.interval
-                if not row.lifetime.lasts(lasting):
-                    values["kind"][at] = MotionKind.TRANSIENT_CHAOS
-            values["lyapunov_exponent"][at][: len(motion.exponent)] = motion.exponent
-            state = motion.state()
-            values["position"][at] = state.position + model.sliding_offset
-            values["velocity"][at] = state.velocity
-    return values
+    slots = {
+        (k, slot): Slot(row, model, lasting)
+        for k, (model, here) in enumerate(zip(models, rows, strict=True))
+        for slot, row in enumerate(here)
+    }
+    return filled(slot_variables(dimension), slots, shape)
 
 
 def name_branches(branch: np.ndarray, symmetry: np.ndarray, stop_rate: np.ndarray) -> dict[str, np.ndarray]:

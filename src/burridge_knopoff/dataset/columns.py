@@ -1,8 +1,8 @@
-"""Columns of a file whose rows are things of one kind: how a column is described, and what it holds of each thing."""
+"""Columns of a table, as of all attractors: how a column is described, and what it holds of each thing in the table."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,21 +13,34 @@ from burridge_knopoff.dataset.variables import Variable
 
 @dataclass(frozen=True)
 class Column(Variable):
-    """A variable over rows; `value` returns what it holds of the thing of a row, None where it has nothing."""
+    """A variable over the places of a table; `value` returns what it holds of a thing, None where it has nothing."""
 
-    value: Callable[[Any], Any] = lambda row: None
+    value: Callable[[Any], Any] = lambda thing: None
 
 
-def filled(columns: Mapping[str, Column], rows: Sequence[Any], sizes: Mapping[str, int]) -> dict[str, np.ndarray]:
-    """Return {column: its values}; the first dimension is that of the rows, and `sizes` has all others.
+def empty(variables: Mapping[str, Variable], sizes: Mapping[str, int], *beginnings: str) -> dict[str, np.ndarray]:
+    """Return an array of missing values for each variable whose dimensions have a size.
 
-    Where there is nothing stands NaN among numbers, −1 among whole numbers, and no words among texts.
+    beginnings : of the names that are wanted; none for all
     """
-    values = {}
+    return {
+        name: np.full([sizes[key] for key in item.dimensions], item.missing, dtype=item.dtype)
+        for name, item in variables.items()
+        if all(key in sizes for key in item.dimensions) and (not beginnings or name.startswith(beginnings))
+    }
+
+
+def filled(columns: Mapping[str, Column], things: Mapping[Any, Any], sizes: Mapping[str, int]) -> dict[str, np.ndarray]:
+    """Return {column: its values}, of each thing at its place in the table, along the first dimensions of the column.
+
+    things : by their places, each a tuple of whole numbers
+
+    Of fewer numbers than the last dimension has the others stay missing, as exponents that were not computed.
+    """
+    values = empty(columns, sizes)
     for name, column in columns.items():
-        shape = [sizes[size] for size in column.dimensions[1:]]
-        nothing = np.full(shape, {"f": np.nan, "U": ""}.get(np.dtype(column.dtype).kind, -1))
-        found = [column.value(row) for row in rows]
-        every = [nothing if value is None else value for value in found]
-        values[name] = np.array(every, dtype=column.dtype).reshape(len(rows), *shape)
+        for place, thing in things.items():
+            found = column.value(thing)
+            if found is not None:
+                values[name][(*place, *map(slice, np.shape(found)))] = found
     return values

@@ -29,13 +29,23 @@ COMPRESSED_FROM = 64
 
 @dataclass(frozen=True)
 class Variable:
-    """One netCDF variable: its dimensions, type, long name (with the paper's symbol) and further attributes."""
+    """One netCDF variable: its dimensions, type, long name (with the paper's symbol) and further attributes.
+
+    nothing : what stands where there is nothing; by default NaN among numbers, −1 among whole numbers, "" among texts
+    """
 
     dimensions: tuple[str, ...]
     dtype: str
     long_name: str
     attributes: Mapping[str, Any] = field(default_factory=dict)
     coordinate: bool = False
+    nothing: Any = None
+
+    @property
+    def missing(self) -> Any:
+        """What stands where there is nothing."""
+        default = {"f": np.nan, "i": -1}.get(np.dtype(self.dtype).kind, "")
+        return default if self.nothing is None else self.nothing
 
     def all_attributes(self) -> dict[str, Any]:
         """Return the attributes in the order in which they are written."""

@@ -16,7 +16,7 @@ import xarray
 from burridge_knopoff.attractors.labels import UNDETERMINED
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.attractors.table import NAMES, missing, name_branches
+from burridge_knopoff.attractors.table import NAMES, name_branches
 from burridge_knopoff.continuation.law_homotopy import joined
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import axes, summary
@@ -61,7 +61,7 @@ def merge(
         if name.endswith("branch"):
             arrays = [_renumbered(array, renamed) for array, renamed in zip(arrays, numbers, strict=True)]
         shape = np.max([array.shape for array in arrays], axis=0)
-        values[name] = np.full((len(parts), *shape), missing(name, item), dtype=item.dtype)
+        values[name] = np.full((len(parts), *shape), item.missing, dtype=item.dtype)
         for number, array in enumerate(arrays):
             within: Any = (number, *(slice(0, size) for size in array.shape))
             values[name][within] = array

@@ -16,8 +16,9 @@ import xarray
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED, label
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.attractors.table import NOTHING, empty, slot_coordinates, slot_values, slot_variables
+from burridge_knopoff.attractors.table import NOTHING, slot_coordinates, slot_values, slot_variables
 from burridge_knopoff.continuation.along_a import Continuation
+from burridge_knopoff.dataset.columns import empty
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.model.initial import InitialState
@@ -41,7 +42,7 @@ VARIABLES = {
     **slot_variables("a"),
     "upward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next larger a of the grid", NOTHING),
     "downward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next smaller a of the grid", NOTHING),
-    "basin_count": _V(_SLOT, "i4", "sampled initial states that reach the attractor"),
+    "basin_count": _V(_SLOT, "i4", "sampled initial states that reach the attractor", nothing=0),
     "basin_fraction": _V(
         _SLOT,
         "f8",
@@ -50,8 +51,8 @@ VARIABLES = {
     ),
     "basin_fraction_low": _V(_SLOT, "f8", "lower end of the 95 % Wilson interval of the basin fraction"),
     "basin_fraction_high": _V(_SLOT, "f8", "upper end of the 95 % Wilson interval of the basin fraction"),
-    "sample_count": Variable(("a",), "i4", "initial states drawn for the basin fractions"),
-    "undetermined_count": _V(("a",), "i4", "sampled initial states that reach no attractor by label_limit"),
+    "sample_count": _V(("a",), "i4", "initial states drawn for the basin fractions", nothing=0),
+    "undetermined_count": _V(("a",), "i4", "sampled initial states that reach no attractor by label_limit", nothing=0),
     "sliding_attracts": _V(
         ("a",),
         "i1",
@@ -59,7 +60,7 @@ VARIABLES = {
         YES_OR_NO,
     ),
     "initial_branch": _V(_REACHED, "i2", "branch reached by an initial state under each convention", NOTHING),
-    "initial_side": _V(_REACHED, "i1", "side of that branch"),
+    "initial_side": _V(_REACHED, "i1", "side of that branch", nothing=0),
     "section_count": _V(
         _SLOT, "i4", "different points W' of the section W = 0, crossed upward, on an attractor that is followed", ALONG
     ),

@@ -171,8 +171,8 @@ def one_law(
     found = list(entries(one, changes, orbits))
     segments = enumerate(zip(_branches_of_segments(orbits, one["branch"].values), orbits.segments, strict=True))
     points = [(number, branch, point) for number, (branch, segment) in segments for point in segment.shown]
-    sizes = {"block": model.blocks, "part": len(PARTS)}
-    values = filled(BIFURCATIONS, found, sizes)
+    sizes = {"bifurcation": len(found), "orbit": len(points), "block": model.blocks, "part": len(PARTS)}
+    values = filled(BIFURCATIONS, {(k,): one for k, one in enumerate(found)}, sizes)
     rounded = {name: _rounded(value, DIGITS.get(name, 10)) for name, value in values.items()}
     rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])
@@ -180,7 +180,10 @@ def one_law(
     # They are values of refined.nc, to be looked up there.
     rounded["grid_low"], rounded["grid_high"] = values["grid_low"], values["grid_high"]
     rounded = _in_order(rounded)
-    rounded |= {name: _rounded(value, 10) for name, value in filled(ORBITS, points, sizes).items()}
+    rounded |= {
+        name: _rounded(value, 10)
+        for name, value in filled(ORBITS, {(k,): one for k, one in enumerate(points)}, sizes).items()
+    }
     rounded |= {"law": np.repeat(law, len(found)), "orbit_law": np.repeat(law, len(points))}
     head = {"v": model.v, "contact": model.contact}
     return _dataset([law], rounded, attractors["block"].variable, head)

@@ -24,7 +24,7 @@ from burridge_knopoff.summaries import attractors
 
 VARIABLES = {
     "a": Variable(("value",), "f8", "friction parameter a, ascending; NaN beyond the last value of a law"),
-    "in_grid": Variable(("value",), "i1", "whether a is in the grid of the study", YES_OR_NO),
+    "in_grid": Variable(("value",), "i1", "whether a is in the grid of the study", YES_OR_NO, nothing=0),
     **slot_variables("value"),
     "section_velocity": Variable(
         ("value", "attractor", "crossing"),
