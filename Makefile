@@ -99,22 +99,19 @@ test-oldest: .venv-oldest/ready
 # After a run of these studies on a quiet machine: the durations from which the time left is told, and how good it is.
 durations: .venv/kernel
 	$(BIN)/python benchmarks/durations.py config/paper.yaml config/smoke.yaml
-	$(BIN)/python benchmarks/progress.py config/paper.yaml config/smoke.yaml
+	$(BIN)/python benchmarks/replay.py config/paper.yaml config/smoke.yaml
 
 benchmark: .venv/kernel .venv-benchmark/ready
-	.venv-benchmark/bin/python benchmarks/kernel.py
 	.venv-benchmark/bin/python benchmarks/floor.py
 	.venv-benchmark/bin/python benchmarks/peers.py
-	.venv-benchmark/bin/python benchmarks/chain_length.py
-	.venv-benchmark/bin/python benchmarks/long_chains.py
+	.venv-benchmark/bin/python benchmarks/chains.py
 	.venv-benchmark/bin/python benchmarks/lyapunov.py
-	.venv-benchmark/bin/python benchmarks/basins.py
+	.venv-benchmark/bin/python benchmarks/maps.py
 	.venv-benchmark/bin/python benchmarks/point_job.py
 	.venv-benchmark/bin/python benchmarks/study.py
 	rm -rf .snakemake/kept/paper
 	$(BIN)/snakemake -c2 --forceall
 	$(BIN)/python benchmarks/stages.py results/paper
-	$(BIN)/python benchmarks/cores.py config/paper.yaml
 	$(BIN)/python benchmarks/tori.py results/paper
 	$(BIN)/python benchmarks/lifetimes.py results/paper
 	$(BIN)/python benchmarks/other_settings.py results/paper

@@ -12,7 +12,7 @@ from collections import defaultdict
 from pathlib import Path
 
 import numpy as np
-from progress import planned
+from replay import planned
 
 from burridge_knopoff.report.stages import job_costs
 from snakemake_logger_plugin_study.durations import FILE, SHIPPED, work_of

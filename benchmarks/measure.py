@@ -39,8 +39,3 @@ def print_table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> None
     for row in cells[1:]:
         print(line(row))
     print()
-
-
-def verdict(value: float, limit: float, *, at_least: bool = False) -> str:
-    """Say whether a measured value keeps its limit."""
-    return "yes" if (value >= limit if at_least else value <= limit) else "NO"

@@ -17,7 +17,7 @@ import os
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import numpy as np
-from measure import cpu_times, print_table, verdict
+from measure import cpu_times, print_table
 from peer_heyoka import HeyokaPeer
 from peer_heyoka_batch import HeyokaBatch
 from peer_run import HORIZON, event_time_difference
@@ -33,8 +33,6 @@ TRANSIENT, WINDOW = 3000.0, 7000.0
 SCIPY_TRANSIENT, SCIPY_WINDOW = 100.0, 200.0
 # The paper's step; two time units of it are two million steps.
 RK4_STEP, RK4_WINDOW = 1e-6, 2.0
-# How many times less CPU than heyoka the solvers should need.
-CLAIM = {"linearized": 20.0, "nonlinear": 8.0}
 LAWS = ("linearized", "nonlinear")
 MEMBERS, ENSEMBLE_END = 256, 150.0
 
@@ -68,11 +66,9 @@ def compare(law: str, state: str, rounds: int) -> list[list[str]]:
     rows = []
     for (name, seconds), extent, run, own in zip(cpu.items(), measured, runs, own_runs, strict=True):
         ratio = seconds / full["ours"]
-        claim = CLAIM[law] if name == "heyoka.py" else None
         rows.append(
             [
                 f"{ratio:.1f}" if ratio < 100 else f"{ratio:.0f}",
-                f"{claim:g}, {verdict(ratio, claim, at_least=True)}" if claim else "",
                 law,
                 state,
                 name,
@@ -112,8 +108,8 @@ def main() -> None:
     rounds = parser.parse_args().rounds
     rows = [row for law in LAWS for state in ("plus", "minus") for row in compare(law, state, rounds)]
     print(f"\nOne trajectory to τ = {TRANSIENT + WINDOW:g}, a = {A}, v = {V}, with all observables; ms of CPU.")
-    print("Ratio: CPU of the peer over that of the solver; the aim is the least ratio that should hold.\n")
-    header = ["ratio", "aim, kept", "law", "initial", "peer", "ours ms", "peer ms", "measured on"]
+    print("Ratio: CPU of the peer over that of the solver.\n")
+    header = ["ratio", "law", "initial", "peer", "ours ms", "peer ms", "measured on"]
     header += ["events peer / ours", "Δ<J>", f"Δ event times to {HORIZON:g}"]
     print_table(header, rows)
     print(f"\n{MEMBERS} trajectories to τ = {ENSEMBLE_END:g} at once, bare; heyoka.py in batch mode; µs of CPU each.\n")

@@ -16,13 +16,10 @@ from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
 
-from measure import print_table, verdict
+from measure import print_table
 from process import BIN, ONE_THREAD, SNAKEMAKE, children_cpu
 from stages import rules_of
 
-MEMORY_LIMIT_MB = 1500.0
-COST_LIMIT = 1.3
-CHECK_LIMIT = 20.0
 LAWS, STATES = 2, 5
 #: Of the whole range of a, so that small and large studies have the same kinds of motion.
 A_RANGE = 0.3
@@ -117,19 +114,9 @@ def main() -> None:
     for rule in sorted(rules[-1], key=lambda name: -rules[-1][name][0]):
         memory = rules[-1][rule][1]
         each = [1000.0 * found[rule][0] / points for found, points in zip(rules, options.points, strict=True)]
-        table.append([rule, *(f"{cost:.2f}" for cost in each), f"{memory:.0f}", verdict(memory, MEMORY_LIMIT_MB)])
+        table.append([rule, *(f"{cost:.2f}" for cost in each), f"{memory:.0f}"])
     names = [f"ms a point, {points}" for points in options.points]
-    print_table(["rule", *names, "MB, largest", f"under {MEMORY_LIMIT_MB:g} MB"], table)
-    ratio = float(rows[-1][3]) / float(rows[0][3])
-    memory, check = float(rows[-1][4]), float(rows[-1][6])
-    print_table(
-        ["of the largest study", "measured", "limit, kept"],
-        [
-            ["CPU of a point, ratio to the smallest", f"{ratio:.2f}", f"{COST_LIMIT:g}, {verdict(ratio, COST_LIMIT)}"],
-            ["Snakemake MB", f"{memory:.0f}", f"{MEMORY_LIMIT_MB:g}, {verdict(memory, MEMORY_LIMIT_MB)}"],
-            ["bk check s", f"{check:.1f}", f"{CHECK_LIMIT:g}, {verdict(check, CHECK_LIMIT)}"],
-        ],
-    )
+    print_table(["rule", *names, "MB, largest"], table)
 
 
 if __name__ == "__main__":

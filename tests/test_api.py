@@ -54,11 +54,11 @@ def forms_() -> None:
     from burridge_knopoff import fit_slope, label_states, law_of, simulate, sweep
     model = Model(Chain(3, coupling=(1.0, 1.5), pulling=[1.0, 2.0, 1.0]), law_of("linearized", 0.08))
     own = InitialState("own", (-0.9, -1.1, -1.0), 0.1)
-    run = simulate(model, own, Settings(window=100.0))
+    run = simulate(model, initial=own, settings=Settings(window=100.0))
     for initial in ("plus", own, {"position": [-0.9, -1.1], "velocity": 0.1}, ([-0.9], [0.1]), np.zeros((2, 3))):
         simulate("linearized", 0.08, initial)
         sweep("linearized", 0.08, initial)
-    simulate(model, run.final, transient=0, window=100)
+    simulate(model, initial=run.final, transient=0, window=100)
     simulate({"formula": "1 - c*a*u", "c": 0.5}, 0.1)
     sweep(model, np.linspace(0.1, 0.2, 3), v=0.2)
     sweep("carlson_langer", [0.1, 1], sigma=[0.01, 0.02], window=500)

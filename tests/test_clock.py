@@ -33,7 +33,7 @@ ROUGH = Model(Chain(5, coupling=5.0, pulling=1.0), law_of("carlson_langer", 2.0)
 
 
 def settled(model=PAPER):
-    run = simulate(model, "plus", transient=0.0, window=3000.0, lyapunov_exponents=0)
+    run = simulate(model, initial="plus", transient=0.0, window=3000.0, lyapunov_exponents=0)
     return replace(run.final, time=0.0)
 
 
@@ -43,7 +43,7 @@ def at_rest(model=ROUGH):
 
 
 def run_of(state, **options):
-    run = simulate(PAPER, state, transient=64.0, window=512.0, sampling=4.0, batches=4, events="all", **options)
+    run = simulate(PAPER, initial=state, transient=64.0, window=512.0, sampling=4.0, batches=4, events="all", **options)
     shift = state.time
     times = np.concatenate([run.event_time, run.time, run.trajectory_time, run.crossing_time]) - shift
     assert (run.begin_time, run.end_time) == (shift, shift + 576.0)
@@ -121,7 +121,7 @@ def _same(found, expected):
 
 def test_a_cycle_is_found_from_the_end_of_a_long_run():
     """It was not from τ = 8000 on, as the clock of the state was taken for time that had passed."""
-    run = simulate(PAPER, "plus", transient=0.0, window=9000.0, lyapunov_exponents=0)
+    run = simulate(PAPER, initial="plus", transient=0.0, window=9000.0, lyapunov_exponents=0)
     assert limit_cycle(PAPER, run.final).period == pytest.approx(157.2451476, abs=1e-6)
     with pytest.raises(OrbitError, match="no periodic orbit found within 1$"):
         limit_cycle(PAPER, run.final, window=1.0)
@@ -132,7 +132,7 @@ def test_many_events_of_a_long_chain_accumulate_at_no_clock(clock):
     """From a clock below 0 they all counted as those of one time unit once."""
     model = Model(Chain(3), law_of("linearized", 0.2))
     state = replace(model.begin(InitialState("own", (-0.9, -1.0, -0.95), (0.1, 0.1, 0.1))), time=clock)
-    run = simulate(model, state, transient=0.0, window=5000.0, lyapunov_exponents=0)
+    run = simulate(model, initial=state, transient=0.0, window=5000.0, lyapunov_exponents=0)
     assert run.event_count > 3000
     assert run.status == "completed"
 
@@ -144,7 +144,7 @@ def test_a_run_that_fails_ends_at_its_last_instant(blocks, time):
     model = Model(Chain(blocks), law_of("linearized", 3.0), contact="symmetric")
     at = model.begin(InitialState("rough", tuple([5.0, -5.0, 5.0] * (blocks // 3)), 0.0), "tested")
     start = replace(at, time=time)
-    ended = simulate(model, start, transient=10.0, window=100.0)
+    ended = simulate(model, initial=start, transient=10.0, window=100.0)
     assert ended.status == "diverged"
     assert time < ended.final.time == ended.end_time < time + 100.0
     # Groups diverge where one of them does.

@@ -93,7 +93,7 @@ BIFURCATION = """
 import numpy as np
 from burridge_knopoff import Chain, Model, follow, law_of, limit_cycle, locate_bifurcations, simulate
 model = Model(Chain(3), law_of("nonlinear", 0.13))
-run = simulate(model, "plus", transient=2000, window=10)
+run = simulate(model, initial="plus", transient=2000, window=10)
 branch = follow(limit_cycle(model, model.begin(run.initial), settling=2000.0), (0.13, 0.135))
 found = [one for one in locate_bifurcations(branch) if one.kind.name == "NODE_FOCUS"]
 assert len(found) == 2

@@ -17,7 +17,7 @@ def slow(a):
     return simulate("linearized", a, "minus", transient=0.0, window=1e7, events="none", sampling=1e3)
 
 model = Model(Chain(3), law_of("linearized", 0.08))
-rest = simulate(model, "minus", transient=0.0, window=1.0).final
+rest = simulate(model, initial="minus", transient=0.0, window=1.0).final
 search = {"samples": 2, "transient": 500.0, "window": 500.0}
 """
 LABELS = """

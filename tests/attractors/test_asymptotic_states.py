@@ -33,7 +33,7 @@ def test_slow_synchrony_is_synchrony(law, a):
     (found,) = endings(pair(law, a), [APART])
     assert (found.kind, found.section_period) == (MotionKind.SYNCHRONIZED, 1)
     assert found.mean_distance < 1e-7
-    assert simulate(pair(law, a), APART, transient=3000.0, window=7000.0).mean_distance > 5e-5
+    assert simulate(pair(law, a), initial=APART, transient=3000.0, window=7000.0).mean_distance > 5e-5
 
 
 @pytest.mark.parametrize(
@@ -64,14 +64,16 @@ def test_what_synchrony_repels_does_not_synchronize():
 def test_chaos_that_ends_is_the_orbit_after_it(law, a, state):
     """Newton's method finds the orbit from where the state is after 100 000 time units."""
     model = pair(law, a)
-    early = simulate(model, STATES[state], transient=3000.0, window=7000.0)
+    early = simulate(model, initial=STATES[state], transient=3000.0, window=7000.0)
     assert early.lyapunov_exponent[0] > 3.0 * early.lyapunov_error[0]
     found = endings(model, STATES)[state]
     assert found.kind == MotionKind.PERIODIC
     (later,) = moved(model, [model.begin(STATES[state])], 100_000.0)
     orbit = limit_cycle(model, later)
     options = {"transient": 100_000.0, "window": 20.0 * orbit.period, "batches": 10, "lyapunov_exponents": 0}
-    assert found.mean_distance == pytest.approx(simulate(model, STATES[state], **options).mean_distance, rel=0.02)
+    assert found.mean_distance == pytest.approx(
+        simulate(model, initial=STATES[state], **options).mean_distance, rel=0.02
+    )
 
 
 def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
@@ -82,7 +84,9 @@ def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
     assert {found[k] for k in inner} == {found[0]}
     assert found[0].kind == MotionKind.CHAOTIC
     for k in inner[:2]:
-        long = simulate(pair("linearized", 0.08), STATES[k], transient=20_000.0, window=400_000.0, events="none")
+        long = simulate(
+            pair("linearized", 0.08), initial=STATES[k], transient=20_000.0, window=400_000.0, events="none"
+        )
         assert long.lyapunov_exponent[0] > max(1e-3, 5.0 * long.lyapunov_error[0])
         error = math.hypot(long.mean_distance_error, found[0].mean_distance_error)
         assert found[0].mean_distance == pytest.approx(long.mean_distance, abs=4.0 * error)

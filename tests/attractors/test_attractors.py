@@ -237,7 +237,7 @@ def test_attractors_of_any_model_are_what_runs_end_in(found_model):
     drawn = sampled_states(found_model.blocks, 12, settings.position, settings.velocity, settings.seed)
     for state, index in list(zip(drawn, labels, strict=False))[:5]:
         if index >= 0:
-            run = simulate(found_model, state, options)
+            run = simulate(found_model, initial=state, settings=options)
             expected = reached[index].motion
             error = 5.0 * (run.mean_distance_error + expected.mean_distance_error)
             assert run.mean_distance == pytest.approx(expected.mean_distance, abs=1e-3 + error)

@@ -62,7 +62,7 @@ def test_a_state_on_an_orbit_that_repels_reaches_the_chaos_around_it():
 
 def test_chaos_with_end_blocks_that_move_as_one_is_a_kind_of_its_own():
     strong = Model(Chain(3, coupling=8.0, pulling=(1.0, 4.0, 1.0)), law_of("nonlinear", 1.0), 0.5)
-    run = simulate(strong, "minus", transient=3000.0, window=3000.0)
+    run = simulate(strong, initial="minus", transient=3000.0, window=3000.0)
     assert (run.mean_distance, run.lyapunov_exponent[0] > 0.1) == (0.0, True)
     assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.SYNCHRONIZED_CHAOS
     (attractor,), labels = find_attractors(strong, SearchSettings(samples=4))

@@ -44,7 +44,7 @@ def whole(table, known, tiles, threads):
     parts = [basins.tile(known, number, *told, "moving") for number in range(tiles)]
     near = basins.pairs(known, *told, SEARCH.seed, "moving")
     maps = [(known.model, parts, near)]
-    return basins.merge(maps, table, ["linearized", "other"], basin_settings, SEARCH.label_limit, "moving")
+    return basins.merge(maps, table, basin_settings, SEARCH.label_limit, "moving")
 
 
 @pytest.fixture(scope="module")

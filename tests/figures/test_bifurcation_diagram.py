@@ -9,7 +9,6 @@ from burridge_knopoff.figures.bifurcation_diagram import draw
 
 def runs():
     """Return two runs, at a = 0.1 and 0.2, each with more crossings than an attractor keeps."""
-    flag = {"flag_meanings": "linearized"}
     velocity = np.linspace(0.1, 0.2, 4 * CROSSINGS)
     return xr.Dataset(
         {
@@ -19,8 +18,8 @@ def runs():
         },
         {
             "a": ("point", [0.1, 0.2]),
-            "law": ("point", [0] * 2, flag),
-            "initial": ("point", [0] * 2, {"flag_meanings": "minus"}),
+            "law": ("point", ["linearized"] * 2),
+            "initial": ("point", ["minus"] * 2),
         },
     )
 

@@ -53,14 +53,13 @@ def down(points: xr.Dataset) -> xr.Dataset:
 
 
 def test_all_values_of_a_stay_on_the_axis_of_section_points():
-    flag = {"flag_meanings": "linearized"}
     points = xr.Dataset(
         {
             "crossing_velocity": ("crossing", [0.3, -0.3]),
             "crossing_direction": ("crossing", [1, -1]),
             "crossing_count": ("point", [2, 0, 0]),
         },
-        {"a": ("point", [2.0, 3.0, 5.0]), "law": ("point", [0] * 3, flag), "initial": ("point", [0] * 3, flag)},
+        {"a": ("point", [2.0, 3.0, 5.0]), "law": ("point", ["linearized"] * 3), "initial": ("point", ["plus"] * 3)},
     )
     (panel,) = bifurcation_diagram.draw(points).axes
     assert panel.get_xlim() == pytest.approx((1.94, 5.06))

@@ -24,14 +24,14 @@ def with_states(data: xr.Dataset, names: list[str]) -> xr.Dataset:
         return data
     of_crossing = np.repeat(np.arange(data.sizes["point"]), data["crossing_count"])
     points, crossings, states = [], [], []
-    for law, state in product(np.unique(data["law"]), range(len(names))):
-        these = np.flatnonzero((data["law"] == law) & (data["initial"] == state % 2))
+    two = list(dict.fromkeys(data["initial"].values.tolist()))
+    for law, state in product(dict.fromkeys(data["law"].values.tolist()), range(len(names))):
+        these = np.flatnonzero((data["law"] == law) & (data["initial"] == two[state % 2]))
         points.append(these)
         crossings.append(np.flatnonzero(np.isin(of_crossing, these)))
-        states.append(np.full(len(these), state))
+        states += [names[state]] * len(these)
     chosen = data.isel(point=np.concatenate(points), crossing=np.concatenate(crossings))
-    flag = {**data["initial"].attrs, "flag_meanings": " ".join(names)}
-    return chosen.assign_coords(initial=("point", np.concatenate(states), flag))
+    return chosen.assign_coords(initial=("point", states))
 
 
 pytestmark = pytest.mark.usefixtures("no_collection")

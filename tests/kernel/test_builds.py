@@ -30,7 +30,8 @@ for blocks, ends in ((3, "open"), (9, "open"), (5, "ring"), (26, "open")):
     for law in laws:
         for solver in ("series", "map") if law.is_linear and ends == "open" else ("series",):
             model = Model(Chain(blocks, ends=ends), law)
-            run = simulate(model, state, Settings(solver=solver, transient=20.0, window=100.0, events="all"))
+            settings = Settings(solver=solver, transient=20.0, window=100.0, events="all")
+            run = simulate(model, initial=state, settings=settings)
             kept = run.event_time, run.event_velocity, run.distance, run.crossing_velocity, run.batch_lyapunov_exponent
             digest = hashlib.sha256(b"".join(values.tobytes() for values in kept))
             digest.update(repr((run.mean_distance, run.least_spring_force, run.event_count)).encode())

@@ -27,7 +27,7 @@ def states_of(engine, model, position, velocity, duration, start="moving"):
     whole = {"transient": 0.0, "window": duration, "sampling": duration, "trajectory": duration}
     run = simulate(
         model,
-        (position, velocity),
+        initial=(position, velocity),
         **whole,
         solver=engine,
         trajectory_sampling=duration / TIMES,
@@ -131,7 +131,7 @@ def test_starts_that_are_apart_keep_their_order(coupling, apart):
     position = -np.linalg.solve(chain.stiffness, force)
     model = Model(chain, law_of("linearized", 0.1), v)
     whole = {"transient": 0.0, "window": 5.5, "events": "all", "lyapunov_exponents": 0}
-    run = simulate(model, (position, (0.0, 0.0, 0.0)), **whole, start="tested")
+    run = simulate(model, initial=(position, (0.0, 0.0, 0.0)), **whole, start="tested")
     rounding = 1e-15 * (1.0 + coupling * abs(position).max()) / v
     first = [run.event_time[run.event_block == block][0] for block in (1, 2, 3)]
     assert first == pytest.approx([5.0, 5.0 + apart, 5.0], abs=4 * rounding)

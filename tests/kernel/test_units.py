@@ -14,7 +14,9 @@ WHOLE = {"transient": 0.0, "events": "all", "trajectory": 0.0}
 
 
 def run_of(model, initial, window, exponents=0):
-    return simulate(model, initial, **WHOLE, window=window, sampling=window, batches=2, lyapunov_exponents=exponents)
+    return simulate(
+        model, initial=initial, **WHOLE, window=window, sampling=window, batches=2, lyapunov_exponents=exponents
+    )
 
 
 @settings(max_examples=40)

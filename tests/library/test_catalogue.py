@@ -15,7 +15,7 @@ MODEL = Model(Chain(20, coupling=9.0, pulling=1.0), law_of("carlson_langer", 3.0
 def test_a_run_continues_as_a_catalogue():
     """From its end, with the events of one long run."""
     rough = InitialState("rough", {"random": "uniform", "low": -1.0, "high": -0.9, "seed": 1}, 0.0)
-    run = simulate(MODEL, rough, start="tested", transient=100.0, window=200.0, batches=2, lyapunov_exponents=0)
+    run = simulate(MODEL, initial=rough, start="tested", transient=100.0, window=200.0, batches=2, lyapunov_exponents=0)
     found = run.catalogue(500.0, transient=100.0)
     whole = record_events(MODEL, MODEL.begin(rough, "tested"), 900.0, begin=400.0)
     assert (found.begin_time, found.end_time) == (400.0, 900.0)

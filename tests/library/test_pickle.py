@@ -43,7 +43,7 @@ def equal(one, other):
 
 
 def run(**settings):
-    return simulate(PAPER, "plus", transient=20.0, window=30.0, **settings)
+    return simulate(PAPER, initial="plus", transient=20.0, window=30.0, **settings)
 
 
 RESULTS = {
@@ -90,8 +90,10 @@ CONTINUED = {
 @pytest.mark.parametrize(("model", "initial", "settings"), CONTINUED.values(), ids=CONTINUED)
 def test_a_run_goes_on_from_a_copied_state(model, initial, settings, copied):
     settings = {"window": 20.0, "events": "all", **settings}
-    first = simulate(model, initial, start="tested", transient=40.0, **settings)
-    whole, other = (simulate(model, state, transient=10.0, **settings) for state in (first.final, copied(first.final)))
+    first = simulate(model, initial=initial, start="tested", transient=40.0, **settings)
+    whole, other = (
+        simulate(model, initial=state, transient=10.0, **settings) for state in (first.final, copied(first.final))
+    )
     assert whole.event_count
     assert equal(whole, other)
 
@@ -115,7 +117,7 @@ def test_runs_in_other_processes():
     with ProcessPoolExecutor(2) as pool:
         runs = list(pool.map(call, ["linearized", "nonlinear"], [0.08, 0.1], ["plus", "minus"]))
     assert equal(runs, [call("linearized", 0.08, "plus"), call("nonlinear", 0.1, "minus")])
-    longer = [simulate(run.model, run.final, transient=0.0, window=20.0) for run in runs]
+    longer = [simulate(run.model, initial=run.final, transient=0.0, window=20.0) for run in runs]
     assert [run.status for run in longer] == ["completed"] * 2
 
 

@@ -136,7 +136,7 @@ def test_a_run_ends_where_its_law_does():
     """A block that is let go far ahead of the others comes to the speed at which the root has no value."""
     model = Model(Chain(3), FormulaLaw(0.0, "sqrt(1 - 0.05*u)"))
     far = InitialState("far", (-100.0, -30.0, 20.0), (0.1, 0.1, 0.1))
-    assert simulate(model, far, transient=0, window=50).status == "diverged"
+    assert simulate(model, initial=far, transient=0, window=50).status == "diverged"
     at = model.begin(far)
     arrays = (np.tile(values, (3, 1)) for values in (at.position, at.velocity, at.stuck.astype(np.intc)))
     assert (new_ensemble(model).run(*arrays, [50.0])["end"] < 50.0).all()

@@ -50,7 +50,7 @@ def test_a_grid_over_several_parameters_has_the_numbers_of_single_runs(law, axes
     assert runs["mean_distance"].dims == tuple(sorted(axes, key=lambda name: name != "a"))
     for values in product(*axes.values()):
         point = dict(zip(axes, values, strict=True))
-        run = simulate(model.at(**point), "plus", **SHORT)
+        run = simulate(model.at(**point), initial="plus", **SHORT)
         for name, numbers in runs.sel(point).drop_vars("status").data_vars.items():
             assert np.array_equal(numbers, getattr(run, name), equal_nan=True), (name, point)
 

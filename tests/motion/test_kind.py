@@ -268,7 +268,7 @@ def test_weak_chaos_next_to_an_orbit_that_repels_is_not_periodic(away):
     """The run repeats to 1e-6 throughout; its largest exponent, 7e-4, is within its error."""
     orbit = weakly_repelling()
     start = orbit.reference
-    run = simulate(orbit.model, ChainState(start.position + away, start.velocity, start.stuck))
+    run = simulate(orbit.model, initial=ChainState(start.position + away, start.velocity, start.stuck))
     assert section_period(vars(run), MOTION) == 13
     assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.UNDETERMINED
 
@@ -276,7 +276,7 @@ def test_weak_chaos_next_to_an_orbit_that_repels_is_not_periodic(away):
 def test_uniform_sliding_that_attracts_is_no_periodic_motion():
     """Friction grows with speed there; what crosses W = 0 is rounding."""
     model = Model(Chain(3), law_of("stribeck", 0.3), 0.5)
-    run = simulate(model, "plus", transient=2000.0, window=2000.0)
+    run = simulate(model, initial="plus", transient=2000.0, window=2000.0)
     assert run.lyapunov_exponent[0] < -0.01
     found = motion_of_run(vars(run), True, MOTION)
     assert (found.kind, found.section_period) == (MotionKind.UNDETERMINED, 0)
@@ -285,6 +285,6 @@ def test_uniform_sliding_that_attracts_is_no_periodic_motion():
 def test_what_repeats_without_a_section_point_is_periodic():
     """Two blocks: W stays above 0, and the orbit is one of a family, so that the second exponent is 0."""
     start = {"position": [0.5, -1.0], "velocity": [0.05, 0.05]}
-    run = simulate(Model(Chain(2), law_of("nonlinear", 3.0), 0.05), start, transient=2000.0, window=2000.0)
+    run = simulate(Model(Chain(2), law_of("nonlinear", 3.0), 0.05), initial=start, transient=2000.0, window=2000.0)
     assert not len(run.crossing_time)
     assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.PERIODIC

@@ -35,7 +35,9 @@ def model(threshold=1.0):
 def test_returns_are_the_stops_of_the_first_block(threshold):
     chain = model(threshold)
     start = chain.begin(PAPER_STATES["plus"])
-    run = simulate(chain, PAPER_STATES["plus"], Settings(transient=500.0, window=300.0, batches=6, events="all"))
+    run = simulate(
+        chain, initial=PAPER_STATES["plus"], settings=Settings(transient=500.0, window=300.0, batches=6, events="all")
+    )
     found = visit(chain, start, 500.0, 300.0)
     stops = [(run.event_time >= 500.0) & (run.event_block == block) & (run.event_kind == 0) for block in (1, 2, 3)]
     state = run.event_position - chain.sliding_offset, run.event_velocity
@@ -72,7 +74,7 @@ def test_attractors_whose_ends_never_stop_are_known():
     drawn = sampled_states(4, settings.samples, *box, settings.seed)
     for index in set(labels.tolist()):
         motion, state = attractors[index].motion, drawn[labels.tolist().index(index)]
-        run = simulate(chain, state, transient=60_000, window=6000, lyapunov_exponents=0)
+        run = simulate(chain, initial=state, transient=60_000, window=6000, lyapunov_exponents=0)
         assert run.mean_distance == pytest.approx(motion.mean_distance, abs=2e-4)
         stops = np.bincount(run.event_block[run.event_kind == 0], minlength=5)[1:]
         assert (stops > 0).tolist() == (motion.stop_rate > 0.0).tolist()

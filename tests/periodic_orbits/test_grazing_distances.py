@@ -77,7 +77,9 @@ def test_contacts_are_what_dense_samples_show(six):
 def test_half_an_orbit_that_is_its_own_mirror_image_shows_all():
     """The contacts of the whole of it, as an orbit of no symmetry, whose end blocks take turns to be nearest."""
     model = Model(Chain(3), law_of("linearized", 0.08))
-    half = limit_cycle(model, model.begin(simulate(model, "plus", transient=0, window=10).initial), settling=1000.0)
+    half = limit_cycle(
+        model, model.begin(simulate(model, initial="plus", transient=0, window=10).initial), settling=1000.0
+    )
     whole = find_periodic_orbit(model, half.reference, half.period, Symmetry.ASYMMETRIC)
     assert (half.symmetry, whole.symmetry) == (Symmetry.SYMMETRIC, Symmetry.ASYMMETRIC)
     for name, values in vars(contacts(whole)).items():

@@ -156,7 +156,7 @@ def test_the_curve_of_synchrony_in_a_and_coupling(families):
 def test_a_long_orbit_meets_the_same_grazings_along_the_threshold():
     """One of period 157, between two grazings at which its branch turns back."""
     model = MODEL.at(0.0813)
-    orbit = limit_cycle(model, simulate(model, "plus", transient=0, window=1000).final)
+    orbit = limit_cycle(model, simulate(model, initial="plus", transient=0, window=1000).final)
     assert orbit.period > 157.0
     few = Following(most_orbits=40)
     along_a = next(locate_bifurcations(follow(orbit, settings=few)))

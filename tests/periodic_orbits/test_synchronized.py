@@ -179,7 +179,7 @@ def test_any_law_has_an_orbit_that_runs_end_on(law):
     position, velocity = slipping_state(orbit)
     position[0] += 1e-4
     settings = Settings(transient=4000.0, window=100.0, batches=2, events="all")
-    run = simulate(model, InitialState("near", position, velocity), settings)
+    run = simulate(model, initial=InitialState("near", position, velocity), settings=settings)
     assert (run.mean_distance < 1e-6) == (transverse(orbit) < 1.0)
     if run.mean_distance < 1e-6:
         assert turns(run)[-10:] == pytest.approx(orbit.period, abs=1e-7)

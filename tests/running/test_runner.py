@@ -79,7 +79,9 @@ def test_example_studies_against_scipy(repository, model, a, end, least, toleran
 def test_the_distance_of_unequal_chains_is_that_of_the_end_blocks():
     model = Model(Chain(4, **UNEQUAL["open"]), law_of("nonlinear", 0.3))
     state = InitialState("uneven", (-0.4, -0.5, -0.3, -0.6), (0.1, 0.12, 0.1, 0.08))
-    run = simulate(model, state, Settings(transient=10.0, window=20.0, batches=2, sampling=0.5, trajectory=30.0))
+    run = simulate(
+        model, initial=state, settings=Settings(transient=10.0, window=20.0, batches=2, sampling=0.5, trajectory=30.0)
+    )
     at = np.searchsorted(run.trajectory_time, run.time - 1e-9)
     apart = run.position[at, 3] - run.position[at, 0], run.velocity[at, 3] - run.velocity[at, 0]
     assert np.abs(run.distance - np.hypot(*apart)).max() < 1e-9
@@ -91,13 +93,13 @@ def test_what_is_observed_does_not_change_the_motion(law, blocks):
     """Every event time to the bit, whatever is measured or kept, and however long the run is."""
     state = PAPER_STATES["minus"] if blocks == 3 else wave(blocks, 0.05)
     model = Model(Chain(blocks), law)
-    everything = simulate(model, state, Settings(transient=100.0, window=700.0, events="all"))
+    everything = simulate(model, initial=state, settings=Settings(transient=100.0, window=700.0, events="all"))
     for options in (
         {"transient": 333.3, "window": 91.7},
         {"transient": 100.0, "window": 200.0, "lyapunov_exponents": 0, "sampling": 0.37},
         {"transient": 50.0, "window": 650.0, "lyapunov_exponents": 6, "trajectory": 600.0, "lyapunov_alignment": 20.0},
     ):
-        other = simulate(model, state, Settings(events="all", **options))
+        other = simulate(model, initial=state, settings=Settings(events="all", **options))
         count = len(other.event_time)
         assert count > 5
         for name in ("event_time", "event_block", "event_velocity"):

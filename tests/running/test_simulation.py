@@ -177,7 +177,7 @@ def test_a_run_that_continues_is_the_whole_run(law, solver, time):
     settings = {"solver": solver, "transient": 0, "events": "all", "batches": 2}
     whole = simulate(law, 0.08, "plus", window=120.0, **settings)
     first = simulate(law, 0.08, "plus", window=time, **settings)
-    rest = simulate(first.model, first.final, window=120.0 - time, **settings)
+    rest = simulate(first.model, initial=first.final, window=120.0 - time, **settings)
     assert (first.final.time, rest.begin_time, rest.end_time) == (time, time, 120.0)
     for name in ("event_time", "event_block", "event_kind", "event_position", "event_velocity", "crossing_time"):
         assert np.array_equal(np.concatenate([getattr(first, name), getattr(rest, name)]), getattr(whole, name)), name
@@ -190,7 +190,7 @@ def test_a_run_continues_step_by_step_with_a_fixed_step():
     settings = {"solver": "rk4", "step": 2.0**-8, "transient": 0, "events": "all", "batches": 2}
     whole = simulate("nonlinear", 0.08, "plus", window=40.0, **settings)
     first = simulate("nonlinear", 0.08, "plus", window=15.0, **settings)
-    rest = simulate(first.model, first.final, window=25.0, **settings)
+    rest = simulate(first.model, initial=first.final, window=25.0, **settings)
     assert first.event_count + rest.event_count == whole.event_count > 0
     assert np.array_equal(rest.final.vector(), whole.final.vector())
 
@@ -200,7 +200,7 @@ def test_a_run_under_another_law_begins_at_the_state_itself():
     first = simulate("linearized", 0.08, "plus", transient=0, window=37.0)
     other = first.model.at(0.2)
     bare = replace(first.final)
-    one, two = (simulate(other, at, transient=0, window=20.0) for at in (first.final, bare))
+    one, two = (simulate(other, initial=at, transient=0, window=20.0) for at in (first.final, bare))
     assert np.array_equal(one.final.vector(), two.final.vector())
     assert one.begin_time == 37.0
 

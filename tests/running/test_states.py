@@ -31,7 +31,7 @@ MODEL = Model(CHAIN, LAW)
 ZEROS, ONES, SLIPPING, STUCK = np.zeros(3), np.ones(3), np.zeros(3, bool), np.ones(3, bool)
 
 BEGUN = {
-    "simulate": lambda state: simulate(MODEL, state, transient=0, window=5),
+    "simulate": lambda state: simulate(MODEL, initial=state, transient=0, window=5),
     "record_events": lambda state: record_events(MODEL, state, 5.0),
     "rk4": lambda state: record_events(MODEL, state, 5.0, solver="rk4", step=0.01),
     "limit_cycle": lambda state: limit_cycle(MODEL, state, window=100.0),
@@ -70,7 +70,7 @@ def test_a_clock_is_a_number():
 
 def test_blocks_slip_backward_under_symmetric_contact():
     model = Model(CHAIN, LAW, contact="symmetric")
-    run = simulate(model, ChainState(ZEROS, -ONES, SLIPPING), transient=0, window=5)
+    run = simulate(model, initial=ChainState(ZEROS, -ONES, SLIPPING), transient=0, window=5)
     assert run.status == "completed"
     assert run.initially_slipping.all()
 
@@ -96,7 +96,7 @@ def test_runs_continue_from_their_events(solver, v):
     offset = np.array([0.01, -0.02, 0.0, -0.02, 0.01])
     run = simulate(
         model,
-        InitialState("own", tuple(offset - 0.9), 0.0),
+        initial=InitialState("own", tuple(offset - 0.9), 0.0),
         solver=solver,
         start="tested",
         events="all",

@@ -91,7 +91,7 @@ def test_maps_are_put_together_and_told(ruled):
     attractors = xr.Dataset(
         {"branch_number": ("number", [0, 5]), "branch_name": ("number", ["synchronized", "pair (5)"])}
     )
-    found = basins.merge(maps, attractors, ["linearized", "nonlinear"], PLANE, 7.0, "moving")
+    found = basins.merge(maps, attractors, PLANE, 7.0, "moving")
     assert found["branch"].values.tolist() == [[[0, 0, 5, 5], [0, 5, 5, 5], [0, 5, 5, 5], [-1] * 4]] * 2
     assert found["last_position"].values.tolist() == [0.25, 0.75, 1.25, 1.75]
     assert found["first_position"].values.tolist() == [-0.5, 0.5, 1.5, 2.5]
@@ -100,7 +100,7 @@ def test_maps_are_put_together_and_told(ruled):
         np.testing.assert_array_equal(found[name].values, [one[name].values for one in near])
     assert found["local_exponent"].dims == ("map", "separation_step")
     assert found["separation"].values == pytest.approx(4.0 * np.array(SEPARATIONS))
-    assert (found["law"].values.tolist(), found["a"].values.tolist()) == ([1, 0], [0.1, 0.3])
+    assert (found["law"].values.tolist(), found["a"].values.tolist()) == (["nonlinear", "linearized"], [0.1, 0.3])
     assert found["decision_time"].values[0, 2].tolist() == [99.5, 100.5, 101.5, 102.5]
     expected = {"v": 0.2, "contact": "symmetric", "start": "moving", "label_limit": 7.0}
     assert {key: found.attrs[key] for key in expected} == expected

@@ -125,7 +125,7 @@ def test_two_blocks_are_what_their_states_end_on(compared):
         for i, model in enumerate(both):
             told = {name: compared[name].values[c, i, j, k] for name in two_blocks.MOTION_VARIABLES}
             assert told == asdict(endings(model, STATES, SEARCH)[j])
-        runs = [simulate(model, state, SETTINGS) for model in both]
+        runs = [simulate(model, initial=state, settings=SETTINGS) for model in both]
         first, *others = [(run.event_time, run.event_block, run.event_kind) for run in runs]
         for i, other in enumerate(others):
             count, until = common_order(first, other)

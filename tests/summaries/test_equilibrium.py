@@ -104,7 +104,7 @@ def growth(model, mode, rate, duration, push):
     rest, shift = sliding_position(model), push * np.array(mode)
     # Its velocity is the growth rate times its displacement at first.
     state = InitialState("pushed", tuple(rest + shift), tuple(model.v + rate * shift))
-    run = simulate(model, state, Settings(transient=0.0, window=duration, batches=2, trajectory=0.0))
+    run = simulate(model, initial=state, settings=Settings(transient=0.0, window=duration, batches=2, trajectory=0.0))
     assert run.event_count == 0
     return (run.position[-1, 0] - rest[0]) / push
 
@@ -160,7 +160,7 @@ def test_the_energy_about_sliding_grows_until_a_block_stops(law):
     for seed in range(4):
         shift = 0.02 * np.random.default_rng(seed).uniform(-1.0, 1.0, 6)
         state = InitialState("near", tuple(model.sliding_offset + shift[:3]), tuple(model.v + shift[3:]))
-        run = simulate(model, state, transient=0.0, window=60.0, batches=2, trajectory=60.0, events="all")
+        run = simulate(model, initial=state, transient=0.0, window=60.0, batches=2, trajectory=60.0, events="all")
         assert run.event_kind[0] == 0
         before = run.trajectory_time < run.event_time[0]
         assert before.sum() > 50

@@ -64,7 +64,7 @@ def test_slips_of_the_linearized_law_are_a_multiple_of_the_driver_at_one_a():
         model = Model(Chain(3), law_of("linearized", 0.08), v)
         offset, size = model.sliding_offset, v / 0.1
         state = {"position": tuple(offset + size * np.array([-0.02, 0.03, -0.01])), "velocity": (v, v, v)}
-        run = simulate(model, InitialState("near", **state), transient=1500.0, window=200.0, batches=2)
+        run = simulate(model, initial=InitialState("near", **state), transient=1500.0, window=200.0, batches=2)
         speeds.append((1.0 - run.window_least_friction) / (0.08 * v))
     assert speeds[1] == pytest.approx(speeds[0], rel=1e-9)
     assert 2.0 < speeds[0] < 2.5
@@ -140,10 +140,11 @@ def test_section_points_are_kept_run_by_run(told):
     counts = [2 * len(upward) for _, upward, *_ in TOLD.values()]
     assert found["crossing_count"].values.tolist() == 4 * counts
     assert found["a"].values.tolist() == 4 * list(TOLD)
-    assert found["law"].values.tolist() == [0] * 10 + [1] * 10
-    assert found["initial"].values.tolist() == 2 * ([0] * 5 + [1] * 5)
+    assert found["law"].values.tolist() == ["linearized"] * 10 + ["nonlinear"] * 10
+    assert found["initial"].values.tolist() == 2 * (["minus"] * 5 + ["plus"] * 5)
     # Each run of the second state and law has velocities of its own.
-    chosen = np.repeat((found["law"].values == 1) & (found["initial"].values == 1), found["crossing_count"].values)
+    chosen = (found["law"].values == "nonlinear") & (found["initial"].values == "plus")
+    chosen = np.repeat(chosen, found["crossing_count"].values)
     found["crossing_velocity"].values[chosen] *= 2.0
     upward = np.concatenate([item[1] for item in TOLD.values()])
     for law, initial, factor in (("nonlinear", "plus", 2.0), ("nonlinear", "minus", 1.0), ("linearized", "plus", 1.0)):

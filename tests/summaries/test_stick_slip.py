@@ -219,7 +219,7 @@ def test_frequencies_are_those_of_the_same_motion_in_other_units():
         (Model(chain, law_of("linearized", 0.08)), state, 1.0, {"transient": 500.0, "window": 600.0, "batches": 2}),
         (Model(stiff, law_of("linearized", 1.6), 0.005), moved, 20.0, fast),
     ):
-        run = vars(simulate(model, initial, Settings(trajectory=0.5 / scale, **settings)))
+        run = vars(simulate(model, initial=initial, settings=Settings(trajectory=0.5 / scale, **settings)))
         velocity, duration = long_velocity(run, model, settings["transient"])
         told.append([leading_frequency(velocity[:, block], duration) / scale for block in range(3)])
     assert told[1] == pytest.approx(told[0], rel=1e-3)
@@ -239,7 +239,7 @@ def test_a_block_that_stands_still_has_no_frequency():
     model = Model(Chain(2, coupling=0.01, threshold=(1.0, 20.0)), law_of("linearized", 0.1), 0.1)
     run = simulate(
         model,
-        {"position": [0.0, 0.0], "velocity": [0.1, 0.0]},
+        initial={"position": [0.0, 0.0], "velocity": [0.1, 0.0]},
         transient=20.0,
         window=60.0,
         start="tested",

@@ -30,6 +30,8 @@ EXAMPLES = """  bk simulate --law linearized --a 0.08 --initial plus --out plus.
   bk simulate --formula "1 - c*tanh(a*u/c)" --number c=0.1 --a 0.5 --out own.nc
 """
 
+#: Settings of what is kept of a run.
+_KEPT = ("sampling", "events", "event_window", "trajectory", "trajectory_sampling")
 #: Settings that may ask for a longer time than the run or the window has.
 _PARTS = {"trajectory": "run", "event_window": "window"}
 
@@ -39,11 +41,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "minus")
     run = parser.add_argument_group("run")
-    add(run, Settings, "start", "solver", "step", "transient", "window", "batches")
-    add(run, Settings, "lyapunov_exponents", "lyapunov_alignment", "section")
+    add(run, Settings, *(name for name in fields_of(Settings) if name not in _KEPT))
     kept = parser.add_argument_group("output")
     kept.add_argument("--out", required=True, metavar="FILE", help="point file to write (netCDF)")
-    add(kept, Settings, "sampling", "events", "event_window", "trajectory", "trajectory_sampling")
+    add(kept, Settings, *_KEPT)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -13,6 +13,7 @@ from burridge_knopoff.provenance.sources import provenance
 
 if TYPE_CHECKING:
     import netCDF4
+    import xarray
 
 CONVENTIONS = "CF-1.11, ACDD-1.3"
 KEYWORDS = "stick-slip, friction, Burridge-Knopoff model, spring-block chain, synchronization"
@@ -77,6 +78,26 @@ def flag(dtype: str, meanings: Iterable[IntEnum] | Mapping[int, str]) -> dict[st
     if not isinstance(meanings, Mapping):
         meanings = {int(item): item.name.lower() for item in meanings}
     return {"flag_values": np.array(list(meanings), dtype=dtype), "flag_meanings": " ".join(meanings.values())}
+
+
+def in_words(flags: xarray.DataArray) -> xarray.DataArray:
+    """Return a flag variable with the meaning of each value, a string, in its place; "" where it is NaN.
+
+    Raises ValueError if it has no flag meanings.
+
+    >>> from burridge_knopoff import in_words, open_study
+    >>> runs = open_study("results/paper", points=False)["summary/lyapunov"]
+    >>> in_words(runs.run_kind).sel(law="linearized", initial="minus", a=0.08).item()
+    'synchronized'
+    """
+    if "flag_meanings" not in flags.attrs:
+        raise ValueError(f"{flags.name}: got no flag_meanings, expected a flag variable")
+    words = np.full(flags.shape, "", dtype=object)
+    values, meanings = np.atleast_1d(flags.attrs["flag_values"]), flags.attrs["flag_meanings"].split()
+    for value, meaning in zip(values, meanings, strict=True):
+        words[flags.values == value] = meaning
+    told = {name: text for name, text in flags.attrs.items() if not name.startswith("flag_")}
+    return flags.copy(data=words).drop_attrs().assign_attrs(told)
 
 
 class Answer(IntEnum):

@@ -47,7 +47,6 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
         for name, (x, y) in marked_states.items()
         if extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]
     }
-    laws = basins["law"].attrs["flag_meanings"].split()
     titles = []
     shown: dict[tuple[int, int], Patch] = {}
     for number, panel in enumerate(panels.flat):
@@ -55,8 +54,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
             panel.set_axis_off()
             continue
         one = basins.isel(map=number)
-        law = laws[int(one["law"])]
-        titles.append(f"{law} law, $a={one['a'].item():g}$")
+        titles.append(f"{one['law'].item()} law, $a={one['a'].item():g}$")
         picture = np.zeros((*one["branch"].shape, 3))
         for part in map_parts(one, colors, names):
             picture[part.members] = to_rgb(part.color)

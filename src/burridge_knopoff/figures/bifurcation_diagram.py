@@ -50,7 +50,7 @@ def draw(
     attractors, refined : the branch that each initial state reaches, and the sections of all attractors between the
         values of the grid
     """
-    laws, initial = (bifurcation[name].attrs["flag_meanings"].split() for name in ("law", "initial"))
+    laws, initial = (list(dict.fromkeys(bifurcation[name].values.tolist())) for name in ("law", "initial"))
     figure, table = panel_table(2.6, len(initial), "$a$", ["$W$′ at $W=0$" for _ in laws])
     panels = list(table.flat)
     grid = np.unique(bifurcation["a"])

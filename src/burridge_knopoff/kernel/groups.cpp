@@ -9,8 +9,9 @@ void Run::wait(int i) {
     const Springs &springs = model.springs;
     const bool steady = loading == 0.0;
     const double rate = (steady ? model.v : loading) * springs.driving[i];
-    const double left = (springs.threshold[i] - waiting_force(i, since[i])) / rate;
-    begins[i] = rate > 0.0 ? (steady ? since : loaded)[i].after(left > 0.0 ? left : 0.0) : Clock{NEVER, 0.0};
+    const double left = (springs.threshold[i] - waiting_force(i, alone[i].since)) / rate;
+    begins[i] =
+        rate > 0.0 ? (steady ? alone[i].since : alone[i].loaded).after(left > 0.0 ? left : 0.0) : Clock{NEVER, 0.0};
     version[i]++;
     if (rate > 0.0) starts().push({begins[i], i, false, version[i]});
 }
@@ -134,7 +135,7 @@ void Run::regroup() {
         group->advance(length);
         if (catalogue) group->record(*catalogue, polynomial, 0.0, length, true);
         for (int k = 0; k < group->size(); k++)
-            group->state.position.lane(k) -= loading * loaded[group->layout.member[k]].until(load);
+            group->state.position.lane(k) -= loading * alone[group->layout.member[k]].loaded.until(load);
         retire(*group);
     }
     Group &group = collect(all);
@@ -160,9 +161,9 @@ Group &Run::collect(std::vector<int> &members) {
     std::sort(members.begin(), members.end());
     members.erase(std::unique(members.begin(), members.end()), members.end());
     for (int i : members) {
-        if (slip[i] == 0.0) x[i] = stuck_position(i, now);
-        since[i] = now;
-        loaded[i] = load;
+        if (alone[i].slip == 0.0) alone[i].x = stuck_position(i, now);
+        alone[i].since = now;
+        alone[i].loaded = load;
         version[i]++;
     }
     return build(members, now);

@@ -270,8 +270,11 @@ NB_MODULE(_core, m) {
                 made["velocity"] = numbers(o.trajectory_velocity, {count, blocks});
                 made["crossing_time"] = numbers(o.crossings.time);
                 made["crossing"] = numbers(o.crossings.value, {o.crossings.time.size(), 2});
-                made["highest_speed"] = numbers({o.highest_speed[0], o.highest_speed[1]});
-                made["lowest_force"] = numbers({o.lowest_force[0], o.lowest_force[1]});
+                auto known = [](const double (&of)[2]) {
+                    return numbers({std::fabs(of[0]) < NEVER ? of[0] : NAN, std::fabs(of[1]) < NEVER ? of[1] : NAN});
+                };
+                made["highest_speed"] = known(o.highest_speed);
+                made["lowest_force"] = known(o.lowest_force);
                 return made;
             },
             "All that was measured, as NumPy arrays.");

@@ -23,17 +23,7 @@ void Run::restart(double time) {
 }
 
 void Run::resume(const Mark &mark, double time) {
-    for (int i = 0; i < blocks; i++) {
-        const double *row = row_of(mark, i);
-        x[i] = row[0];
-        u[i] = row[1];
-        acceleration[i] = row[2];
-        age[i] = row[3];
-        slip[i] = row[4];
-        touching[i] = row[5];
-        since[i] = {row[6], row[7]};
-        loaded[i] = {row[10], row[11]};
-    }
+    alone = mark.block;
     restart(time);
     if (loading > 0.0) {
         now = mark.now;
@@ -47,7 +37,7 @@ void Run::resume(const Mark &mark, double time) {
     std::vector<std::vector<int>> members;
     for (int i = 0; i < blocks; i++) {
         if (mark.group[i] < 0) {
-            begins[i] = {row_of(mark, i)[8], row_of(mark, i)[9]};
+            begins[i] = mark.begins[i];
             if (local && begins[i].time < NEVER) starts().push({begins[i], i, false, version[i]});
             continue;
         }
@@ -56,12 +46,11 @@ void Run::resume(const Mark &mark, double time) {
     }
     for (auto &own : members) {
         if (own.empty()) continue;
-        Group &group = build(own, since[own[0]]);
+        Group &group = build(own, alone[own[0]].since);
         // To the bit, whatever has become of the blocks around it since.
         for (int k = 0; k < group.size(); k++) {
-            const double *row = row_of(mark, group.layout.member[k]);
-            group.layout.sliding_force.lane(k) = row[8];
-            group.layout.drift.lane(k) = row[9];
+            group.layout.sliding_force.lane(k) = mark.sliding_force[group.layout.member[k]];
+            group.layout.drift.lane(k) = mark.drift[group.layout.member[k]];
         }
         if (local && mark.local) blind |= !schedule(group);
         if (modes) start_modes(group, mark);
@@ -87,13 +76,13 @@ void Run::settle_first() {
 void Run::state_of(int i, double &position, double &speed, double &direction) {
     if (group_of[i] < 0) {
         position = stuck_position(i, now);
-        speed = u[i];
-        direction = slip[i];
+        speed = alone[i].u;
+        direction = alone[i].slip;
         return;
     }
     Group &group = *groups[group_of[i]];
     const int lane = lane_of[i];
-    position = group.state.position.lane(lane) - loading * loaded[i].until(load);
+    position = group.state.position.lane(lane) - loading * alone[i].loaded.until(load);
     speed = group.state.velocity.lane(lane);
     direction = group.state.slip.lane(lane);
     const double t = group.start.until(now);
@@ -106,7 +95,8 @@ void Run::state_of(int i, double &position, double &speed, double &direction) {
 
 // Where a block is at a time, if it sticks.
 double Run::stuck_position(int i, const Clock &at) const {
-    if (group_of[i] < 0) return (x[i] - model.v * since[i].until(at)) - loading * loaded[i].until(load);
+    if (group_of[i] < 0)
+        return (alone[i].x - model.v * alone[i].since.until(at)) - loading * alone[i].loaded.until(load);
     const Group &group = *groups[group_of[i]];
     return group.state.position.lane(lane_of[i]) - model.v * group.start.until(at);
 }
@@ -148,29 +138,35 @@ Group &Run::build(std::vector<int> members, const Clock &at) {
     group.widen();
     for (size_t k = n; k < size_t(group.layout.columns) * LANES; k++) group.state.place(k, 0.0, 0.0, true);
     for (int k = 0; k < n; k++) {
-        const int i = members[k];
-        group.state.position.lane(k) = x[i];
-        group.state.velocity.lane(k) = u[i];
-        group.state.acceleration.lane(k) = acceleration[i];
-        group.state.age.lane(k) = age[i];
-        group.state.slip.lane(k) = slip[i];
-        group.state.touching.lane(k) = touching[i];
+        const Block &block = alone[members[k]];
+        group.state.position.lane(k) = block.x;
+        group.state.velocity.lane(k) = block.u;
+        group.state.acceleration.lane(k) = block.acceleration;
+        group.state.age.lane(k) = block.age;
+        group.state.slip.lane(k) = block.slip;
+        group.state.touching.lane(k) = block.touching;
     }
     return group;
+}
+
+// The state of the block in a lane of a group; loaded : the loading clock
+static Block block_in(Group &group, int lane, const Clock &loaded) {
+    State<Blocks> &state = group.state;
+    return {state.position.lane(lane),
+            state.velocity.lane(lane),
+            state.acceleration.lane(lane),
+            state.age.lane(lane),
+            state.slip.lane(lane),
+            state.touching.lane(lane),
+            group.start,
+            loaded};
 }
 
 // Keep the states of a group's blocks for themselves, and dissolve it.
 void Run::retire(Group &group) {
     for (int k = 0; k < group.size(); k++) {
         const int i = group.layout.member[k];
-        x[i] = group.state.position.lane(k);
-        u[i] = group.state.velocity.lane(k);
-        acceleration[i] = group.state.acceleration.lane(k);
-        age[i] = group.state.age.lane(k);
-        slip[i] = group.state.slip.lane(k);
-        touching[i] = group.state.touching.lane(k);
-        since[i] = group.start;
-        loaded[i] = load;
+        alone[i] = block_in(group, k, load);
         group_of[i] = -1;
     }
     group.version++;
@@ -230,7 +226,10 @@ void Run::find_due(Group &group) {
 
 // Keep the pieces that the end of a run cuts off.
 void Run::remember() {
-    marked.table.resize(size_t(blocks) * COLUMNS);
+    marked.block = alone;
+    marked.begins = begins;
+    marked.sliding_force.assign(blocks, 0.0);
+    marked.drift.assign(blocks, 0.0);
     marked.group = group_of;
     marked.now = now;
     marked.load = load;
@@ -243,22 +242,13 @@ void Run::remember() {
         marked.origin_velocity = modes->origin_velocity;
     }
     for (int i = 0; i < blocks; i++) {
-        double *row = &marked.table[size_t(i) * COLUMNS];
-        Clock at = since[i];
-        row[8] = begins[i].time, row[9] = begins[i].rest;
-        row[0] = x[i], row[1] = u[i], row[2] = acceleration[i], row[3] = age[i], row[4] = slip[i], row[5] = touching[i];
-        if (group_of[i] >= 0) {
-            Group &group = *groups[group_of[i]];
-            const int lane = lane_of[i];
-            const Vectors *rows[] = {&group.state.position, &group.state.velocity, &group.state.acceleration,
-                                     &group.state.age,      &group.state.slip,     &group.state.touching};
-            for (int k = 0; k < 6; k++) row[k] = rows[k]->lane(lane);
-            at = group.start;
-            row[8] = group.layout.sliding_force.lane(lane), row[9] = group.layout.drift.lane(lane);
-            if (!local) marked.side = group.side;
-        }
-        row[6] = at.time, row[7] = at.rest;
-        row[10] = loaded[i].time, row[11] = loaded[i].rest;
+        if (group_of[i] < 0) continue;
+        Group &group = *groups[group_of[i]];
+        const int lane = lane_of[i];
+        marked.block[i] = block_in(group, lane, alone[i].loaded);
+        marked.sliding_force[i] = group.layout.sliding_force.lane(lane);
+        marked.drift[i] = group.layout.drift.lane(lane);
+        if (!local) marked.side = group.side;
     }
 }
 
@@ -348,7 +338,7 @@ bool Run::load_next(Group &group) {
         least = std::min(least, least_lane(left[c]));
     }
     // The state stays where the last slip left it until the next start.
-    const Clock from = loaded[0];
+    const Clock from = alone[0].loaded;
     if (exponents.tangent.vectors > 0) exponents.begin_within(group.state, from.time, least);
     if (from.until(end) < least) {
         load = {end, 0.0};
@@ -358,7 +348,7 @@ bool Run::load_next(Group &group) {
     load = from.after(least);
     // A batch of exponents begins before an event.
     if (exponents.running) exponents.follow(group.state, load.time, false);
-    std::fill(loaded.begin(), loaded.end(), load);
+    for (Block &block : alone) block.loaded = load;
     due.assign(layout.columns, 0);
     for (int c = 0; c < layout.columns; c++) {
         group.state.position[c] -= loading * least;

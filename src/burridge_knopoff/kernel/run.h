@@ -16,12 +16,25 @@
 
 namespace bk {
 
+// A block by itself: see State.
+struct Block {
+    double x, u, acceleration, age, slip, touching;
+    Clock since, loaded;  // the time of this state, and the loading clock then
+
+    template <class A>
+    void archive(A &values) {
+        values(x, u, acceleration, age, slip, touching, since, loaded);
+    }
+};
+
 // What repeats the last pieces of a run that ended, so that one that goes on has the same pieces as if it had not.
 struct Mark {
-    // For each block x, U', U'', age, slip, touching, a clock, that of its group, and what pulls on it from outside the
-    // group; without a group when it starts; the loading clock at x. The group, −1 for none.
-    std::vector<double> table;
-    std::vector<int> group;
+    std::vector<Block> block;
+    std::vector<int> group;  // of each block, −1 for none
+    // Of blocks without a group, when they start.
+    std::vector<Clock> begins;
+    // What pulls on the blocks of a group from outside it.
+    std::vector<double> sliding_force, drift;
     // The slip clock and, under quasi-static loading, the loading clock.
     Clock now, load;
     // Positions and velocities at the last event, for the closed form.
@@ -35,14 +48,13 @@ struct Mark {
 
     template <class A>
     void archive(A &values) {
-        values(table, group, now, load, origin, origin_velocity, catalogue, since_event, side, local);
+        values(block, group, begins, sliding_force, drift, now, load, origin, origin_velocity, catalogue, since_event,
+               side, local);
     }
 };
 
 class Run {
   public:
-    static constexpr int COLUMNS = 12;  // of the table of a mark
-
     // Number of blocks from which on groups are faster than one.
     static constexpr int MANY = 24;
     // Longest time, in units of the chain, over which perturbations are followed at once: without events, too, they
@@ -75,8 +87,7 @@ class Run {
           local(exponents.tangent.vectors == 0 && (local < 0 ? model.springs.blocks >= MANY : local > 0)),
           step_limit(step_limit), loading(loading), end(observer.end()), blocks(model.springs.blocks),
           first(observer.section ? observer.section - 1 : 0),
-          last(observer.section ? observer.section : model.springs.blocks), x(blocks), u(blocks), acceleration(blocks),
-          age(blocks), slip(blocks), touching(blocks), since(blocks), loaded(blocks), group_of(blocks, -1),
+          last(observer.section ? observer.section : model.springs.blocks), alone(blocks), group_of(blocks, -1),
           lane_of(blocks, -1), version(blocks), begins(blocks) {
         log.unit = model.springs.unit;
         exponents.interval = loading > 0.0 ? 0.0 : model.springs.unit;
@@ -88,12 +99,8 @@ class Run {
     // Begin at a time from positions x_i, velocities U_i' and which blocks are stuck.
     void begin(const double *position, const double *speed, const bool *stuck, double time) {
         for (int i = 0; i < blocks; i++) {
-            x[i] = position[i];
-            u[i] = stuck[i] ? 0.0 : speed[i];
-            slip[i] = stuck[i] ? 0.0 : speed[i] < 0.0 ? -1.0 : 1.0;
-            acceleration[i] = touching[i] = 0.0;
-            age[i] = LONG;
-            since[i] = loaded[i] = {time, 0.0};
+            const double slip = stuck[i] ? 0.0 : speed[i] < 0.0 ? -1.0 : 1.0;
+            alone[i] = {position[i], stuck[i] ? 0.0 : speed[i], 0.0, LONG, slip, 0.0, {time, 0.0}, {time, 0.0}};
         }
         restart(time);
         settled = false;
@@ -124,11 +131,7 @@ class Run {
     double since_event = 0.0;
     Mark marked;
     Polynomial polynomial;
-    // Of blocks without a group, at the time `since`; of others when their group began.
-    std::vector<double> x, u, acceleration, age, slip, touching;
-    std::vector<Clock> since;
-    // The loading clock at these positions.
-    std::vector<Clock> loaded;
+    std::vector<Block> alone;  // of those in a group, when it began
     std::vector<int> group_of, lane_of;
     std::vector<uint64_t> version;
     std::vector<std::unique_ptr<Group>> groups;
@@ -148,8 +151,6 @@ class Run {
     using Queue = std::priority_queue<Next, std::vector<Next>, std::greater<Next>>;
     Queue queue, waiting;
     Queue &starts() { return loading > 0.0 ? waiting : queue; }
-
-    static const double *row_of(const Mark &mark, int i) { return &mark.table[size_t(i) * COLUMNS]; }
 
     // Both ways, in run.cpp.
     void restart(double time);
@@ -197,7 +198,7 @@ class Run {
     double section_range(const Group &group);
     bool holds_end(const Group &group) const;
     double direction_of(int i) const {
-        return group_of[i] < 0 ? slip[i] : groups[group_of[i]]->state.slip.lane(lane_of[i]);
+        return group_of[i] < 0 ? alone[i].slip : groups[group_of[i]]->state.slip.lane(lane_of[i]);
     }
 
     std::vector<Clock> begins;  // when blocks that wait start

@@ -81,9 +81,7 @@ def basin_map(
     attractors, known = coexisting_attractors(model, settings, motion, starts=[state], start=start)
     tile = basin_summary.tile(known, 0, plane, settings.label_limit, start)
     pairs = basin_summary.pairs(known, plane, settings.label_limit, settings.seed, start)
-    basins = basin_summary.merge(
-        [(model, [tile], pairs)], attractors, [model.law.name], plane, settings.label_limit, start
-    )
+    basins = basin_summary.merge([(model, [tile], pairs)], attractors, plane, settings.label_limit, start)
     for dataset in (attractors, basins):
         dataset.attrs["history"] = "burridge_knopoff.basin_map"
     return basins, attractors

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Unpack, overload
+from typing import Unpack
 
 from burridge_knopoff.laws import Law
 from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
@@ -14,51 +14,19 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
 
-@overload
-def simulate(
-    law: Model, initial: Initial | ChainState, settings: Settings | None, /, **by_name: Unpack[RunSettings]
-) -> Run: ...
-
-
-@overload
-def simulate(
-    law: Model, initial: Initial | ChainState, /, *, settings: Settings | None = ..., **by_name: Unpack[RunSettings]
-) -> Run: ...
-
-
-@overload
-def simulate(
-    law: Model, *, initial: Initial | ChainState = ..., settings: Settings | None = ..., **by_name: Unpack[RunSettings]
-) -> Run: ...
-
-
-@overload
-def simulate(
-    law: GivenLaw = ...,
-    a: float = ...,
-    initial: Initial | ChainState = ...,
-    settings: Settings | None = ...,
-    *,
-    chain: Chain | None = ...,
-    v: float = ...,
-    contact: str = ...,
-    **by_name: Unpack[RunSettings],
-) -> Run: ...
-
-
 @shows(Settings)
 def simulate(
-    law: Any = "linearized",
-    a: Any = None,
-    initial: Any = None,
+    law: Model | GivenLaw = "linearized",
+    a: float | None = None,
+    initial: Initial | ChainState = "minus",
     settings: Settings | None = None,
     *,
     chain: Chain | None = None,
     v: float | None = None,
     contact: str | None = None,
-    **by_name: Any,
+    **by_name: Unpack[RunSettings],
 ) -> Run:
-    """Run one simulation: `simulate(law, a, initial)` or `simulate(model, initial)`.
+    """Run one simulation.
 
     law, a : the name of a built-in law and the friction parameter (0.08 by default), a `Law` (with its own a), or
         {"formula": "1 - c*a*u", "c": 0.5}; or instead of both a `Model`, with its own chain, v and contact
@@ -80,19 +48,13 @@ def simulate(
     >>> own = {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}
     >>> simulate("nonlinear", 0.1, own, transient=0, window=50).model.blocks
     2
-    >>> longer = simulate(run.model, run.final, transient=0, window=100)
+    >>> longer = simulate(run.model, initial=run.final, transient=0, window=100)
     >>> longer.begin_time, longer.end_time
     (200.0, 300.0)
     """
-    if not isinstance(law, Model):
-        own = law.a if isinstance(law, Law) else 0.08
-        a = own if a is None else a
-    elif not (a is None or isinstance(a, int | float)):
-        # By position: simulate(model, initial, settings).
-        if initial is not None and settings is not None:
-            raise ValueError("settings: got two, expected one")
-        a, initial, settings = None, a, settings if initial is None else initial
-    state = initial if isinstance(initial, ChainState) else given_state("minus" if initial is None else initial)
+    if not isinstance(law, Model) and a is None:
+        a = law.a if isinstance(law, Law) else 0.08
+    state = initial if isinstance(initial, ChainState) else given_state(initial)
     blocks = len(state.position) if isinstance(state, ChainState) else state.blocks
     model = given_model(law, a, blocks, chain, v, contact)
     return Run(**vars(run(model, state, settings_of(Settings, settings, by_name))))

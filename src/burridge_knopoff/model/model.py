@@ -154,8 +154,8 @@ class ChainState:
     time : τ of the state; a continued run starts its clock here
 
     Positions and velocities are in the units of `Model`; e_i is its `sliding_offset`. `Trajectory.final` also keeps the
-    last step of its run, which `simulate(model, run.final)` repeats. States, events and crossings of a split run are
-    thus those of the whole run, bit for bit, also from a state that was copied or pickled.
+    last step of its run, which `simulate(model, initial=run.final)` repeats. States, events and crossings of a split
+    run are thus those of the whole run, bit for bit, also from a state that was copied or pickled.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of
     >>> model = Model(Chain(3), law_of("linearized", 0.08))

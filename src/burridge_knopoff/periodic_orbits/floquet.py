@@ -36,7 +36,7 @@ class Multipliers:
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
-    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> found = multipliers(orbit)
     >>> abs(found.whole).round(4).tolist(), found.unstable
@@ -80,7 +80,7 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
-    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> multipliers(orbit).unstable == 0
     True

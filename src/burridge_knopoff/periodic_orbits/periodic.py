@@ -59,7 +59,7 @@ class PeriodicOrbit:
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
-    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> orbit.monodromy.shape, orbit.residual < 1e-12, round(orbit.period / orbit.return_time)
     ((6, 6), True, 2)
@@ -269,7 +269,7 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, find_periodic_orbit, law_of, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
-    >>> run = simulate(model, "plus", transient=0, window=10)
+    >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> near = find_periodic_orbit(model.at(0.081), orbit.reference, orbit.return_time, orbit.symmetry)
     >>> near.a, round(near.period, 4)

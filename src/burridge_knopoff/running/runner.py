@@ -17,8 +17,6 @@ from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_array, real_number, refusal
 
-NEVER = 1e300
-
 #: Solvers with a fixed step.
 STEPPING = ("rk4", "euler")
 
@@ -82,10 +80,10 @@ class Runner:
         blocks = model.blocks
         rate_limit = EVENTS_PER_BLOCK_AND_UNIT * blocks
         self.log = EventLog(blocks, events_from, keep_events, rate_limit, stops_only, MOST_NUMBERS)
-        self.observer = observer if observer is not None else new_observer(model, [NEVER, NEVER])
+        self.observer = observer if observer is not None else new_observer(model, [math.inf, math.inf])
         if exponents is None:
             count = 0 if perturbations is None else perturbations.shape[1]
-            exponents = Exponents(blocks, count, NEVER, np.array([NEVER, NEVER]))
+            exponents = Exponents(blocks, count, math.inf, np.array([math.inf, math.inf]))
         self.exponents = exponents
         self.kernel: Run | TimeStepping
         if stepping:

@@ -19,9 +19,10 @@ from burridge_knopoff.running.status import Status
 class Trajectory:
     """Result of a run: model, initial state, settings, status, and observables; arrays have the names of point files.
 
-    `final` is the state at the end. `simulate(model, run.final)` continues from it on the same clock, and both runs
-    together have the events and crossings of one long run, bit for bit. `initially_slipping` says which blocks slip at
-    the beginning, before the first event. The slips of a block are this one and those that begin at its starts.
+    `final` is the state at the end. `simulate(model, initial=run.final)` continues from it on the same clock, and both
+    runs together have the events and crossings of one long run, bit for bit. `initially_slipping` says which blocks
+    slip at the beginning, before the first event. The slips of a block are this one and those that begin at its
+    starts.
 
     Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
 
@@ -100,8 +101,8 @@ def collect(
     lyapunov = _exponents(runner, settings, completed)
     speed = measured["highest_speed"]
     force = measured["lowest_force"]
-    least_friction = [model.law.least(value) if value > -1e299 else math.nan for value in (speed.max(), speed[1])]
-    least_force = [float(value) if value < 1e299 else math.nan for value in (force.min(), force[1])]
+    least_friction = [math.nan if np.isnan(u) else model.law.least(u) for u in (np.fmax(*speed), speed[1])]
+    least_force = [float(value) for value in (np.fmin(*force), force[1])]
     return Trajectory(
         model=model,
         initial=initial,

@@ -8,6 +8,8 @@ from textwrap import shorten
 import numpy as np
 import xarray
 
+from burridge_knopoff.dataset.variables import in_words
+
 #: Maximum length of a list of names, in letters.
 LONGEST = 70
 #: Maximum length of a list of numbers.
@@ -38,8 +40,8 @@ def values_in_words(variable: xarray.DataArray) -> str:
     if not values.size:
         return "no values"
     if "flag_meanings" in variable.attrs:
-        names = zip(np.atleast_1d(variable.attrs["flag_values"]), variable.attrs["flag_meanings"].split(), strict=True)
-        counts = [(name, int((values == number).sum())) for number, name in names]
+        words = in_words(variable).values
+        counts = [(name, int((words == name).sum())) for name in variable.attrs["flag_meanings"].split()]
         return ", ".join(f"{name} {number}" for name, number in counts if number)
     if values.dtype == object or values.dtype.kind in "US":
         return shorten(", ".join(dict.fromkeys(map(str, values.ravel()))), LONGEST, placeholder=" ...")

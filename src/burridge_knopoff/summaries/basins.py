@@ -122,7 +122,7 @@ def make(
         for n, (law, a) in enumerate(maps)
     ]
     limit = SearchSettings(**attractors).label_limit
-    dataset = merge(parts, given.summary("attractors"), list(model["laws"]), plane, limit, start)
+    dataset = merge(parts, given.summary("attractors"), plane, limit, start)
     return dataset, digest(dataset)
 
 
@@ -203,7 +203,6 @@ def _separation(basins: BasinSettings) -> tuple[str, np.ndarray, dict[str, str]]
 def merge(
     maps: Sequence[tuple[Model, Sequence[xarray.Dataset], xarray.Dataset]],
     attractors: xarray.Dataset,
-    laws: Sequence[str],
     basins: BasinSettings,
     label_limit: float,
     start: str,
@@ -211,7 +210,7 @@ def merge(
     """Put the maps together, each (model, its tiles in order, its pairs).
 
     attractors : the summary of that name, which has the names of the branches
-    laws : names of the laws of the study, in order; basins, label_limit, start : what the maps were made with
+    basins, label_limit, start : what the maps were made with
     """
     wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, tiles, _ in maps]
     values: dict[str, Any] = {name: np.stack([whole[name].values for whole in wholes]) for name in TILE_VARIABLES}
@@ -221,12 +220,8 @@ def merge(
     coordinates = _coordinates(wholes[0]["first_position"].values, wholes[0]["last_position"].values)
     coordinates["separation"] = _separation(basins)
     models = [model for model, *_ in maps]
-    law = {
-        "long_name": "friction law",
-        "flag_values": np.arange(len(laws), dtype="i1"),
-        "flag_meanings": " ".join(laws),
-    }
-    coordinates["law"] = ("map", np.array([laws.index(model.law.name) for model in models], dtype="i1"), law)
+    names = np.array([model.law.name for model in models], dtype=object)
+    coordinates["law"] = ("map", names, {"long_name": "friction law"})
     a = {"long_name": "friction parameter a", "units": "1"}
     coordinates["a"] = ("map", np.array([model.a for model in models]), a)
     u, w = basins.initial.numbers(models[0].blocks)

@@ -5,8 +5,6 @@ The file is a contiguous ragged array of the CF conventions.
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 import xarray
 
@@ -36,18 +34,17 @@ def summarize(grid: Grid) -> xarray.Dataset:
     before; `section_points` picks them by name.
     """
     velocity, direction, count, law, initial, a = [], [], [], [], [], []
-    names = tuple(grid.initial)
     for _, point in grid:
         read = read_point(grid, point, ["crossing_velocity", "crossing_direction"])
         velocity.append(read["crossing_velocity"])
         direction.append(read["crossing_direction"])
         count.append(len(read["crossing_velocity"]))
-        law.append(grid.laws.index(point[0]))
-        initial.append(names.index(point[1]))
+        law.append(point[0])
+        initial.append(point[1])
         a.append(grid.a[point[2]])
     coordinates = {
-        "law": ("point", np.array(law, dtype="i1"), _flag("friction law", grid.laws, "i1")),
-        "initial": ("point", np.array(initial, dtype="i2"), _flag("initial state", names, "i2")),
+        "law": ("point", np.array(law, dtype=object), {"long_name": "friction law"}),
+        "initial": ("point", np.array(initial, dtype=object), {"long_name": "initial state"}),
         "a": ("point", np.array(a), {"long_name": "friction parameter a", "units": "1"}),
     }
     values = {
@@ -65,16 +62,10 @@ def summarize(grid: Grid) -> xarray.Dataset:
     )
 
 
-def _flag(long_name: str, meanings: tuple[str, ...], dtype: str) -> dict[str, Any]:
-    values = np.arange(len(meanings), dtype=dtype)
-    return {"long_name": long_name, "flag_values": values, "flag_meanings": " ".join(meanings)}
-
-
 def section_points(dataset: xarray.Dataset, law: str, initial: str, direction: int) -> tuple[np.ndarray, np.ndarray]:
     """Return (a, W') of all section points of one law and initial state crossed upward (1) or downward (-1)."""
     a = np.repeat(dataset["a"].values, dataset["crossing_count"].values)
-    chosen = dataset["law"].values == dataset["law"].attrs["flag_meanings"].split().index(law)
-    chosen &= dataset["initial"].values == dataset["initial"].attrs["flag_meanings"].split().index(initial)
+    chosen = (dataset["law"].values == law) & (dataset["initial"].values == initial)
     chosen = np.repeat(chosen, dataset["crossing_count"].values)
     chosen &= dataset["crossing_direction"].values == direction
     return a[chosen], dataset["crossing_velocity"].values[chosen]

@@ -39,13 +39,12 @@ class MapRow:
 def map_rows(basins: xarray.Dataset) -> Iterator[MapRow]:
     """Yield the maps of a file in their order."""
     names = {_UNDETERMINED: UNDETERMINED, **branch_names(basins)}
-    laws = basins["law"].attrs["flag_meanings"].split()
     for number in range(basins.sizes["map"]):
         one = basins.isel(map=number)
         reached = np.stack([one["branch"].values.ravel(), one["side"].values.ravel()])
         pairs, counts = np.unique(reached, axis=1, return_counts=True)
         yield MapRow(
-            laws[int(one["law"])],
+            one["law"].item(),
             one["a"].item(),
             one["branch"].size,
             {

@@ -8,11 +8,9 @@ from burridge_knopoff.report.charts.sections import BINS, section_counts, sectio
 
 
 def crossings(velocity, count):
-    laws = {"flag_values": [0, 1], "flag_meanings": "linearized nonlinear"}
-    states = {"flag_values": [0], "flag_meanings": "plus"}
     coordinates = {
-        "law": ("point", np.repeat([0, 1], len(count) // 2), laws),
-        "initial": ("point", np.zeros(len(count), dtype="i2"), states),
+        "law": ("point", np.repeat(["linearized", "nonlinear"], len(count) // 2)),
+        "initial": ("point", ["plus"] * len(count)),
     }
     found = xr.Dataset({"crossing_count": ("point", np.asarray(count, dtype="i4"))}, coordinates)
     direction = np.where(np.asarray(velocity) >= 0.0, 1, -1).astype("i1")

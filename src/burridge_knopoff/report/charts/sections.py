@@ -28,7 +28,7 @@ def section_counts(bifurcation: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]
     # Sums of the stored type, one byte, would overflow.
     directions = np.where(np.abs(velocity) > ROUNDING, bifurcation["crossing_direction"].values.astype(float), 0.0)
     edges = np.linspace(*_range(velocity), BINS + 1)
-    laws, states = (bifurcation[name].attrs["flag_meanings"].split() for name in ("law", "initial"))
+    laws, states = (set(bifurcation[name].values.tolist()) for name in ("law", "initial"))
     columns = np.zeros((len(counts), BINS), dtype="i4")
     stops = np.cumsum(counts)
     for n, (stop, count) in enumerate(zip(stops, counts, strict=True)):

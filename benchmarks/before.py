@@ -1,9 +1,9 @@
-"""The kernel against that of an earlier commit: single runs, labels of many states, laws by formula, other chains.
+"""The kernel of this tree against that of another checkout: single runs, runs in groups, labels of many states, laws.
 
-    python benchmarks/kernel.py
+    python benchmarks/before.py ../before           # a checkout in which `make kernel` has been run
 
-The earlier kernel is built beside, in a temporary folder. Both are measured in turn, each in a process of its own; a
-ratio is that of the least CPU times.
+Both are measured in turn, each in a process of its own; a ratio is that of the least CPU times. For each width of
+vectors compile both with `BURRIDGE_KNOPOFF_LANES=2`, 4 or 8.
 """
 
 import argparse
@@ -11,7 +11,6 @@ import json
 import os
 import subprocess
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -22,12 +21,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 from measure import print_table
 
-REPOSITORY = Path(__file__).resolve().parent.parent
-EARLIER = "8341d47"
+SOURCE = Path(__file__).resolve().parent.parent / "src"
 RUNS = (("minus", 0.08), ("plus", 0.08), ("plus", 0.25))
 LAWS = ("linearized", "nonlinear")
 LABELS = tuple((law, blocks, a) for law in LAWS for blocks in (3, 8) for a in (0.08, 0.2))
 STATES, END, RADIUS, RETURNS = 400, 150.0, 0.01, 8
+# A long stiff chain, as of Carlson and Langer.
+BLOCKS, SLOW, LONG = 100, 0.01, 2000.0
 
 
 def least(call: Callable[[], object], repeats: int = 3) -> float:
@@ -47,49 +47,9 @@ def starts(blocks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return position, generator.uniform(0.0, 0.2, (STATES, blocks)), generator.uniform(-0.4, 0.4, (300, 2 * blocks))
 
 
-def earlier() -> dict[str, float]:
-    """Measure the kernel of the earlier commit, with the interface that it had."""
-    from burridge_knopoff.initial import PAPER_STATES
-    from burridge_knopoff.kernel.proximity import Proximity
-    from burridge_knopoff.stability.flow import Model, begin, new_solver
-
-    from burridge_knopoff import Chain, Friction, simulate
-
-    found = {}
-    for law in LAWS:
-        for initial, a in RUNS:
-            model = Model(Chain(3), Friction(law, a))
-            solver, start = new_solver(model), begin(model, PAPER_STATES[initial])
-            solver.end = 1e4
-
-            def bare(solver=solver, start=start):
-                solver.begin(start.position, start.velocity, start.stuck)
-                while solver.run() == -1:
-                    pass
-
-            name = f"{law}, {initial}, a = {a:g}"
-            found[f"{name}, bare"] = least(bare)
-            for count in (0, 3):
-                found[f"{name}, {count} exponents"] = least(
-                    lambda law=law, a=a, initial=initial, count=count: simulate(
-                        law, a, initial, lyapunov_exponents=count
-                    )
-                )
-    for law, blocks, a in LABELS:
-        position, velocity, cloud = starts(blocks)
-        solver = new_solver(Model(Chain(blocks), Friction(law, a)))
-        solver.halting_block, solver.end = 0, END
-        kernel = Proximity(solver, [cloud], [RADIUS], [RETURNS])
-        tables = np.zeros((STATES, blocks), dtype=np.intc), np.zeros(STATES, dtype=np.intc), np.zeros(STATES)
-        found[f"labels, {law}, N = {blocks}, a = {a:g}"] = least(
-            lambda k=kernel, x=position, w=velocity, t=tables: k.label(x, w, *t)
-        )
-    return found
-
-
-def now() -> dict[str, float]:
-    """Measure the kernel of this tree under the same names, and what the earlier one could not do."""
-    from burridge_knopoff import Chain, FormulaLaw, Model, Settings, law_of, simulate
+def measured() -> dict[str, float]:
+    """Return least CPU times in ms, by what was run."""
+    from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, Settings, law_of, simulate
     from burridge_knopoff.kernel._core import Clouds
     from burridge_knopoff.laws import LAWS as BUILT_IN
     from burridge_knopoff.model.initial import PAPER_STATES
@@ -116,7 +76,9 @@ def now() -> dict[str, float]:
                     settings = Settings(solver=solver, lyapunov_exponents=count)
                     by = " by map" if solver == "map" else ""
                     found[f"{name}, {count} exponents{by}"] = least(
-                        lambda model=model, initial=initial, settings=settings: simulate(model, initial, settings)
+                        lambda model=model, initial=initial, settings=settings: simulate(
+                            model, initial=initial, settings=settings
+                        )
                     )
     for law, blocks, a in LABELS:
         position, velocity, cloud = starts(blocks)
@@ -132,42 +94,43 @@ def now() -> dict[str, float]:
             found[f"{name} {label}"] = bare(Model(Chain(3), chosen), "plus")
     unequal = Chain(3, coupling=[1.0, 1.1], threshold=[1.0, 1.05, 1.0])
     found["nonlinear, unequal springs and thresholds"] = bare(Model(unequal, law_of("nonlinear", 0.08)), "plus")
+    law = law_of("carlson_langer", 5.0, {"sigma": 0.01})
+    chain = Model(Chain(BLOCKS, coupling=100.0, pulling=1.0), law, SLOW)
+    position = -0.9 + 0.0005 * np.random.default_rng(1).uniform(-1.0, 1.0, BLOCKS) - chain.sliding_offset
+    solver, rest = Runner(chain), ChainState(position, np.zeros(BLOCKS), np.ones(BLOCKS, dtype=bool))
+
+    def in_groups() -> None:
+        solver.begin(rest)
+        solver.run(LONG)
+
+    found[f"carlson_langer, N = {BLOCKS}, bare, in groups"] = least(in_groups)
     return found
 
 
-def child(which: str, source: Path) -> dict[str, float]:
+def child(source: Path) -> dict[str, float]:
     """Measure in a process of its own, with the package from a folder."""
     environment = {**os.environ, "PYTHONPATH": str(source), "OPENBLAS_NUM_THREADS": "1"}
-    command = [sys.executable, __file__, "--child", which]
+    command = [sys.executable, __file__]
     return dict(json.loads(subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout))
 
 
 def main() -> None:
-    """Build the earlier kernel, measure both in turn, and print the table."""
+    """Measure both kernels in turn, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
-    parser.add_argument("--commit", default=EARLIER, help="the earlier one (default: %(default)s)")
+    parser.add_argument("checkout", type=Path, nargs="?", help="the other one; without it this tree alone, as JSON")
     parser.add_argument("--turns", type=int, default=3, help="turns (default: %(default)s)")
-    parser.add_argument("--child", choices=("earlier", "now"), help=argparse.SUPPRESS)
     options = parser.parse_args()
-    if options.child:
-        print(json.dumps({"earlier": earlier, "now": now}[options.child]()))
+    if options.checkout is None:
+        print(json.dumps(measured()))
         return
-    with tempfile.TemporaryDirectory() as folder:
-        archive = subprocess.run(["git", "archive", options.commit], cwd=REPOSITORY, check=True, capture_output=True)
-        subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout, check=True)
-        build = [sys.executable, "setup.py", "-q", "build_ext", "--inplace"]
-        subprocess.run(build, cwd=folder, check=True, capture_output=True)
-        turns = [
-            (child("earlier", Path(folder, "src")), child("now", REPOSITORY / "src")) for _ in range(options.turns)
-        ]
+    turns = [(child(options.checkout.resolve() / "src"), child(SOURCE)) for _ in range(options.turns)]
     before, after = ({name: min(turn[k][name] for turn in turns) for name in turns[0][k]} for k in (0, 1))
-    rows = []
-    for name, value in after.items():
-        old = before.get(name.removesuffix(" by map"))
-        rows.append(
-            [name, "" if old is None else f"{old:.1f}", f"{value:.1f}", "" if old is None else f"{old / value:.1f}"]
-        )
-    print_table(["", f"{options.commit}, ms", "now, ms", "ratio"], rows)
+    rows = [
+        [name, f"{before[name]:.2f}", f"{value:.2f}", f"{before[name] / value:.2f}"]
+        for name, value in after.items()
+        if name in before
+    ]
+    print_table(["", "before, ms", "now, ms", "ratio"], rows)
 
 
 if __name__ == "__main__":

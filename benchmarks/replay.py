@@ -1,0 +1,150 @@
+"""A study that ran in this folder, replayed: how good is the time left that is told, and what more cores would give.
+
+    python benchmarks/replay.py config/paper.yaml config/smoke.yaml [--cores 1]
+
+It is replayed from its benchmark files as if it had never run, each job with its CPU time: what other programs took
+does not count. Printed: what is told at the beginning, and the largest ratio of what is told and what is left, from a
+minute on (or a tenth of a shorter run); both count as 10 s at least, as the display tells no less.
+
+Then what it would take on 1, 2, 4 … 256 cores, and the longest chain of jobs that need each other. The long jobs of a
+law share their parts out among processes, the cores divided by the laws; what each part took stands in their logs.
+What Snakemake itself takes, and what jobs on one machine take from each other, is not in it.
+"""
+
+import argparse
+import contextlib
+import io
+import re
+import sys
+from collections import defaultdict
+from dataclasses import replace
+from pathlib import Path
+
+from snakemake.cli import main as snakemake
+
+from burridge_knopoff.report.stages import job_costs
+from snakemake_logger_plugin_study.durations import Durations, work_of
+from snakemake_logger_plugin_study.plan import PLAN
+from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING, schedule
+
+#: Moments of a run that are looked at, and the least time that the display tells.
+MOMENTS, LEAST = 400, 10.0
+
+LONG = re.compile(r"(.+)_of_law law=(\w+)")
+PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s(; \d+ kept.*)?$", re.MULTILINE)
+
+
+def planned(config, *targets, cores=2):
+    """Return the plan of all jobs of a study, as `snakemake -n --forceall` makes it."""
+    arguments = [*targets, "-n", "--forceall", "-c", str(cores), "--configfile", config]
+    said = io.StringIO()
+    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+        try:
+            snakemake(arguments)
+        except SystemExit as end:
+            code = end.code
+    if code:
+        sys.exit(said.getvalue())
+    return PLAN
+
+
+def recorded(config, cores=2):
+    """Return the run of all jobs of a study and {number: wall and CPU time of the job in the last run, in seconds}."""
+    run = planned(config, cores=cores).look_ahead()
+    run.cores = cores
+    took = {number: next(job_costs(Path(job.benchmark)), None) for number, job in run.jobs.items()}
+    if missing := [run.jobs[number].name for number, costs in took.items() if costs is None]:
+        sys.exit(f"{config}: no benchmark file of {missing[0]} and {len(missing) - 1} more: run the study first")
+    return run, {number: costs[:2] for number, costs in took.items()}
+
+
+def told(run, took):
+    """Return (moment, told, truth) of a run, in seconds, from its begin to its end."""
+    run.durations = Durations(work_of(PLAN.jobs))
+    # Snakemake measures no CPU time of jobs that are too short.
+    seconds = {number: (cpu or wall) / run.jobs[number].threads for number, (wall, cpu) in took.items()}
+    ends = schedule(run.jobs, seconds, run.cores)
+    end = max(ends.values())
+    for moment in (end * step / MOMENTS for step in range(MOMENTS)):
+        for number, job in run.jobs.items():
+            job.begin = ends[number] - seconds[number]
+            job.state = WAITING if job.begin > moment else RUNNING if ends[number] > moment else DONE
+            job.seconds = seconds[number] * job.threads if job.state == DONE else None
+        yield moment, run.forecast(moment), end - moment
+
+
+def ratio(first, second):
+    """Return how many times larger the larger of two durations is."""
+    first, second = max(first, LEAST), max(second, LEAST)
+    return max(first / second, second / first)
+
+
+def parts_of(results, job):
+    """Return (sum, longest) in seconds of what the processes of a job share, from its log."""
+    long = LONG.fullmatch(job.name)
+    log = Path(results, "logs", *([long[1], f"{long[2]}.log"] if long else [f"{job.rule}.log"]))
+    text = log.read_text(encoding="utf-8") if log.is_file() else ""
+    parts = defaultdict(list)
+    for name, *seconds, kept in PART.findall(text):
+        if kept:
+            sys.exit(
+                f"{log}: what was kept from a run before took no time: rm -r .snakemake/study_cache, and run it again"
+            )
+        parts[name].append([float(value) for value in seconds])
+    return [(sum(total for total, _ in each), max(longest for _, longest in each)) for each in parts.values()]
+
+
+def on(cores, jobs, seconds, parts):
+    """Return the jobs and their seconds on so many cores.
+
+    A part that is shared among k processes takes at most its sum / k and, of its longest piece, the rest. The jobs were
+    recorded with as many processes as they had threads.
+    """
+    laws = sum(job.rule == "attractors_of_law" for job in jobs.values())
+    processes = max(1, cores // max(1, laws))
+    shared = {number: found for number, found in parts.items() if found}
+    wide = {number: replace(job, threads=processes if number in shared else 1) for number, job in jobs.items()}
+    took = dict(seconds)
+    for number, found in shared.items():
+        spared = sum((total - longest) * (1.0 / jobs[number].threads - 1.0 / processes) for total, longest in found)
+        took[number] = max(0.0, seconds[number] - spared)
+    return wide, took
+
+
+def on_other_cores(config):
+    """Print what a study would take on other numbers of cores, and its longest chain of jobs."""
+    run, took = recorded(config)
+    jobs, seconds = run.jobs, {number: wall for number, (wall, _) in took.items()}
+    parts = {number: parts_of(run.results, job) for number, job in jobs.items()}
+    alone = sum(on(1, jobs, seconds, parts)[1].values())
+    print(f"{run.results}: {len(jobs)} jobs\n\n| cores | seconds | faster |\n|------:|--------:|-------:|")
+    for cores in (2**power for power in range(9)):
+        took = max(schedule(*on(cores, jobs, seconds, parts), cores).values())
+        print(f"| {cores:5d} | {took:7.1f} | {alone / took:6.1f} |")
+    print("\nthe longest chain:")
+    many = 1000 * len(jobs)
+    # No job waits for a core.
+    least = on(many, jobs, seconds, parts)[1]
+    ends = schedule(jobs, least, many)
+    number = max(ends, key=ends.get)
+    while number is not None:
+        print(f"{least[number]:8.1f} s  {jobs[number].name}")
+        number = max(jobs[number].needs, key=ends.get, default=None)
+
+
+def main():
+    """Print what is told of each study, and what it would take on other cores."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("configs", nargs="+")
+    parser.add_argument("--cores", type=int, default=2)
+    given = parser.parse_args()
+    for config in given.configs:
+        moments = list(told(*recorded(config, given.cores)))
+        _, begin, took = moments[0]
+        largest = max(ratio(*pair) for moment, *pair in moments if moment >= min(60.0, took / 10))
+        print(f"{config}: {took:.0f} s on {given.cores} cores, told {begin:.0f} s, then at most {largest:.2f} off")
+        on_other_cores(config)
+
+
+if __name__ == "__main__":
+    main()
