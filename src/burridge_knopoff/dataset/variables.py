@@ -85,10 +85,11 @@ def in_words(flags: xarray.DataArray) -> xarray.DataArray:
 
     Raises ValueError if it has no flag meanings.
 
-    >>> from burridge_knopoff import in_words, open_study
-    >>> runs = open_study("results/paper", points=False)["summary/lyapunov"]
-    >>> in_words(runs.run_kind).sel(law="linearized", initial="minus", a=0.08).item()
-    'synchronized'
+    >>> import xarray
+    >>> from burridge_knopoff import in_words
+    >>> kind = xarray.DataArray([0, 1], attrs={"flag_values": [0, 1], "flag_meanings": "stop start"})
+    >>> in_words(kind).values.tolist()
+    ['stop', 'start']
     """
     if "flag_meanings" not in flags.attrs:
         raise ValueError(f"{flags.name}: got no flag_meanings, expected a flag variable")
