@@ -83,7 +83,9 @@ def flag(dtype: str, meanings: Iterable[IntEnum] | Mapping[int, str]) -> dict[st
 def in_words(flags: xarray.DataArray) -> xarray.DataArray:
     """Return a flag variable with the meaning of each value, a string, in its place; "" where it is NaN.
 
-    Raises ValueError if it has no flag meanings.
+    flags : a variable with the CF attributes `flag_values` and `flag_meanings`, as in every file of a study
+
+    Raises ValueError if it has no such attributes.
 
     >>> import xarray
     >>> from burridge_knopoff import in_words
