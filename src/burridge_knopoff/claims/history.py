@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings, judge_shares, under_conventions
+from burridge_knopoff.claims.conventions import by_readings, under_conventions
 from burridge_knopoff.claims.endings import Criteria, Endings, percent
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.for_all import Case, for_all, judge_cases
+from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.synchronization import synchrony
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -18,12 +21,10 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Range,
-    Share,
     Verdict,
-    at_values,
-    is_decided,
     share_of,
     shares_text,
+    told_where,
     verdict_of,
     worst,
 )
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@judge("attractors")
 def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) -> Verdict:
     """Judge whether attractors of different kinds coexist at each a of a range, under both laws: history then decides.
 
@@ -53,8 +55,7 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
         if len(fraction):
             measured.append(Measured(f"smallest basin fraction of synchrony, {law}", float(fraction.min())))
             measured.append(Measured(f"largest basin fraction of synchrony, {law}", float(fraction.max())))
-        if not (kinds > 1).all():
-            single.append(f"at most one kind of motion {at_values(found['a'].values, kinds <= 1)} ({law})")
+        single += told_where("at most one kind of motion", found["a"].values, kinds <= 1, law)
     reason = f"More than one kind of motion is reached at {shares_text(shares)} of the values of a with {a}."
     return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(single))
 
@@ -74,69 +75,56 @@ def _coexisting(found: xarray.Dataset, samples: int) -> tuple[np.ndarray, np.nda
     return count, np.array(kinds)
 
 
+@judge("mean_distance", "attractors")
 def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, loose_share: float) -> Verdict:
     """Judge whether one of two initial states synchronizes and the other does not, for all a and both laws."""
-    first, second = (evidence.choose(evidence.of_state("mean_distance", name), a) for name in initial)
-    shares, same = {}, []
-    for law in PAPER_LAWS:
-        one, other = (runs["synchronized"].sel(law=law).values for runs in (first, second))
-        known = np.isfinite(one) & np.isfinite(other)
-        if not is_decided(one != other, known, loose_share):
-            raise NotTestableError(f"too few runs under the {law} law completed at {a}")
-        shares[law] = share_of((one != other)[known])
-        if shares[law].value < 1.0:
-            same.append(f"no difference {at_values(first['a'].values, known & (one == other))} ({law})")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        branch = evidence.choose(attractors, a)["initial_branch"]
-        pairs = {law: (branch.sel(law=law, initial=state) for state in initial) for law in PAPER_LAWS}
-        differ = {law: _outcomes(False, loose_share, *pair) for law, pair in pairs.items()}
-        return judge_shares({law: share for law, share in differ.items() if share is not None}, loose_share)
+    def cases(attractors: xarray.Dataset | None = None) -> Iterator[Case]:
+        both = [synchrony(evidence, state, a, attractors) for state in initial]
+        for law in PAPER_LAWS:
+            # Under another convention the last law tells for both: so the ledger has it.
+            told = law if attractors is None else PAPER_LAWS[-1]
+            one, other = (found.sel(law=told).values for found in both)
+            few = f"too few runs under the {law} law completed at {a}"
+            yield Case(law, both[0]["a"].values, one != other, np.isfinite(one + other), few)
 
-    own = verdict_of(shares, loose_share)
-    reason = (
-        f"One of {initial[0]} and {initial[1]} synchronizes and the other does not at {shares_text(shares)} of the "
-        f"values of a with {a}."
+    found = for_all(loose_share, cases())
+    first, second = initial
+    return under_conventions(
+        evidence,
+        found.verdict,
+        f"One of {first} and {second} synchronizes and the other does not at {found} of the values of a with {a}.",
+        found.measured("share of a at which the outcome differs"),
+        found.exceptions("no difference"),
+        lambda attractors: judge_cases(loose_share, cases(attractors)),
     )
-    named = shares.items()
-    measured = [Measured(f"share of a at which the outcome differs, {law}", share.value) for law, share in named]
-    return under_conventions(evidence, own, reason, measured, same, labels)
 
 
+@judge("mean_distance", "attractors")
 def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead from each initial state to the same outcome, synchrony or none, for all a."""
-    shares, differing = {}, []
-    for name in initial:
-        runs = evidence.choose(evidence.of_state("mean_distance", name), a)
-        one, other = (runs["synchronized"].sel(law=law).values for law in PAPER_LAWS)
-        known = np.isfinite(one) & np.isfinite(other)
-        if not is_decided(one == other, known, loose_share):
-            raise NotTestableError(f"too few runs from {name} completed at {a}")
-        shares[name] = share_of((one == other)[known])
-        if shares[name].value < 1.0:
-            differing.append(f"the outcomes from {name} differ {at_values(runs['a'].values, known & (one != other))}")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        branch = evidence.choose(attractors, a)["initial_branch"]
-        pairs = {state: (branch.sel(law=law, initial=state) for law in PAPER_LAWS) for state in initial}
-        same = {state: _outcomes(True, loose_share, *pair) for state, pair in pairs.items()}
-        return judge_shares({state: share for state, share in same.items() if share is not None}, loose_share)
+    def cases(attractors: xarray.Dataset | None = None) -> Iterator[Case]:
+        for state in initial:
+            # Under another convention the last state tells for all: so the ledger has it.
+            told = state if attractors is None else initial[-1]
+            found = synchrony(evidence, told, a, attractors)
+            one, other = (found.sel(law=law).values for law in PAPER_LAWS)
+            few = f"too few runs from {state} completed at {a}"
+            yield Case(state, found["a"].values, one == other, np.isfinite(one + other), few)
 
-    own = verdict_of(shares, loose_share)
-    reason = (
-        f"Both laws have the same outcome, synchrony or none, at {shares_text(shares)} of the values of a with {a}."
+    found = for_all(loose_share, cases())
+    return under_conventions(
+        evidence,
+        found.verdict,
+        f"Both laws have the same outcome, synchrony or none, at {found} of the values of a with {a}.",
+        found.measured("share of a with the same outcome"),
+        [text for case in found.cases for text in case.exceptions(f"the outcomes from {case.name} differ")],
+        lambda attractors: judge_cases(loose_share, cases(attractors)),
     )
-    measured = [Measured(f"share of a with the same outcome, {name}", share.value) for name, share in shares.items()]
-    return under_conventions(evidence, own, reason, measured, differing, labels)
 
 
-def _outcomes(same: bool, loose: float, one: xarray.DataArray, other: xarray.DataArray) -> Share | None:
-    """Return the fraction of a at which both branches synchronize, or neither (same), or one does; None if unknown."""
-    known = ((one >= 0) & (other >= 0)).values
-    right = (((one == 0) == (other == 0)) == same).values
-    return share_of(right[known]) if is_decided(right, known, loose) else None
-
-
+@judge()
 def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
     """Judge whether some claims hold together under one convention of contact and start.
 
@@ -186,6 +174,7 @@ def _words(name: str) -> str:
     return f"«{name.replace('_', ' ')}»"
 
 
+@judge("phases")
 def phases_decide(
     evidence: Evidence,
     a: Range,
@@ -225,8 +214,7 @@ def phases_decide(
             )
     for law, low in zip(judged.laws, judged.together.low, strict=True):
         lost = ~judged.inside & (low[:, judged.slips] < share).any(axis=1)
-        if lost.any():
-            changes.append(f"close phases do not synchronize {at_values(phases['a'].values, lost)} ({law})")
+        changes += told_where("close phases do not synchronize", phases["a"].values, lost, law)
     readings = {_inner_block(inner_share): judged.verdict}
     for other in phases["inner_share"].values[phases["inner_share"].values != inner_share].tolist():
         where = _inner_block(other)
@@ -251,8 +239,7 @@ def phases_decide(
         f"(A = {judged.amplitudes}) synchronize from phases within {close:g}° ({together}) and end in antiphase from "
         f"opposite phases ({against}), at {judged.shares} of the values of a with {a}."
     )
-    verdict, own = by_readings(readings)
-    return Verdict(verdict, reason, measured, "; ".join(changes), readings, own)
+    return by_readings(readings, reason, measured, changes)
 
 
 def _inner_block(share: float) -> str:

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.attractors.lookup import reached
-from burridge_knopoff.claims.conventions import judge_shares, under_conventions
+from burridge_knopoff.claims.conventions import reached_at, under_conventions
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.for_all import Case, for_all, judge_cases
+from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -18,13 +19,8 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
-    at_values,
     by_interval,
     by_value,
-    is_decided,
-    share_of,
-    shares_text,
-    verdict_of,
     worst,
 )
 from burridge_knopoff.study.formatting import with_error
@@ -34,43 +30,51 @@ if TYPE_CHECKING:
     import xarray
 
 
+def synchrony(evidence: Evidence, initial: str, a: Range, attractors: xarray.Dataset | None = None) -> xarray.DataArray:
+    """Return where an initial state leads to synchrony, over (law, a): 1 or 0, NaN where unknown.
+
+    attractors : under one convention, to tell it of the branch that the state reaches there, and not of the runs
+    """
+    if attractors is None:
+        return evidence.choose(evidence.of_state("mean_distance", initial), a)["synchronized"]
+    branch = evidence.choose(attractors, a)["initial_branch"].sel(initial=initial)
+    return (branch == 0).where(branch >= 0)
+
+
+@judge("mean_distance", "attractors")
 def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool, loose_share: float) -> Verdict:
     """Judge whether an initial state always, or never, leads to synchrony, for all a of a range and both laws.
 
     loose_share : fraction of the values of a from which the claim holds loosely
     """
     runs = evidence.choose(evidence.of_state("mean_distance", initial), a)
-    outcome = {True: "synchrony", False: "no synchrony"}
-    shares, measured, exceptions = {}, [], []
-    for law in PAPER_LAWS:
-        state = runs["synchronized"].sel(law=law).values
-        known, right = np.isfinite(state), state == synchronized
-        if not is_decided(right, known, loose_share):
-            raise NotTestableError(f"too few runs from {initial} under the {law} law completed at {a}")
-        shares[law] = share_of(right[known])
-        measured.append(Measured(f"share of a with {outcome[synchronized]}, {law}", shares[law].value))
-        mean = runs["mean_distance"].sel(law=law).values[right]
-        if len(mean):
-            extreme, name = (mean.max(), "largest") if synchronized else (mean.min(), "smallest")
-            measured.append(Measured(f"{name} ⟨J⟩ there, {law}", float(extreme)))
-        if not right[known].all():
-            where = at_values(runs["a"].values, known & ~right)
-            exceptions.append(f"{outcome[not synchronized]} {where} ({law})")
+    here, elsewhere = ("synchrony", "no synchrony") if synchronized else ("no synchrony", "synchrony")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {}
+    def cases(attractors: xarray.Dataset | None = None) -> Iterator[Case]:
+        found = synchrony(evidence, initial, a, attractors)
         for law in PAPER_LAWS:
-            branch = evidence.choose(attractors, a)["initial_branch"].sel(initial=initial, law=law).values
-            known, right = branch >= 0, (branch == 0) == synchronized
-            if is_decided(right, known, loose_share):
-                found[law] = share_of(right[known])
-        return judge_shares(found, loose_share)
+            state = found.sel(law=law).values
+            few = f"too few runs from {initial} under the {law} law completed at {a}"
+            yield Case(law, found["a"].values, state == synchronized, np.isfinite(state), few)
 
-    own = verdict_of(shares, loose_share)
-    reason = f"There is {outcome[synchronized]} from {initial} at {shares_text(shares)} of the values of a with {a}."
-    return under_conventions(evidence, own, reason, measured, exceptions, labels)
+    def extreme(case: Case) -> Iterator[Measured]:
+        mean = runs["mean_distance"].sel(law=case.name).values[case.right]
+        if len(mean):
+            value, name = (mean.max(), "largest") if synchronized else (mean.min(), "smallest")
+            yield Measured(f"{name} ⟨J⟩ there, {case.name}", float(value))
+
+    found = for_all(loose_share, cases())
+    return under_conventions(
+        evidence,
+        found.verdict,
+        f"There is {here} from {initial} at {found} of the values of a with {a}.",
+        found.measured(f"share of a with {here}", extreme),
+        found.exceptions(elsewhere),
+        lambda attractors: judge_cases(loose_share, cases(attractors)),
+    )
 
 
+@judge("attractors", "orbits", "proof")
 def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, tolerance: float, loose: float) -> Verdict:
     """Judge the largest a at which an initial state synchronizes, under both laws.
 
@@ -101,6 +105,7 @@ def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, toleranc
     return Verdict(worst(verdicts), reason, measured)
 
 
+@judge("attractors")
 def beginning_of_synchrony(evidence: Evidence, initial: str, claimed: float, tolerance: float, loose: float) -> Verdict:
     """Judge whether there is synchrony from an initial state from one a on, under both laws, by the attractor reached.
 
@@ -131,6 +136,7 @@ def _edge(grid: np.ndarray, synchronized: np.ndarray) -> tuple[float, float]:
     return (grid[index[-1]], grid[index[-1] + 1]) if len(index) and index[-1] + 1 < len(grid) else (np.nan, np.nan)
 
 
+@judge("mean_distance", "attractors")
 def mean_distance_at(
     evidence: Evidence, initial: str, laws: Sequence[str], at: float, claimed: float, tolerance: float, loose: float
 ) -> Verdict:
@@ -145,18 +151,19 @@ def mean_distance_at(
         measured.append(Measured(f"⟨J⟩, {law}", value, error))
         texts.append(f"{with_error(value, error)} ({law})")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {law: reached(attractors.sel(a=[at]), initial, law, "mean_distance") for law in laws}
-        means = {law: mean[0] for law, (known, mean) in found.items() if known[0]}
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = {law: reached_at(attractors, at, initial, law, "mean_distance") for law in laws}
+        means = {law: mean[0] for law, mean in found.items() if mean}
         if not means:
             return "", ""
         verdict = worst(by_value(mean, claimed, tolerance, loose) for mean in means.values())
         return verdict, "⟨J⟩ = " + ", ".join(f"{mean:.4f} ({law})" for law, mean in means.items())
 
     reason = f"⟨J⟩ from {initial} at a = {at:g} is {' and '.join(texts)}; the claim says {claimed:g}."
-    return under_conventions(evidence, worst(verdicts), reason, measured, [], labels)
+    return under_conventions(evidence, worst(verdicts), reason, measured, [], of_branches)
 
 
+@judge("mean_distance", "agreement", "attractors")
 def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -> Verdict:
     """Judge whether J fluctuates stationarily and does not vanish: the run is on its attractor, which is no synchrony.
 
@@ -170,11 +177,10 @@ def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -
     if not settled >= 0:
         raise NotTestableError(f"whether the run from {initial} at a = {at:g} is on its attractor is unknown")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        known, branch = reached(attractors.sel(a=[at]), initial, law, "branch")
-        if not known[0]:
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        if not (found := reached_at(attractors, at, initial, law, "branch")):
             return "", ""
-        return (HOLDS, "no synchrony") if branch[0] else (FAILS, "synchrony, J = 0")
+        return (HOLDS, "no synchrony") if found[0] else (FAILS, "synchrony, J = 0")
 
     words = "is on its attractor" if settled else "is not on its attractor yet"
     reason = (
@@ -182,9 +188,10 @@ def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -
         f"{with_error(mean, error)}."
     )
     own = HOLDS if settled and not synchronized else FAILS
-    return under_conventions(evidence, own, reason, [Measured("⟨J⟩", mean, error)], [], labels)
+    return under_conventions(evidence, own, reason, [Measured("⟨J⟩", mean, error)], [], of_branches)
 
 
+@judge("mean_distance", "orbits")
 def distance_vanishes(
     evidence: Evidence, initial: str, law: str, at: float, by: float, level: float, loose: float
 ) -> Verdict:
