@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 import numpy as np
 
 from burridge_knopoff.claims.conventions import by_readings
@@ -36,22 +34,18 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
         KIND_AND_MEAN: found["agrees"].values,
         MEAN: same_mean(pair, summary.attrs["synchronization_threshold"], agreement),
     }
-
-    def cases() -> Iterator[Case]:
-        for reading, agrees in answers.items():
-            known, right = _for_all_states(agrees)
-            unknown = f"the laws could not be compared for two blocks {at_values(grid, ~known)}"
-            yield Case(reading, grid, right, known, unknown)
-
     measured, changes, readings, texts = [], [], {}, []
-    for case in for_all(loose_share, cases()).cases:
-        reading, agrees = case.name, answers[case.name]
-        readings[reading] = by_share(case.share, loose_share)
-        texts.append(f"{case.share} {reading} ({readings[reading]})")
+    for reading, agrees in answers.items():
+        known, right = _for_all_states(agrees)
+        unknown = f"the laws could not be compared for two blocks {at_values(grid, ~known)}"
+        case = Case(reading, grid, right, known, unknown)
+        share = for_all(loose_share, [case]).share
+        readings[reading] = by_share(share, loose_share)
+        texts.append(f"{share} {reading} ({readings[reading]})")
         of_states = float((agrees == Answer.YES)[agrees != Answer.UNDETERMINED].mean())
-        measured.append(Measured(f"share of a at which the laws agree {reading} from all states", case.share.value))
+        measured.append(Measured(f"share of a at which the laws agree {reading} from all states", share.value))
         measured.append(Measured(f"share of states and a at which they agree {reading}", of_states))
-        wrong = grid[case.known & ~case.right]
+        wrong = grid[known & ~right]
         if len(wrong):
             measured.append(Measured(f"smallest a at which they disagree {reading}", wrong[0]))
             measured.append(Measured(f"largest a at which they disagree {reading}", wrong[-1]))
@@ -95,8 +89,7 @@ def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> 
     known = (one != MotionKind.UNDETERMINED).all(axis=1)
     right = ((one == MotionKind.PERIODIC) & sticks).all(axis=1)
     grid = found["a"].values
-    unknown = f"the motion of one block is unknown {at_values(grid, ~known)}"
-    case = Case("one block", grid, right, known, unknown)
+    case = Case("one block", grid, right, known, f"the motion of one block is unknown {at_values(grid, ~known)}")
     periodic = for_all(loose_share, [case])
     measured = [Measured("share of a at which one block sticks and slips periodically", periodic.share.value)]
     two = np.isin(found["kind"].sel(chain="train").transpose("a", ...).values.reshape(len(grid), -1), CHAOS)

@@ -6,9 +6,8 @@ Under the study's convention the runs decide, under the others the attractors th
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from burridge_knopoff.attractors.lookup import reached
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     CONVENTION,
@@ -62,13 +61,6 @@ def under_conventions(
     changes = "; ".join([*exceptions, *others])
     verdict = CONVENTION if _divided(verdicts) else own
     return Verdict(verdict, reason, measured, changes, dict(sorted(verdicts.items())), own)
-
-
-def reached_at(attractors: xarray.Dataset, at: float, initial: str, law: str, *names: str) -> tuple[Any, ...] | None:
-    """Return variables of the attractor that an initial state reaches at one a; None if none is known."""
-    there = attractors.sel(a=[at])
-    found = [reached(there, initial, law, name) for name in names]
-    return tuple(values[0] for _, values in found) if found[0][0][0] else None
 
 
 def by_readings(

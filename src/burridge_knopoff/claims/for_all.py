@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from burridge_knopoff.claims.verdict import (
     told_where,
     verdict_of,
 )
+
+if TYPE_CHECKING:
+    import xarray
 
 
 @dataclass(frozen=True)
@@ -91,6 +95,13 @@ class ForAll:
     def exceptions(self, wrong: str, unknown: str = "") -> list[str]:
         """Return the exceptions of all cases, see `Case.exceptions`, each with the name of its case."""
         return [f"{text} ({case.name})" for case in self.cases for text in case.exceptions(wrong, unknown)]
+
+    def reached(self, cases: Callable[[xarray.Dataset], Iterable[Case]]) -> Callable[[xarray.Dataset], tuple[str, str]]:
+        """Return the same statement on what initial states reach under a convention, for `under_conventions`.
+
+        cases : takes attractors with the branches that initial states reach under one convention
+        """
+        return lambda attractors: judge_cases(self.loose, cases(attractors))
 
 
 def for_all(loose: float, cases: Iterable[Case]) -> ForAll:

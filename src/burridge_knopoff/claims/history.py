@@ -10,9 +10,9 @@ import numpy as np
 from burridge_knopoff.claims.conventions import by_readings, under_conventions
 from burridge_knopoff.claims.endings import Criteria, Endings, percent
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.for_all import Case, for_all, judge_cases
+from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
-from burridge_knopoff.claims.synchronization import synchrony
+from burridge_knopoff.claims.outcomes import synchrony
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -22,6 +22,7 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
+    extremes,
     share_of,
     shares_text,
     told_where,
@@ -53,8 +54,7 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
         measured.append(Measured(f"most attractors that coexist, {law}", float(count.max())))
         fraction = found["basin_fraction"].values[(found["branch"].values == 0) & (found["basin_count"].values > 0)]
         if len(fraction):
-            measured.append(Measured(f"smallest basin fraction of synchrony, {law}", float(fraction.min())))
-            measured.append(Measured(f"largest basin fraction of synchrony, {law}", float(fraction.max())))
+            measured += extremes("basin fraction of synchrony", fraction, law)
         single += told_where("at most one kind of motion", found["a"].values, kinds <= 1, law)
     reason = f"More than one kind of motion is reached at {shares_text(shares)} of the values of a with {a}."
     return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(single))
@@ -90,14 +90,9 @@ def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, 
 
     found = for_all(loose_share, cases())
     first, second = initial
-    return under_conventions(
-        evidence,
-        found.verdict,
-        f"One of {first} and {second} synchronizes and the other does not at {found} of the values of a with {a}.",
-        found.measured("share of a at which the outcome differs"),
-        found.exceptions("no difference"),
-        lambda attractors: judge_cases(loose_share, cases(attractors)),
-    )
+    reason = f"One of {first} and {second} synchronizes and the other does not at {found} of the values of a with {a}."
+    measured, same = found.measured("share of a at which the outcome differs"), found.exceptions("no difference")
+    return under_conventions(evidence, found.verdict, reason, measured, same, found.reached(cases))
 
 
 @judge("mean_distance", "attractors")
@@ -114,14 +109,10 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
             yield Case(state, found["a"].values, one == other, np.isfinite(one + other), few)
 
     found = for_all(loose_share, cases())
-    return under_conventions(
-        evidence,
-        found.verdict,
-        f"Both laws have the same outcome, synchrony or none, at {found} of the values of a with {a}.",
-        found.measured("share of a with the same outcome"),
-        [text for case in found.cases for text in case.exceptions(f"the outcomes from {case.name} differ")],
-        lambda attractors: judge_cases(loose_share, cases(attractors)),
-    )
+    reason = f"Both laws have the same outcome, synchrony or none, at {found} of the values of a with {a}."
+    measured = found.measured("share of a with the same outcome")
+    differ = [text for case in found.cases for text in case.exceptions(f"the outcomes from {case.name} differ")]
+    return under_conventions(evidence, found.verdict, reason, measured, differ, found.reached(cases))
 
 
 @judge()

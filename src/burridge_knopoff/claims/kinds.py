@@ -10,8 +10,9 @@ import numpy as np
 from burridge_knopoff.attractors.lookup import reached
 from burridge_knopoff.claims.conventions import by_readings, shares_by_readings, under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
-from burridge_knopoff.claims.for_all import Case, ForAll, for_all, judge_cases
+from burridge_knopoff.claims.for_all import Case, ForAll, for_all
 from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.outcomes import CLOSED, kinds_of, kinds_reached
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -39,29 +40,6 @@ from burridge_knopoff.summaries.plateaux import plateaux
 
 if TYPE_CHECKING:
     import xarray
-
-
-CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
-
-
-def kinds_of(
-    evidence: Evidence, initial: str, law: str, a: Range, attractors: xarray.Dataset | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return (a, kind of motion) from a state in a range of a; all chaos counts as one kind.
-
-    attractors : under one convention, to tell it of the attractors that the state reaches there, and not of the runs
-    """
-    if attractors is None:
-        runs = evidence.choose(evidence.of_state("agreement", initial), a).sel(law=law)
-        return runs["a"].values, with_one_chaos(runs["kind"].values)
-    inside = evidence.choose(attractors, a)
-    return inside["a"].values, kinds_reached(inside, initial, law)
-
-
-def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> np.ndarray:
-    """Return the kind of motion reached from a state, shape (a,); all chaos counts as one kind."""
-    known, kind = reached(attractors, initial, law, "kind")
-    return np.where(known, with_one_chaos(kind), MotionKind.UNDETERMINED)
 
 
 @judge("agreement", "attractors")
@@ -98,14 +76,8 @@ def all_of_kind(
     if ("periodic" in kinds) != ("quasiperiodic" in kinds):
         longest = evidence.config["motion"]["longest_period"]
         reason += f" Motion that repeats within {longest:g} time units counts as periodic."
-    return under_conventions(
-        evidence,
-        found.verdict,
-        reason,
-        measured,
-        found.exceptions("other motion", "unknown"),
-        lambda attractors: judge_cases(loose_share, cases(attractors)),
-    )
+    exceptions = found.exceptions("other motion", "unknown")
+    return under_conventions(evidence, found.verdict, reason, measured, exceptions, found.reached(cases))
 
 
 @judge("agreement", "lyapunov", "attractors")
@@ -122,11 +94,10 @@ def periodic_is_synchronized(
     """
     longest = evidence.config["motion"]["longest_period"]
     everything = _of_periodic(evidence, initial, a, np.inf, loose_share)
+    lines = _of_periodic(evidence, initial, synchrony, points, loose_share)
     shares = {
         f"with {a} that repeat within {longest:g} time units": everything.shares,
-        f"with {synchrony} whose section is no cloud": _of_periodic(
-            evidence, initial, synchrony, points, loose_share
-        ).shares,
+        f"with {synchrony} whose section is no cloud": lines.shares,
     }
     readings = shares_by_readings(shares, loose_share)
     measured = [
@@ -246,14 +217,14 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
         f"{a}."
     )
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def regular(attractors: xarray.Dataset) -> list[Case]:
         # The largest exponent of regular motion is that of the flow, 0; in chaos it is positive.
         inside, kind = kinds_of(evidence, initial, law, a, attractors)
-        regular = np.isin(kind, (MotionKind.SYNCHRONIZED, *REGULAR))
-        return judge_cases(loose_share, [Case(law, inside, regular, kind != MotionKind.UNDETERMINED)])
+        right = np.isin(kind, (MotionKind.SYNCHRONIZED, *REGULAR))
+        return [Case(law, inside, right, kind != MotionKind.UNDETERMINED)]
 
     changes = case.exceptions("not 0", "unknown")
-    return under_conventions(evidence, found.verdict, reason, measured, changes, of_branches)
+    return under_conventions(evidence, found.verdict, reason, measured, changes, found.reached(regular))
 
 
 @judge("lyapunov", "agreement", "rotation", "attractors")

@@ -22,6 +22,7 @@ from burridge_knopoff.claims.verdict import (
     Verdict,
     by_share,
     by_value,
+    extremes,
     shares_text,
     told_where,
 )
@@ -99,10 +100,10 @@ def _by_answers(
     cases = [
         Case(state, grid, same == Answer.YES, same != Answer.UNDETERMINED) for state, (grid, same) in answers.items()
     ]
-    shares = {case.name: case.share for case in cases if case.known.any()}
-    numbers = []
+    shares, numbers = {}, []
     for case in cases:
         if case.known.any():
+            shares[case.name] = case.share
             numbers.append(Measured(f"share of a at which the laws agree, {case.name}", case.share.value))
         if len(differ := case.a[case.known & ~case.right]):
             numbers.append(Measured(f"smallest a at which they differ, {case.name}", float(differ[0])))
@@ -132,8 +133,7 @@ def linearization_justified(
     measured = [
         Measured("largest difference of the laws on a slipping block", difference),
         Measured("largest aU'", float(product[top])),
-        Measured("smallest ratio of the fastest slip to v", float(speed.min())),
-        Measured("largest ratio of the fastest slip to v", float(speed.max())),
+        *extremes("ratio of the fastest slip to v", speed),
     ]
     verdict = HOLDS if difference <= tolerance else LOOSELY if difference <= loose else FAILS
     reason = (

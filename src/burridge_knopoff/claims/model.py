@@ -17,6 +17,7 @@ from burridge_knopoff.claims.verdict import (
     Range,
     Verdict,
     by_value,
+    extremes,
     told_where,
     worst,
 )
@@ -78,11 +79,8 @@ def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, 
     values = found["a"].values
     slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in values])
     ratio = found["growth_rate"].values / slope
-    measured = [
-        Measured("smallest growth rate over −F'(v), in simulations", float(ratio.min())),
-        Measured("largest growth rate over −F'(v), in simulations", float(ratio.max())),
-    ]
-    verdict = worst(by_value(float(value), claimed, tolerance, loose) for value in (ratio.min(), ratio.max()))
+    measured = extremes("growth rate over −F'(v), in simulations", ratio)
+    verdict = worst(by_value(item.value, claimed, tolerance, loose) for item in measured)
     rate = with_error(float(ratio.mean()), float(np.ptp(ratio)))
     reason = (
         f"Perturbations of uniform sliding grow at {rate} times −F'(v) with {a} ({law}); the claim says {claimed:g}."
@@ -146,21 +144,15 @@ def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdic
     evidence.check_blocks()
     found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)["eigenvalue"]
     real, imaginary = (found.sel(part=part).values for part in ("real", "imaginary"))
-    counts = [
-        len({(round(x, 12), round(y, 12)) for x, y in zip(*pair, strict=True)})
-        for pair in zip(real, imaginary, strict=True)
-    ]
-    pairs = [
-        len({(round(x, 12), round(abs(y), 12)) for x, y in zip(*pair, strict=True)})
-        for pair in zip(real, imaginary, strict=True)
-    ]
+    counts, pairs = (
+        np.array([len({*zip(x.round(12), y.round(12), strict=True)}) for x, y in zip(real, part, strict=True)])
+        for part in (imaginary, np.abs(imaginary))
+    )
     measured = [
-        Measured("smallest number of exponentials", float(min(counts))),
-        Measured("largest number of exponentials", float(max(counts))),
+        *extremes("number of exponentials", counts),
         Measured("largest number of complex pairs", float(max(pairs))),
     ]
-    right = {*counts} == {claimed}
-    verdict = HOLDS if right else LOOSELY if {*pairs} == {claimed} else FAILS
+    verdict = HOLDS if (counts == claimed).all() else LOOSELY if (pairs == claimed).all() else FAILS
     reason = (
         f"With {a} a position has at most {max(counts)} exponentials, in {max(pairs)} complex pairs; "
         f"the claim says {claimed}."
@@ -190,8 +182,7 @@ def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed:
     left = numbers - lost
     measured = [
         Measured("numbers in a state", float(numbers)),
-        Measured("smallest number of exponents of −∞", float(lost.min())),
-        Measured("largest number of exponents of −∞", float(lost.max())),
+        *extremes("number of exponents of −∞", lost),
     ]
     verdict = FAILS if numbers != claimed else HOLDS if left.min() == claimed else LOOSELY
     reason = (

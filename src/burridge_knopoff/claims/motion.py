@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings, reached_at, under_conventions
+from burridge_knopoff.claims.conventions import by_readings, under_conventions
 from burridge_knopoff.claims.evidence import Evidence, finite
 from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.outcomes import reached_at
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -22,6 +23,7 @@ from burridge_knopoff.claims.verdict import (
     Verdict,
     at_values,
     by_value,
+    extremes,
     judge_shares,
     share_of,
     shares_text,
@@ -94,10 +96,7 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
         real = equilibrium["eigenvalue"].sel(law=law, part="real").values
         slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in equilibrium["a"].values])
         shares[f"values of a, {law}"] = share_of(np.all(real > 0.0, axis=-1))
-        measured += [
-            Measured(f"smallest real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).min())),
-            Measured(f"largest real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).max())),
-        ]
+        measured += extremes("real part of an eigenvalue over −F'(v)", real / slope[:, None], law)
         found = attractors.sel(law=law)
         there = found["branch"].values >= 0
         if not there.any():

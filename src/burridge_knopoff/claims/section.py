@@ -11,7 +11,7 @@ from burridge_knopoff.claims.conventions import under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.for_all import Case, for_all, judge_cases
 from burridge_knopoff.claims.judge import judge
-from burridge_knopoff.claims.kinds import CLOSED
+from burridge_knopoff.claims.outcomes import CLOSED
 from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
@@ -83,13 +83,9 @@ def cloud_at_lower_velocities(
         seen = there & also & (first > 0) & (second >= 0)
         case = Case(law, inside["a"].values, (second > points) & (below < above), seen)
         verdict, text = judge_cases(loose_share, [case])
-        none = told_where(", no point at all", case.a, seen & (second == 0)) if text else []
-        return verdict, text + "".join(none)
+        return verdict, text + "".join(told_where(", no point at all", case.a, seen & (second == 0)))
 
-    exceptions = [
-        *case.exceptions("no lower cloud"),
-        *told_where("no point at all", grid, known & empty),
-    ]
+    exceptions = case.exceptions("no lower cloud") + told_where("no point at all", grid, known & empty)
     return under_conventions(evidence, found.verdict, reason, measured, exceptions, of_branches)
 
 

@@ -11,7 +11,7 @@ from burridge_knopoff.claims.conventions import by_readings, under_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
-from burridge_knopoff.claims.kinds import kinds_reached
+from burridge_knopoff.claims.outcomes import kinds_reached
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,

@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import reached_at, under_conventions
+from burridge_knopoff.claims.conventions import under_conventions
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.for_all import Case, for_all, judge_cases
+from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.outcomes import reached_at, synchrony
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -28,17 +29,6 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
     import xarray
-
-
-def synchrony(evidence: Evidence, initial: str, a: Range, attractors: xarray.Dataset | None = None) -> xarray.DataArray:
-    """Return where an initial state leads to synchrony, over (law, a): 1 or 0, NaN where unknown.
-
-    attractors : under one convention, to tell it of the branch that the state reaches there, and not of the runs
-    """
-    if attractors is None:
-        return evidence.choose(evidence.of_state("mean_distance", initial), a)["synchronized"]
-    branch = evidence.choose(attractors, a)["initial_branch"].sel(initial=initial)
-    return (branch == 0).where(branch >= 0)
 
 
 @judge("mean_distance", "attractors")
@@ -64,13 +54,10 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
             yield Measured(f"{name} ⟨J⟩ there, {case.name}", float(value))
 
     found = for_all(loose_share, cases())
+    reason = f"There is {here} from {initial} at {found} of the values of a with {a}."
+    measured = found.measured(f"share of a with {here}", extreme)
     return under_conventions(
-        evidence,
-        found.verdict,
-        f"There is {here} from {initial} at {found} of the values of a with {a}.",
-        found.measured(f"share of a with {here}", extreme),
-        found.exceptions(elsewhere),
-        lambda attractors: judge_cases(loose_share, cases(attractors)),
+        evidence, found.verdict, reason, measured, found.exceptions(elsewhere), found.reached(cases)
     )
 
 
@@ -81,12 +68,9 @@ def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, toleranc
     It lies between two neighbours of the grid. The attractor reached decides, since close to the loss of synchrony a
     run is too short to get there. If the synchronized orbit loses stability between the two values, the edge is a_c.
     """
-    evidence.check_state(initial)
-    attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
     verdicts, measured, texts = [], [], []
-    for law in PAPER_LAWS:
-        branch = attractors["initial_branch"].sel(law=law, initial=initial).values
-        low, high = _edge(attractors["a"].values[branch >= 0], branch[branch >= 0] == 0)
+    for law, grid, synchronized in _reached(evidence, initial):
+        low, high = _edge(grid, synchronized)
         if not np.isfinite(low + high):
             raise NotTestableError(f"the grid does not hold the edge of synchrony from {initial}, {law} law")
         measured.append(Measured(f"largest a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
@@ -112,22 +96,27 @@ def beginning_of_synchrony(evidence: Evidence, initial: str, claimed: float, tol
     The smallest a with synchrony lies between a value of the grid and the one before, or 0, where friction is constant.
     The claim holds if it is not larger than the claimed one.
     """
-    evidence.check_state(initial)
-    attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
     verdicts, measured, texts = [], [], []
-    for law in PAPER_LAWS:
-        branch = attractors["initial_branch"].sel(law=law, initial=initial).values
-        grid, synchronized = np.append(0.0, attractors["a"].values[branch >= 0]), branch[branch >= 0] == 0
+    for law, grid, synchronized in _reached(evidence, initial):
         if not synchronized.any():
             raise NotTestableError(f"no a with synchrony from {initial} is known, {law} law")
         first = int(np.argmax(synchronized))
-        low, high = float(grid[first]), float(grid[first + 1])
+        low, high = float(grid[first - 1]) if first else 0.0, float(grid[first])
         # Synchrony that begins earlier is there from the claimed value on.
         verdicts.append(by_interval(max(low, claimed), max(high, claimed), claimed, tolerance, loose))
         measured.append(Measured(f"smallest a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
         texts.append(f"between {low:g} and {high:g} ({law})")
     reason = f"The smallest a with synchrony from {initial} lies {'; '.join(texts)}; the claim says {claimed:g}."
     return Verdict(worst(verdicts), reason, measured)
+
+
+def _reached(evidence: Evidence, initial: str) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+    """Yield (law, the values of a > 0 at which the branch reached from a state is known, whether it is synchrony)."""
+    evidence.check_state(initial)
+    attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
+    for law in PAPER_LAWS:
+        branch = attractors["initial_branch"].sel(law=law, initial=initial).values
+        yield law, attractors["a"].values[branch >= 0], branch[branch >= 0] == 0
 
 
 def _edge(grid: np.ndarray, synchronized: np.ndarray) -> tuple[float, float]:

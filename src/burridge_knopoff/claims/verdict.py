@@ -227,6 +227,13 @@ def at_values(a: np.ndarray, chosen: np.ndarray) -> str:
     return f"at a = {', '.join(parts)}"
 
 
+def extremes(quantity: str, values: np.ndarray, name: str = "") -> list[Measured]:
+    """Return the smallest and the largest of some values as measured numbers, with the name of a case."""
+    end = f", {name}" if name else ""
+    ends = ("smallest", np.min(values)), ("largest", np.max(values))
+    return [Measured(f"{word} {quantity}{end}", float(value)) for word, value in ends]
+
+
 def told_where(words: str, a: np.ndarray, chosen: np.ndarray, name: str = "") -> list[str]:
     """Return what is so at the chosen values, by `at_values`, with the name of a case; empty if none is chosen."""
     return [f"{words} {at_values(a, chosen)}{f' ({name})' if name else ''}"] if np.any(chosen) else []
