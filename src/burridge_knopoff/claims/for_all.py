@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
+    Range,
     Share,
     judge_shares,
     share_is_decided,
@@ -96,12 +98,14 @@ class ForAll:
         """Return the exceptions of all cases, see `Case.exceptions`, each with the name of its case."""
         return [f"{text} ({case.name})" for case in self.cases for text in case.exceptions(wrong, unknown)]
 
-    def reached(self, cases: Callable[[xarray.Dataset], Iterable[Case]]) -> Callable[[xarray.Dataset], tuple[str, str]]:
+    def reached(
+        self, evidence: Evidence, a: Range, cases: Callable[[xarray.Dataset], Iterable[Case]]
+    ) -> Callable[[xarray.Dataset], tuple[str, str]]:
         """Return the same statement on what initial states reach under a convention, for `under_conventions`.
 
-        cases : takes attractors with the branches that initial states reach under one convention
+        cases : takes the attractors in the range a, with the branches that initial states reach under one convention
         """
-        return lambda attractors: judge_cases(self.loose, cases(attractors))
+        return lambda attractors: judge_cases(self.loose, cases(evidence.choose(attractors, a)))
 
 
 def for_all(loose: float, cases: Iterable[Case]) -> ForAll:

@@ -79,11 +79,11 @@ def _coexisting(found: xarray.Dataset, samples: int) -> tuple[np.ndarray, np.nda
 def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, loose_share: float) -> Verdict:
     """Judge whether one of two initial states synchronizes and the other does not, for all a and both laws."""
 
-    def cases(attractors: xarray.Dataset | None = None) -> Iterator[Case]:
-        both = [synchrony(evidence, state, a, attractors) for state in initial]
+    def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
+        both = [synchrony(evidence, state, a, inside) for state in initial]
         for law in PAPER_LAWS:
             # Under another convention the last law tells for both: so the ledger has it.
-            told = law if attractors is None else PAPER_LAWS[-1]
+            told = law if inside is None else PAPER_LAWS[-1]
             one, other = (found.sel(law=told).values for found in both)
             few = f"too few runs under the {law} law completed at {a}"
             yield Case(law, both[0]["a"].values, one != other, np.isfinite(one + other), few)
@@ -92,18 +92,18 @@ def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, 
     first, second = initial
     reason = f"One of {first} and {second} synchronizes and the other does not at {found} of the values of a with {a}."
     measured, same = found.measured("share of a at which the outcome differs"), found.exceptions("no difference")
-    return under_conventions(evidence, found.verdict, reason, measured, same, found.reached(cases))
+    return under_conventions(evidence, found.verdict, reason, measured, same, found.reached(evidence, a, cases))
 
 
 @judge("mean_distance", "attractors")
 def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead from each initial state to the same outcome, synchrony or none, for all a."""
 
-    def cases(attractors: xarray.Dataset | None = None) -> Iterator[Case]:
+    def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
         for state in initial:
             # Under another convention the last state tells for all: so the ledger has it.
-            told = state if attractors is None else initial[-1]
-            found = synchrony(evidence, told, a, attractors)
+            told = state if inside is None else initial[-1]
+            found = synchrony(evidence, told, a, inside)
             one, other = (found.sel(law=law).values for law in PAPER_LAWS)
             few = f"too few runs from {state} completed at {a}"
             yield Case(state, found["a"].values, one == other, np.isfinite(one + other), few)
@@ -112,7 +112,7 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
     reason = f"Both laws have the same outcome, synchrony or none, at {found} of the values of a with {a}."
     measured = found.measured("share of a with the same outcome")
     differ = [text for case in found.cases for text in case.exceptions(f"the outcomes from {case.name} differ")]
-    return under_conventions(evidence, found.verdict, reason, measured, differ, found.reached(cases))
+    return under_conventions(evidence, found.verdict, reason, measured, differ, found.reached(evidence, a, cases))
 
 
 @judge()

@@ -55,10 +55,10 @@ def all_of_kind(
     allowed = [int(kind) for kind in MotionKind if kind.name.lower() in kinds]
     what = " or ".join(kinds)
 
-    def cases(attractors: xarray.Dataset | None = None) -> Iterator[Case]:
+    def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
         for law in laws:
             for state in initial:
-                grid, kind = kinds_of(evidence, state, law, a, attractors)
+                grid, kind = kinds_of(evidence, state, law, a, inside)
                 known = kind != MotionKind.UNDETERMINED
                 unknown = f"the kind of motion from {state} under the {law} law is unknown {at_values(grid, ~known)}"
                 yield Case(f"{law}, {state}", grid, np.isin(kind, allowed), known, unknown)
@@ -77,7 +77,7 @@ def all_of_kind(
         longest = evidence.config["motion"]["longest_period"]
         reason += f" Motion that repeats within {longest:g} time units counts as periodic."
     exceptions = found.exceptions("other motion", "unknown")
-    return under_conventions(evidence, found.verdict, reason, measured, exceptions, found.reached(cases))
+    return under_conventions(evidence, found.verdict, reason, measured, exceptions, found.reached(evidence, a, cases))
 
 
 @judge("agreement", "lyapunov", "attractors")
@@ -108,11 +108,12 @@ def periodic_is_synchronized(
     texts = [f"{shares_text(of)} of those {name} ({readings[name]})" for name, of in shares.items()]
     changes = everything.exceptions("periodic without synchrony", "unknown")
     for convention, attractors in evidence.other_conventions():
+        inside = evidence.choose(attractors, a)
         for law in PAPER_LAWS:
             for state in initial:
-                grid, kind = kinds_of(evidence, state, law, a, attractors)
+                periodic = kinds_reached(inside, state, law) == MotionKind.PERIODIC
                 words = f"{convention}: periodic without synchrony"
-                changes += told_where(words, grid, kind == MotionKind.PERIODIC, f"{law}, {state}")
+                changes += told_where(words, inside["a"].values, periodic, f"{law}, {state}")
     return by_readings(readings, f"Of the periodic runs are synchronized: {'; '.join(texts)}.", measured, changes)
 
 
@@ -217,14 +218,14 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
         f"{a}."
     )
 
-    def regular(attractors: xarray.Dataset) -> list[Case]:
+    def regular(inside: xarray.Dataset) -> list[Case]:
         # The largest exponent of regular motion is that of the flow, 0; in chaos it is positive.
-        inside, kind = kinds_of(evidence, initial, law, a, attractors)
+        kind = kinds_reached(inside, initial, law)
         right = np.isin(kind, (MotionKind.SYNCHRONIZED, *REGULAR))
-        return [Case(law, inside, right, kind != MotionKind.UNDETERMINED)]
+        return [Case(law, inside["a"].values, right, kind != MotionKind.UNDETERMINED)]
 
     changes = case.exceptions("not 0", "unknown")
-    return under_conventions(evidence, found.verdict, reason, measured, changes, found.reached(regular))
+    return under_conventions(evidence, found.verdict, reason, measured, changes, found.reached(evidence, a, regular))
 
 
 @judge("lyapunov", "agreement", "rotation", "attractors")

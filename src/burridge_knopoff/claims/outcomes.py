@@ -17,28 +17,27 @@ if TYPE_CHECKING:
 CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
 
 
-def synchrony(evidence: Evidence, initial: str, a: Range, attractors: xarray.Dataset | None = None) -> xarray.DataArray:
-    """Return where an initial state leads to synchrony, over (law, a): 1 or 0, NaN where unknown.
+def synchrony(evidence: Evidence, initial: str, a: Range, inside: xarray.Dataset | None = None) -> xarray.DataArray:
+    """Return where an initial state leads to synchrony in a range of a, over (law, a): 1 or 0, NaN where unknown.
 
-    attractors : under one convention, to tell it of the branch that the state reaches there, and not of the runs
+    inside : the attractors there under one convention, to tell it of the branch reached and not of the runs
     """
-    if attractors is None:
+    if inside is None:
         return evidence.choose(evidence.of_state("mean_distance", initial), a)["synchronized"]
-    branch = evidence.choose(attractors, a)["initial_branch"].sel(initial=initial)
+    branch = inside["initial_branch"].sel(initial=initial)
     return (branch == 0).where(branch >= 0)
 
 
 def kinds_of(
-    evidence: Evidence, initial: str, law: str, a: Range, attractors: xarray.Dataset | None = None
+    evidence: Evidence, initial: str, law: str, a: Range, inside: xarray.Dataset | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return (a, kind of motion) from a state in a range of a, UNDETERMINED where unknown; all chaos is one kind.
 
-    attractors : under one convention, to tell it of the attractors that the state reaches there, and not of the runs
+    inside : the attractors there under one convention, to tell it of the attractor reached and not of the runs
     """
-    if attractors is None:
+    if inside is None:
         runs = evidence.choose(evidence.of_state("agreement", initial), a).sel(law=law)
         return runs["a"].values, with_one_chaos(runs["kind"].values)
-    inside = evidence.choose(attractors, a)
     return inside["a"].values, kinds_reached(inside, initial, law)
 
 

@@ -40,8 +40,8 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
     runs = evidence.choose(evidence.of_state("mean_distance", initial), a)
     here, elsewhere = ("synchrony", "no synchrony") if synchronized else ("no synchrony", "synchrony")
 
-    def cases(attractors: xarray.Dataset | None = None) -> Iterator[Case]:
-        found = synchrony(evidence, initial, a, attractors)
+    def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
+        found = synchrony(evidence, initial, a, inside)
         for law in PAPER_LAWS:
             state = found.sel(law=law).values
             few = f"too few runs from {initial} under the {law} law completed at {a}"
@@ -57,7 +57,7 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
     reason = f"There is {here} from {initial} at {found} of the values of a with {a}."
     measured = found.measured(f"share of a with {here}", extreme)
     return under_conventions(
-        evidence, found.verdict, reason, measured, found.exceptions(elsewhere), found.reached(cases)
+        evidence, found.verdict, reason, measured, found.exceptions(elsewhere), found.reached(evidence, a, cases)
     )
 
 
