@@ -10,7 +10,7 @@ import pytest
 import xarray
 
 from burridge_knopoff.attractors.lookup import reached
-from burridge_knopoff.claims.conventions import by_readings, judge_shares, shares_by_readings, under_conventions
+from burridge_knopoff.claims.conventions import by_readings, shares_by_readings, under_conventions
 from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.claims.verdict import (
     CONVENTION,
@@ -24,6 +24,7 @@ from burridge_knopoff.claims.verdict import (
     Share,
     Verdict,
     by_share,
+    judge_shares,
     verdict_of,
 )
 from tests.claims import alterations
@@ -154,9 +155,10 @@ def test_a_reading_that_is_open_is_not_left_out(readings: list[str], expected: s
     verdicts = {f"reading {number}": verdict for number, verdict in enumerate(readings)}
     if expected == NOT_TESTABLE:
         with pytest.raises(NotTestableError, match=f"«reading {readings.index(NOT_TESTABLE)}»$"):
-            by_readings(verdicts)
+            by_readings(verdicts, "why", [])
     else:
-        assert by_readings(verdicts) == (expected, readings[0])
+        found = Verdict(expected, "why", [], "but; and", verdicts, readings[0])
+        assert by_readings(verdicts, "why", [], ["but", "and"]) == found
 
 
 def test_the_worst_share_of_a_reading_decides() -> None:

@@ -5,8 +5,12 @@ It imports nothing of the search: a figure that reads a name here does not depen
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import xarray
+
+if TYPE_CHECKING:
+    import xarray
 
 #: Crossings of the section that `refined.nc` holds of an attractor, at most.
 CROSSINGS = 300

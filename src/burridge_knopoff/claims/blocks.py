@@ -4,18 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings, shares_by_readings
+from burridge_knopoff.claims.conventions import by_readings
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import (
-    FAILS,
-    Measured,
-    Range,
-    Share,
-    Verdict,
-    at_values,
-    known_share,
-    verdict_of,
-)
+from burridge_knopoff.claims.for_all import Case, for_all
+from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.verdict import FAILS, Measured, Range, Verdict, at_values, by_share
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
 from burridge_knopoff.summaries.judgement import same_mean
@@ -24,6 +17,7 @@ from burridge_knopoff.summaries.judgement import same_mean
 KIND_AND_MEAN, MEAN = "in the kind of motion and in ⟨J⟩", "in ⟨J⟩"
 
 
+@judge("two_blocks")
 def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws give practically the same for the two-block train, from all sampled states at each a.
 
@@ -40,24 +34,22 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
         KIND_AND_MEAN: found["agrees"].values,
         MEAN: same_mean(pair, summary.attrs["synchronization_threshold"], agreement),
     }
-    shares: dict[str, dict[str, Share]] = {}
-    measured, changes = [], []
+    measured, changes, readings, texts = [], [], {}, []
     for reading, agrees in answers.items():
         known, right = _for_all_states(agrees)
         unknown = f"the laws could not be compared for two blocks {at_values(grid, ~known)}"
-        share = known_share(right, known, loose_share, unknown)
-        shares[reading] = {reading: share}
-        measured.append(Measured(f"share of a at which the laws agree {reading} from all states", share.value))
+        case = Case(reading, grid, right, known, unknown)
+        share = for_all(loose_share, [case]).share
+        readings[reading] = by_share(share, loose_share)
+        texts.append(f"{share} {reading} ({readings[reading]})")
         of_states = float((agrees == Answer.YES)[agrees != Answer.UNDETERMINED].mean())
+        measured.append(Measured(f"share of a at which the laws agree {reading} from all states", share.value))
         measured.append(Measured(f"share of states and a at which they agree {reading}", of_states))
         wrong = grid[known & ~right]
         if len(wrong):
             measured.append(Measured(f"smallest a at which they disagree {reading}", wrong[0]))
             measured.append(Measured(f"largest a at which they disagree {reading}", wrong[-1]))
-            changes.append(f"they disagree {reading} {at_values(grid, known & ~right)}")
-        if not known.all():
-            changes.append(f"unknown {reading} {at_values(grid, ~known)}")
-    readings = shares_by_readings(shares, loose_share)
+        changes += case.exceptions(f"they disagree {reading}", f"unknown {reading}")
     ratio = np.abs(pair["difference"]) / np.maximum(*pair["mean_distance"])
     if np.isfinite(ratio).any():
         measured.append(Measured("largest |Δ⟨J⟩|/⟨J⟩", float(np.nanmax(ratio))))
@@ -70,13 +62,11 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     if other_known.any():
         of_other = float(other_right[other_known].mean())
         measured.append(Measured("the first share if both blocks are pulled, which is not the paper's chain", of_other))
-    texts = [f"{of[name]} {name} ({readings[name]})" for name, of in shares.items()]
     reason = (
         f"In the train model, pulled at its first block only, the laws agree from all {states} sampled states at "
         f"{'; at '.join(texts)}, of the values of a with {a}."
     )
-    verdict, own = by_readings(readings)
-    return Verdict(verdict, reason, measured, "; ".join(changes), readings, own)
+    return by_readings(readings, reason, measured, changes)
 
 
 def _for_all_states(agrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -85,6 +75,7 @@ def _for_all_states(agrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return (agrees >= 0).all(axis=0) | (agrees == Answer.NO).any(axis=0), (agrees == Answer.YES).all(axis=0)
 
 
+@judge("two_blocks", "agreement")
 def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
     """Judge whether one block sticks and slips periodically at all a of a range, and more blocks perhaps chaotically.
 
@@ -98,8 +89,9 @@ def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> 
     known = (one != MotionKind.UNDETERMINED).all(axis=1)
     right = ((one == MotionKind.PERIODIC) & sticks).all(axis=1)
     grid = found["a"].values
-    share = known_share(right, known, loose_share, f"the motion of one block is unknown {at_values(grid, ~known)}")
-    measured = [Measured("share of a at which one block sticks and slips periodically", share.value)]
+    case = Case("one block", grid, right, known, f"the motion of one block is unknown {at_values(grid, ~known)}")
+    periodic = for_all(loose_share, [case])
+    measured = [Measured("share of a at which one block sticks and slips periodically", periodic.share.value)]
     two = np.isin(found["kind"].sel(chain="train").transpose("a", ...).values.reshape(len(grid), -1), CHAOS)
     evidences = [("the train of two blocks", grid, two)]
     if "agreement" in evidence.summaries:
@@ -112,9 +104,8 @@ def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> 
             measured.append(Measured(f"smallest a with chaos of {name}", values[chaos.any(axis=1)][0]))
     chaotic = sum(int(chaos.sum()) for *_, chaos in evidences)
     reason = (
-        f"One block sticks and slips periodically under both laws at {share} of the values of a with {a}; "
+        f"One block sticks and slips periodically under both laws at {periodic.share} of the values of a with {a}; "
         f"{chaotic or 'no'} motions of two or three blocks are chaotic there."
     )
-    changes = [f"one block is not periodic {at_values(grid, known & ~right)}"] if (known & ~right).any() else []
-    own = verdict_of({"one block": share}, loose_share)
-    return Verdict(own if chaotic else FAILS, reason, measured, "; ".join(changes))
+    verdict = periodic.verdict if chaotic else FAILS
+    return Verdict(verdict, reason, measured, "; ".join(case.exceptions("one block is not periodic")))

@@ -8,15 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.motion.kind import MotionKind, motion_with
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.summaries.judgement import compare
+
+if TYPE_CHECKING:
+    import xarray
 
 FACTORS = (0.5, 2.0)
 AGREEMENT = ("relative_tolerance", "standard_errors")

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, get_type_hints
+from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.claims import (
+# The topics, which register their judges.
+from burridge_knopoff.claims import (  # noqa: F401
     blocks,
     history,
     kinds,
@@ -22,38 +23,21 @@ from burridge_knopoff.claims import (
     solvers,
     synchronization,
 )
-from burridge_knopoff.claims.margins import PARTS
-from burridge_knopoff.claims.verdict import Range, Verdict
+from burridge_knopoff.claims.judge import JUDGES, Judge
+from burridge_knopoff.claims.verdict import Range
 from burridge_knopoff.model import ranges
-from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, unknown_key
+from burridge_knopoff.model.fields import FOLLOWS, Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.ranges import Named, Number, OneOf, Several, Text, Whole
+from burridge_knopoff.model.ranges import Named, Number, OneOf, Several, Text
 from burridge_knopoff.provenance.files import display_path
-from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
-from burridge_knopoff.values import refusal
 
 #: The statements of the paper.
 FILE = Path(__file__).with_name("claims.yaml")
 
-TOPICS = {
-    "synchronization": synchronization,
-    "history": history,
-    "kinds": kinds,
-    "section": section,
-    "locking": locking,
-    "motion": motion,
-    "model": model,
-    "laws": laws,
-    "solvers": solvers,
-    "blocks": blocks,
-}
-
-_RANGE = {"from": "first", "to": "last", "above": "above", "below": "below"}
-
 
 class _Arguments(ranges.Range):
-    """The arguments of a judge, which `_parameter` checks."""
+    """The arguments of a judge, which `_parameters` checks."""
 
     def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
         return dict(value) if isinstance(value, Mapping) else None
@@ -70,14 +54,9 @@ CLAIMS = Named(
         {
             "statement": Field(_WORDS, "the paper's statement, in our words"),
             "place": Field(_WORDS, "its place in the paper"),
-            "judge": Field(
-                Text(f"topic.function, the topic one of {', '.join(TOPICS)}", rf"({'|'.join(TOPICS)})\.[a-z_]+"),
-                "the function that judges the claim",
-            ),
+            "judge": Field(OneOf(tuple(JUDGES)), "the function that judges the claim"),
             "parameters": Field(_Arguments(), "its arguments"),
-            "figure": Field(
-                Text("small letters, digits and _", "[a-z][a-z0-9_]*"), "the figure of the study that shows the claim"
-            ),
+            "figure": Field(_WORDS, "the figure of the study that shows the claim"),
             "depends_on": Field(
                 Several(Text("one name"), distinct=True),
                 "the claims of which this is a case, a repetition or a consequence",
@@ -88,35 +67,16 @@ CLAIMS = Named(
     1,
 )
 
-_NUMBER, _NAME, _SHARE = Number(-ranges.HUGE, ranges.HUGE), Text("one name"), Number(0.0, 1.0, above=True)
-#: Ranges of judges' parameters by name; other parameters are checked by their type.
-_BY_NAME: Mapping[str, ranges.Range] = {
-    **dict.fromkeys(("a", "synchrony"), Keys({name: Field(_NUMBER, "one end", FOLLOWS) for name in _RANGE})),
-    "laws": Several(OneOf(PAPER_LAWS), 1, distinct=True),
-    "part": OneOf(PARTS),
-    "law": OneOf(PAPER_LAWS),
-    "tolerance": Number(0.0, ranges.HUGE),
-    **dict.fromkeys(("loose", "much"), Number(0.0, ranges.HUGE, above=True)),
-    **dict.fromkeys(("share", "loose_share"), _SHARE),
-    "kinds": Several(OneOf(("synchronized", "periodic", "quasiperiodic", "chaotic")), 1),
-    "claims": Several(_NAME, 1, distinct=True),
-    "coefficients": Several(_NUMBER, 3, 3),
-}
-_BY_TYPE: Mapping[Any, ranges.Range] = {
-    str: _NAME,
-    int: Whole(1, 10**9),
-    float: _NUMBER,
-    Sequence[str]: Several(_NAME),
-    tuple[str, str]: Several(_NAME, 2, 2),
-    Sequence[float]: Several(_NUMBER),
-}
+_ENDS = {"from": "first", "to": "last", "above": "above", "below": "below"}
+_RANGE = Keys({name: Field(Number(-ranges.HUGE, ranges.HUGE), "one end", FOLLOWS) for name in _ENDS})
+_STATE = OneOf(tuple(PAPER_STATES))
 
 
 @dataclass(frozen=True)
 class Claim:
     """A statement of the paper, in our words, and how it is judged.
 
-    topic, judge, parameters : the function `judge` of the module `topic`, and its arguments
+    parameters : of the judge
     figure : the figure of the study that shows the claim
     depends_on : names of the claims of which this is a case, a repetition or a consequence; empty if independent
     """
@@ -124,11 +84,15 @@ class Claim:
     name: str
     statement: str
     place: str
-    topic: str
-    judge: Callable[..., Verdict]
+    judge: Judge
     parameters: Mapping[str, Any]
     figure: str
     depends_on: Sequence[str] = ()
+
+    @property
+    def topic(self) -> str:
+        """The module of the judge."""
+        return self.judge.name.partition(".")[0]
 
 
 def read_claims(figures: Collection[str], path: str | Path = FILE) -> list[Claim]:
@@ -149,61 +113,29 @@ def read_claims(figures: Collection[str], path: str | Path = FILE) -> list[Claim
 
 def claims_of(content: Mapping[str, Any]) -> list[Claim]:
     """Return the claims in the content of such a file; raises ValueError, one line: key, value, expected values."""
-    claims = [_claim(name, item) for name, item in CLAIMS.form(content, "").items()]
+    claims = []
+    for name, item in CLAIMS.form(content, "").items():
+        judge = JUDGES[item.pop("judge")]
+        parameters = _parameters(judge, item.pop("parameters"), f"{name}.parameters")
+        statement, place = (" ".join(item.pop(key).split()) for key in ("statement", "place"))
+        claims.append(Claim(name, statement, place, judge, parameters, **item))
     for claim in claims:
         for other in claim.depends_on:
             OneOf(tuple(one.name for one in claims if one is not claim)).form(other, f"{claim.name}.depends_on")
     return claims
 
 
-def _claim(name: str, item: Mapping[str, Any]) -> Claim:
-    topic, function = item["judge"].split(".")
-    judges = _judges(topic)
-    if function not in judges:
-        raise refusal(f"{name}.judge", item["judge"], f"one of {', '.join(judges)} of {topic}")
-    parameters = dict(item["parameters"])
-    expected = get_type_hints(judges[function])
-    del expected["evidence"], expected["return"]
-    place = f"{name}.parameters"
-    for key in parameters:
-        if key not in expected:
-            raise unknown_key(place, key, list(expected))
-    for key, kind in expected.items():
-        if key not in parameters:
-            raise ValueError(f"{place}.{key}: missing, expected a value for {item['judge']}")
-        parameters[key] = _parameter(key, parameters[key], kind, f"{place}.{key}")
-    for state in np.atleast_1d(parameters.get("initial", [])):
-        if state not in PAPER_STATES:
-            raise ValueError(f"{place}.initial: got {state!s}, expected {' | '.join(PAPER_STATES)}")
-    if parameters.get("loose", np.inf) < parameters.get("tolerance", 0.0):
-        raise refusal(f"{place}.loose", parameters["loose"], "at least tolerance")
-    statement, where = (" ".join(item[key].split()) for key in ("statement", "place"))
-    depends = tuple(item["depends_on"])
-    return Claim(name, statement, where, topic, judges[function], parameters, item["figure"], depends)
-
-
-def _parameter(key: str, value: Any, kind: Any, place: str) -> Any:
-    """Return a parameter as its judge takes it; `kind` is the annotation."""
-    if kind is bool:
-        if not isinstance(value, bool):
-            raise refusal(place, value, "true | false")
-        return value
-    value = _BY_NAME.get(key, _BY_TYPE.get(kind, _NUMBER)).form(value, place)
-    if kind is not Range:
-        return value
-    if not value or ("from" in value and "above" in value) or ("to" in value and "below" in value):
-        raise refusal(place, value, "at least one end, and one of each side")
-    ends = Range(**{_RANGE[name]: number for name, number in value.items()})
-    if ends.empty:
-        raise refusal(place, value, "the first end below the last")
-    return ends
-
-
-def _judges(topic: str) -> dict[str, Callable[..., Verdict]]:
-    """Return the judges of a topic by name: the public functions defined in its module."""
-    module = TOPICS[topic]
-    return {
-        name: function
-        for name, function in vars(module).items()
-        if inspect.isfunction(function) and function.__module__ == module.__name__ and not name.startswith("_")
-    }
+def _parameters(judge: Judge, parameters: Mapping[str, Any], place: str) -> dict[str, Any]:
+    """Return the parameters of a judge, with ranges of a; raises ValueError if they do not fit its signature."""
+    signature = inspect.signature(judge.function)
+    try:
+        signature.bind(None, **parameters)
+    except TypeError as error:
+        raise ValueError(f"{place}: {error}, expected {', '.join([*signature.parameters][1:])}") from error
+    for state in np.atleast_1d(parameters.get("initial", [])).tolist():
+        _STATE.form(state, f"{place}.initial")
+    found = dict(parameters)
+    for key in {"a", "synchrony"} & {*parameters}:
+        ends = _RANGE.form(parameters[key], f"{place}.{key}")
+        found[key] = Range(**{_ENDS[name]: number for name, number in ends.items()})
+    return found

@@ -21,9 +21,8 @@ from burridge_knopoff.claims.verdict import (
     Range,
     Share,
     Verdict,
-    at_values,
     by_share,
-    shares_text,
+    told_where,
     worst,
 )
 
@@ -64,18 +63,21 @@ def under_conventions(
     return Verdict(verdict, reason, measured, changes, dict(sorted(verdicts.items())), own)
 
 
-def by_readings(verdicts: Mapping[str, str]) -> tuple[str, str]:
-    """Return (the verdict of a claim with more than one reading, the verdict under the first reading).
+def by_readings(
+    verdicts: Mapping[str, str], reason: str, measured: Sequence[Measured], changes: Sequence[str] = ()
+) -> Verdict:
+    """Return the verdict of a claim with more than one reading, from that under each; the first one is its own.
 
     It depends on reading if it holds, at least loosely, under one reading and fails under another; if it does not, the
     worst decides. Raises NotTestableError if that is open: it may agree with the others or not.
     """
     own = next(iter(verdicts.values()))
-    if _divided(verdicts):
-        return READING, own
-    if unresolved := [reading for reading, verdict in verdicts.items() if verdict == NOT_TESTABLE]:
+    divided = _divided(verdicts)
+    unresolved = [reading for reading, verdict in verdicts.items() if verdict == NOT_TESTABLE]
+    if unresolved and not divided:
         raise NotTestableError(f"there are too few values for the reading «{'» and «'.join(unresolved)}»")
-    return worst(verdicts.values()), own
+    verdict = READING if divided else worst(verdicts.values())
+    return Verdict(verdict, reason, measured, "; ".join(changes), verdicts, own)
 
 
 def shares_by_readings(shares: Mapping[str, Mapping[str, Share]], loose: float) -> dict[str, str]:
@@ -104,15 +106,6 @@ def of_rounded_states(evidence: Evidence, initial: Sequence[str], laws: Sequence
                 attractors[name].sel(law=law, initial=state).values for name in ("initial_branch", "rounded_branch")
             )
             other = ((others != own[:, None]) & (others >= 0) & (own >= 0)[:, None]).any(axis=1)
-            if other.any():
-                where = at_values(attractors["a"].values, other)
-                texts.append(f"some states that round to {state} reach another attractor {where} ({law})")
+            words = f"some states that round to {state} reach another attractor"
+            texts += told_where(words, attractors["a"].values, other, law)
     return texts
-
-
-def judge_shares(shares: Mapping[str, Share], loose: float) -> tuple[str, str]:
-    """Return (the verdict for the worst share, the shares as text); no verdict, "", if there is none or it is open."""
-    if not shares:
-        return "", ""
-    verdict = worst(by_share(share, loose) for share in shares.values())
-    return ("" if verdict == NOT_TESTABLE else verdict), shares_text(shares)

@@ -19,25 +19,6 @@ from burridge_knopoff.study.paper import PAPER_A, PAPER_LAWS, PAPER_TRANSIENT, P
 if TYPE_CHECKING:
     import xarray
 
-#: The summaries that judges read. The verdicts depend on no others: a change of another one leaves them up to date.
-READ_BY_JUDGES = (
-    "agreement",
-    "attractors",
-    "bifurcation_diagram",
-    "bifurcations",
-    "equilibrium",
-    "lyapunov",
-    "mean_distance",
-    "orbits",
-    "phases",
-    "proof",
-    "refined",
-    "rotation",
-    "solvers",
-    "stick_slip",
-    "two_blocks",
-)
-
 # A statement on a range of a is judged only with at least this many values of a.
 LEAST_VALUES = 10
 
@@ -49,7 +30,7 @@ COMPUTED_WITHIN = 1e-13
 class Evidence:
     """The results of a study.
 
-    summaries : Datasets by name, of READ_BY_JUDGES; without those that the study does not make
+    summaries : Datasets by name, of those that claims depend on; without those that the study does not make
     config : the study's config: laws, chain, v, contact, start, transient, window, initial, and the section `motion`
     verdicts : on the claims judged before, by name
     """
@@ -106,12 +87,7 @@ class Evidence:
         return Chain(**self.config["chain"]).blocks
 
     def summary(self, name: str) -> xarray.Dataset:
-        """Return a summary, for the paper's laws only; raises NotTestableError if the study does not have it.
-
-        Raises ValueError, one line, if it is not one of READ_BY_JUDGES, whether the study has it or not.
-        """
-        if name not in READ_BY_JUDGES:
-            raise ValueError(f"{name}: not in READ_BY_JUDGES of claims/evidence.py: claims would miss its changes")
+        """Return a summary, for the paper's laws only; raises NotTestableError if the study does not have it."""
         if name not in self.summaries:
             raise NotTestableError(f"the study has no summary {name}.nc")
         dataset = self.summaries[name]

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings, judge_shares, under_conventions
+from burridge_knopoff.claims.conventions import by_readings, under_conventions
 from burridge_knopoff.claims.endings import Criteria, Endings, percent
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.for_all import Case, for_all
+from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.outcomes import synchrony
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -18,12 +21,11 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Range,
-    Share,
     Verdict,
-    at_values,
-    is_decided,
+    extremes,
     share_of,
     shares_text,
+    told_where,
     verdict_of,
     worst,
 )
@@ -34,6 +36,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@judge("attractors")
 def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) -> Verdict:
     """Judge whether attractors of different kinds coexist at each a of a range, under both laws: history then decides.
 
@@ -51,10 +54,8 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
         measured.append(Measured(f"most attractors that coexist, {law}", float(count.max())))
         fraction = found["basin_fraction"].values[(found["branch"].values == 0) & (found["basin_count"].values > 0)]
         if len(fraction):
-            measured.append(Measured(f"smallest basin fraction of synchrony, {law}", float(fraction.min())))
-            measured.append(Measured(f"largest basin fraction of synchrony, {law}", float(fraction.max())))
-        if not (kinds > 1).all():
-            single.append(f"at most one kind of motion {at_values(found['a'].values, kinds <= 1)} ({law})")
+            measured += extremes("basin fraction of synchrony", fraction, law)
+        single += told_where("at most one kind of motion", found["a"].values, kinds <= 1, law)
     reason = f"More than one kind of motion is reached at {shares_text(shares)} of the values of a with {a}."
     return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(single))
 
@@ -74,69 +75,47 @@ def _coexisting(found: xarray.Dataset, samples: int) -> tuple[np.ndarray, np.nda
     return count, np.array(kinds)
 
 
+@judge("mean_distance", "attractors")
 def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, loose_share: float) -> Verdict:
     """Judge whether one of two initial states synchronizes and the other does not, for all a and both laws."""
-    first, second = (evidence.choose(evidence.of_state("mean_distance", name), a) for name in initial)
-    shares, same = {}, []
-    for law in PAPER_LAWS:
-        one, other = (runs["synchronized"].sel(law=law).values for runs in (first, second))
-        known = np.isfinite(one) & np.isfinite(other)
-        if not is_decided(one != other, known, loose_share):
-            raise NotTestableError(f"too few runs under the {law} law completed at {a}")
-        shares[law] = share_of((one != other)[known])
-        if shares[law].value < 1.0:
-            same.append(f"no difference {at_values(first['a'].values, known & (one == other))} ({law})")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        branch = evidence.choose(attractors, a)["initial_branch"]
-        pairs = {law: (branch.sel(law=law, initial=state) for state in initial) for law in PAPER_LAWS}
-        differ = {law: _outcomes(False, loose_share, *pair) for law, pair in pairs.items()}
-        return judge_shares({law: share for law, share in differ.items() if share is not None}, loose_share)
+    def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
+        both = [synchrony(evidence, state, a, inside) for state in initial]
+        for law in PAPER_LAWS:
+            # Under another convention the last law tells for both: so the ledger has it.
+            told = law if inside is None else PAPER_LAWS[-1]
+            one, other = (found.sel(law=told).values for found in both)
+            few = f"too few runs under the {law} law completed at {a}"
+            yield Case(law, both[0]["a"].values, one != other, np.isfinite(one + other), few)
 
-    own = verdict_of(shares, loose_share)
-    reason = (
-        f"One of {initial[0]} and {initial[1]} synchronizes and the other does not at {shares_text(shares)} of the "
-        f"values of a with {a}."
-    )
-    named = shares.items()
-    measured = [Measured(f"share of a at which the outcome differs, {law}", share.value) for law, share in named]
-    return under_conventions(evidence, own, reason, measured, same, labels)
+    found = for_all(loose_share, cases())
+    first, second = initial
+    reason = f"One of {first} and {second} synchronizes and the other does not at {found} of the values of a with {a}."
+    measured, same = found.measured("share of a at which the outcome differs"), found.exceptions("no difference")
+    return under_conventions(evidence, found.verdict, reason, measured, same, found.reached(evidence, a, cases))
 
 
+@judge("mean_distance", "attractors")
 def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead from each initial state to the same outcome, synchrony or none, for all a."""
-    shares, differing = {}, []
-    for name in initial:
-        runs = evidence.choose(evidence.of_state("mean_distance", name), a)
-        one, other = (runs["synchronized"].sel(law=law).values for law in PAPER_LAWS)
-        known = np.isfinite(one) & np.isfinite(other)
-        if not is_decided(one == other, known, loose_share):
-            raise NotTestableError(f"too few runs from {name} completed at {a}")
-        shares[name] = share_of((one == other)[known])
-        if shares[name].value < 1.0:
-            differing.append(f"the outcomes from {name} differ {at_values(runs['a'].values, known & (one != other))}")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        branch = evidence.choose(attractors, a)["initial_branch"]
-        pairs = {state: (branch.sel(law=law, initial=state) for law in PAPER_LAWS) for state in initial}
-        same = {state: _outcomes(True, loose_share, *pair) for state, pair in pairs.items()}
-        return judge_shares({state: share for state, share in same.items() if share is not None}, loose_share)
+    def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
+        for state in initial:
+            # Under another convention the last state tells for all: so the ledger has it.
+            told = state if inside is None else initial[-1]
+            found = synchrony(evidence, told, a, inside)
+            one, other = (found.sel(law=law).values for law in PAPER_LAWS)
+            few = f"too few runs from {state} completed at {a}"
+            yield Case(state, found["a"].values, one == other, np.isfinite(one + other), few)
 
-    own = verdict_of(shares, loose_share)
-    reason = (
-        f"Both laws have the same outcome, synchrony or none, at {shares_text(shares)} of the values of a with {a}."
-    )
-    measured = [Measured(f"share of a with the same outcome, {name}", share.value) for name, share in shares.items()]
-    return under_conventions(evidence, own, reason, measured, differing, labels)
+    found = for_all(loose_share, cases())
+    reason = f"Both laws have the same outcome, synchrony or none, at {found} of the values of a with {a}."
+    measured = found.measured("share of a with the same outcome")
+    differ = [text for case in found.cases for text in case.exceptions(f"the outcomes from {case.name} differ")]
+    return under_conventions(evidence, found.verdict, reason, measured, differ, found.reached(evidence, a, cases))
 
 
-def _outcomes(same: bool, loose: float, one: xarray.DataArray, other: xarray.DataArray) -> Share | None:
-    """Return the fraction of a at which both branches synchronize, or neither (same), or one does; None if unknown."""
-    known = ((one >= 0) & (other >= 0)).values
-    right = (((one == 0) == (other == 0)) == same).values
-    return share_of(right[known]) if is_decided(right, known, loose) else None
-
-
+@judge()
 def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
     """Judge whether some claims hold together under one convention of contact and start.
 
@@ -186,6 +165,7 @@ def _words(name: str) -> str:
     return f"«{name.replace('_', ' ')}»"
 
 
+@judge("phases")
 def phases_decide(
     evidence: Evidence,
     a: Range,
@@ -225,8 +205,7 @@ def phases_decide(
             )
     for law, low in zip(judged.laws, judged.together.low, strict=True):
         lost = ~judged.inside & (low[:, judged.slips] < share).any(axis=1)
-        if lost.any():
-            changes.append(f"close phases do not synchronize {at_values(phases['a'].values, lost)} ({law})")
+        changes += told_where("close phases do not synchronize", phases["a"].values, lost, law)
     readings = {_inner_block(inner_share): judged.verdict}
     for other in phases["inner_share"].values[phases["inner_share"].values != inner_share].tolist():
         where = _inner_block(other)
@@ -251,8 +230,7 @@ def phases_decide(
         f"(A = {judged.amplitudes}) synchronize from phases within {close:g}° ({together}) and end in antiphase from "
         f"opposite phases ({against}), at {judged.shares} of the values of a with {a}."
     )
-    verdict, own = by_readings(readings)
-    return Verdict(verdict, reason, measured, "; ".join(changes), readings, own)
+    return by_readings(readings, reason, measured, changes)
 
 
 def _inner_block(share: float) -> str:

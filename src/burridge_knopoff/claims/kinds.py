@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from burridge_knopoff.attractors.lookup import reached
-from burridge_knopoff.claims.conventions import by_readings, judge_shares, shares_by_readings, under_conventions
+from burridge_knopoff.claims.conventions import by_readings, shares_by_readings, under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
+from burridge_knopoff.claims.for_all import Case, ForAll, for_all
+from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.outcomes import CLOSED, kinds_of, kinds_reached
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -17,15 +20,11 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Range,
-    Share,
     Verdict,
     at_values,
     by_interval,
-    is_decided,
-    known_share,
-    share_of,
     shares_text,
-    verdict_of,
+    told_where,
     worst,
 )
 from burridge_knopoff.motion.kind import (
@@ -43,21 +42,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
-
-
-def _kinds(evidence: Evidence, initial: str, law: str, a: Range) -> tuple[np.ndarray, np.ndarray]:
-    """Return (a, kind of motion) of the runs from a state, from `agreement.nc`."""
-    runs = evidence.choose(evidence.of_state("agreement", initial), a).sel(law=law)
-    return runs["a"].values, with_one_chaos(runs["kind"].values)
-
-
-def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return where the kind of motion reached from a state is known, and the kind; all chaos counts as one kind."""
-    known, kind = reached(attractors, initial, law, "kind")
-    return known & (kind != MotionKind.UNDETERMINED), with_one_chaos(kind)
-
-
+@judge("agreement", "attractors")
 def all_of_kind(
     evidence: Evidence, initial: Sequence[str], laws: Sequence[str], kinds: Sequence[str], a: Range, loose_share: float
 ) -> Verdict:
@@ -69,46 +54,33 @@ def all_of_kind(
     """
     allowed = [int(kind) for kind in MotionKind if kind.name.lower() in kinds]
     what = " or ".join(kinds)
-    shares, measured, exceptions = {}, [], []
-    for law in laws:
-        for state in initial:
-            grid, kind = _kinds(evidence, state, law, a)
-            known = kind != MotionKind.UNDETERMINED
-            right = np.isin(kind, allowed)
-            unknown = f"the kind of motion from {state} under the {law} law is unknown {at_values(grid, ~known)}"
-            name = f"{law}, {state}"
-            shares[name] = known_share(right, known, loose_share, unknown)
-            measured.append(Measured(f"share of a with {what} motion, {name}", shares[name].value))
-            if not right[known].all():
-                exceptions.append(f"other motion {at_values(grid, known & ~right)} ({name})")
-            if not known.all():
-                exceptions.append(f"unknown {at_values(grid, ~known)} ({name})")
+
+    def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
+        for law in laws:
+            for state in initial:
+                grid, kind = kinds_of(evidence, state, law, a, inside)
+                known = kind != MotionKind.UNDETERMINED
+                unknown = f"the kind of motion from {state} under the {law} law is unknown {at_values(grid, ~known)}"
+                yield Case(f"{law}, {state}", grid, np.isin(kind, allowed), known, unknown)
+
+    found = for_all(loose_share, cases())
+    measured = found.measured(f"share of a with {what} motion")
     if "attractors" in evidence.summaries:
         attractors = evidence.choose(evidence.summary("attractors"), a).sel(law=list(laws))
         known = (attractors["branch"] >= 0).values & (attractors["kind"].values != MotionKind.UNDETERMINED)
         if known.any():
             share = float(np.isin(with_one_chaos(attractors["kind"].values), allowed)[known].mean())
             measured.append(Measured(f"share of all attractors with {what} motion", share))
-
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {}
-        for law in laws:
-            for state in initial:
-                known, kind = kinds_reached(evidence.choose(attractors, a), state, law)
-                right = np.isin(kind, allowed)
-                if is_decided(right, known, loose_share):
-                    found[f"{law}, {state}"] = share_of(right[known])
-        return judge_shares(found, loose_share)
-
-    own = verdict_of(shares, loose_share)
-    reason = f"The motion is {what} at {shares_text(shares)} of the values of a with {a}."
+    reason = f"The motion is {what} at {found} of the values of a with {a}."
     # Periodic and quasiperiodic together are regular motion, however the two are divided.
     if ("periodic" in kinds) != ("quasiperiodic" in kinds):
         longest = evidence.config["motion"]["longest_period"]
         reason += f" Motion that repeats within {longest:g} time units counts as periodic."
-    return under_conventions(evidence, own, reason, measured, exceptions, labels)
+    exceptions = found.exceptions("other motion", "unknown")
+    return under_conventions(evidence, found.verdict, reason, measured, exceptions, found.reached(evidence, a, cases))
 
 
+@judge("agreement", "lyapunov", "attractors")
 def periodic_is_synchronized(
     evidence: Evidence, initial: Sequence[str], a: Range, synchrony: Range, points: int, loose_share: float
 ) -> Verdict:
@@ -121,10 +93,12 @@ def periodic_is_synchronized(
     synchrony : range of a in which the paper finds synchrony
     """
     longest = evidence.config["motion"]["longest_period"]
-    first = f"with {a} that repeat within {longest:g} time units"
-    second = f"with {synchrony} whose section is no cloud"
-    everything, changes = _synchronized_shares(evidence, initial, a, np.inf, loose_share)
-    shares = {first: everything, second: _synchronized_shares(evidence, initial, synchrony, points, loose_share)[0]}
+    everything = _of_periodic(evidence, initial, a, np.inf, loose_share)
+    lines = _of_periodic(evidence, initial, synchrony, points, loose_share)
+    shares = {
+        f"with {a} that repeat within {longest:g} time units": everything.shares,
+        f"with {synchrony} whose section is no cloud": lines.shares,
+    }
     readings = shares_by_readings(shares, loose_share)
     measured = [
         Measured(f"share of the periodic runs {reading} that are synchronized, {name}", share.value)
@@ -132,61 +106,46 @@ def periodic_is_synchronized(
         for name, share in of_runs.items()
     ]
     texts = [f"{shares_text(of)} of those {name} ({readings[name]})" for name, of in shares.items()]
-    changes += _periodic_elsewhere(evidence, initial, a)
-    reason = f"Of the periodic runs are synchronized: {'; '.join(texts)}."
-    verdict, own = by_readings(readings)
-    return Verdict(verdict, reason, measured, "; ".join(changes), readings, own)
-
-
-def _periodic_elsewhere(evidence: Evidence, initial: Sequence[str], a: Range) -> list[str]:
-    """Return, in words, where states reach periodic motion without synchrony under the other conventions."""
-    texts = []
+    changes = everything.exceptions("periodic without synchrony", "unknown")
     for convention, attractors in evidence.other_conventions():
         inside = evidence.choose(attractors, a)
         for law in PAPER_LAWS:
             for state in initial:
-                known, kind = kinds_reached(inside, state, law)
-                other = known & (kind == MotionKind.PERIODIC)
-                if other.any():
-                    where = at_values(inside["a"].values, other)
-                    texts.append(f"{convention}: periodic without synchrony {where} ({law}, {state})")
-    return texts
+                periodic = kinds_reached(inside, state, law) == MotionKind.PERIODIC
+                words = f"{convention}: periodic without synchrony"
+                changes += told_where(words, inside["a"].values, periodic, f"{law}, {state}")
+    return by_readings(readings, f"Of the periodic runs are synchronized: {'; '.join(texts)}.", measured, changes)
 
 
-def _synchronized_shares(
-    evidence: Evidence, initial: Sequence[str], a: Range, most: float, loose_share: float
-) -> tuple[dict[str, Share], list[str]]:
-    """Return the synchronized fraction of periodic runs with at most so many section points, and where others are.
+def _of_periodic(evidence: Evidence, initial: Sequence[str], a: Range, most: float, loose_share: float) -> ForAll:
+    """Return for which of the periodic runs with at most so many section points it is right that they synchronize.
 
     Raises NotTestableError if no run is periodic, or runs of unknown kind decide.
     """
-    shares, exceptions = {}, []
-    for law in PAPER_LAWS:
-        for state in initial:
-            grid, kind = _kinds(evidence, state, law, a)
-            count = evidence.choose(evidence.of_state("lyapunov", state), a).sel(law=law)["section_period"].values
-            # A section that does not repeat within the run has more points than can be counted.
-            few = np.where(count > 0, count, np.inf) <= most
-            other = (kind == MotionKind.PERIODIC) & few
-            periodic = other | (kind == MotionKind.SYNCHRONIZED)
-            if not periodic.any():
-                continue
-            # A run of unknown kind may be periodic without synchrony.
-            may_be = periodic | (kind == MotionKind.UNDETERMINED)
-            where = at_values(grid, may_be & ~periodic)
-            unknown = f"the kind of motion from {state} under the {law} law is unknown {where}"
-            name = f"{law}, {state}"
-            right = kind[may_be] == MotionKind.SYNCHRONIZED
-            shares[name] = known_share(right, periodic[may_be], loose_share, unknown)
-            if other.any():
-                exceptions.append(f"periodic without synchrony {at_values(grid, other)} ({name})")
-            if (may_be & ~periodic).any():
-                exceptions.append(f"unknown {where} ({name})")
-    if not shares:
+
+    def cases() -> Iterator[Case]:
+        for law in PAPER_LAWS:
+            for state in initial:
+                grid, kind = kinds_of(evidence, state, law, a)
+                count = evidence.choose(evidence.of_state("lyapunov", state), a).sel(law=law)["section_period"].values
+                # A section that does not repeat within the run has more points than can be counted.
+                few = np.where(count > 0, count, np.inf) <= most
+                synchronized = kind == MotionKind.SYNCHRONIZED
+                periodic = synchronized | ((kind == MotionKind.PERIODIC) & few)
+                # A run of unknown kind may be periodic without synchrony.
+                may_be = periodic | (kind == MotionKind.UNDETERMINED)
+                where = at_values(grid, may_be & ~periodic)
+                unknown = f"the kind of motion from {state} under the {law} law is unknown {where}"
+                if periodic.any():
+                    yield Case(f"{law}, {state}", grid, synchronized, periodic, unknown, may_be)
+
+    found = for_all(loose_share, cases())
+    if not found.cases:
         raise NotTestableError(f"no run is periodic with {a}")
-    return shares, exceptions
+    return found
 
 
+@judge("refined", "agreement", "orbits")
 def onset_of_chaos(
     evidence: Evidence, initial: Sequence[str], claimed: float, tolerance: float, loose: float
 ) -> Verdict:
@@ -221,7 +180,7 @@ def onset_of_chaos(
             texts.append(f"nowhere up to {np.nanmax(grid):g} ({law})")
     for state in initial:
         for law in PAPER_LAWS:
-            values, kind = _kinds(evidence, state, law, Range())
+            values, kind = kinds_of(evidence, state, law, Range())
             if (kind == MotionKind.CHAOTIC).any():
                 first_run = values[np.argmax(kind == MotionKind.CHAOTIC)]
                 measured.append(Measured(f"smallest a with a chaotic run, {law}, {state}", float(first_run)))
@@ -233,6 +192,7 @@ def onset_of_chaos(
     return Verdict(worst(verdicts), reason, measured, "; ".join(windows))
 
 
+@judge("lyapunov", "attractors")
 def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Range, loose_share: float) -> Verdict:
     """Judge whether the largest Lyapunov exponent is 0 within its error at all a of a range.
 
@@ -241,36 +201,34 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
     runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
     if not runs.sizes.get("exponent"):
         raise NotTestableError("the study computes no Lyapunov exponents")
+    grid = runs["a"].values
     exponent, error = (runs[name].values[:, 0] for name in ("lyapunov_exponent", "lyapunov_error"))
     known = np.isfinite(exponent) & np.isfinite(error)
     settings = MotionSettings(**evidence.config["motion"]).at_speed(evidence.config["v"])
-    zero = zero_exponents(exponent, error, settings)
-    unknown = f"the Lyapunov exponents of the run from {initial} are unknown {at_values(runs['a'].values, ~known)}"
-    share = known_share(zero, known, loose_share, unknown)
-    own = verdict_of({law: share}, loose_share)
+    unknown = f"the Lyapunov exponents of the run from {initial} are unknown {at_values(grid, ~known)}"
+    case = Case(law, grid, zero_exponents(exponent, error, settings), known, unknown)
+    found = for_all(loose_share, [case])
     largest = int(np.nanargmax(np.where(known, np.abs(exponent), np.nan)))
     measured = [
-        Measured("share of a at which it cannot be told from 0", share.value),
-        Measured(f"largest in modulus, at a = {runs['a'].values[largest]:g}", exponent[largest], error[largest]),
+        Measured("share of a at which it cannot be told from 0", found.share.value),
+        Measured(f"largest in modulus, at a = {grid[largest]:g}", exponent[largest], error[largest]),
     ]
     reason = (
-        f"The largest exponent from {initial} ({law}) cannot be told from 0 at {share} of the values of a with {a}."
+        f"The largest exponent from {initial} ({law}) cannot be told from 0 at {found.share} of the values of a with "
+        f"{a}."
     )
-    changes = [f"not 0 {at_values(runs['a'].values, known & ~zero)}"] if share.value < 1.0 else []
-    if not known.all():
-        changes.append(f"unknown {at_values(runs['a'].values, ~known)}")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
+    def regular(inside: xarray.Dataset) -> list[Case]:
         # The largest exponent of regular motion is that of the flow, 0; in chaos it is positive.
-        there, kind = kinds_reached(evidence.choose(attractors, a), initial, law)
-        regular = np.isin(kind, (MotionKind.SYNCHRONIZED, *REGULAR))
-        if not is_decided(regular, there, loose_share):
-            return "", ""
-        return judge_shares({law: share_of(regular[there])}, loose_share)
+        kind = kinds_reached(inside, initial, law)
+        right = np.isin(kind, (MotionKind.SYNCHRONIZED, *REGULAR))
+        return [Case(law, inside["a"].values, right, kind != MotionKind.UNDETERMINED)]
 
-    return under_conventions(evidence, own, reason, measured, changes, labels)
+    changes = case.exceptions("not 0", "unknown")
+    return under_conventions(evidence, found.verdict, reason, measured, changes, found.reached(evidence, a, regular))
 
 
+@judge("lyapunov", "agreement", "rotation", "attractors")
 def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float, points: int) -> Verdict:
     """Judge whether the motion from a state at one a, under some laws, is aperiodic: chaotic or quasiperiodic.
 
@@ -282,7 +240,7 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float, 
     longest = evidence.config["motion"]["longest_period"]
     for law in laws:
         run = evidence.at(runs, at).sel(law=law)
-        grid, kinds = _kinds(evidence, initial, law, Range(above=0.0))
+        grid, kinds = kinds_of(evidence, initial, law, Range(above=0.0))
         kind = int(kinds[grid == at].item())
         if kind == MotionKind.UNDETERMINED:
             raise NotTestableError(f"the kind of motion from {initial} at a = {at:g} under the {law} law is unknown")
@@ -296,24 +254,22 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float, 
         repeats = f"repeats {seen}" if kind in CLOSED else f"does not repeat {seen}"
         texts.append(f"{MotionKind(kind).words}: it {repeats} ({law})")
         others = ~np.isin(kinds, (*CLOSED, MotionKind.UNDETERMINED))
-        if others.any():
-            elsewhere.append(f"aperiodic {at_values(grid, others)} ({law})")
+        elsewhere += told_where("aperiodic", grid, others, law)
         elsewhere += _neighbours(evidence, law, at, kind)
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {}
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        there, found = attractors.sel(a=[at]), {}
         for law in laws:
-            known, kind = kinds_reached(attractors.sel(a=[at]), initial, law)
-            count = reached(attractors.sel(a=[at]), initial, law, "section_count")[1]
-            if known[0]:
-                found[law] = int(kind[0]), int(count[0])
+            kind = int(kinds_reached(there, initial, law)[0])
+            if kind != MotionKind.UNDETERMINED:
+                found[law] = kind, int(reached(there, initial, law, "section_count")[1][0])
         if not found:
             return "", ""
         verdict = worst(_by_repetition(kind, count, points) for kind, count in found.values())
         return verdict, ", ".join(f"{MotionKind(kind).words} {law}" for law, (kind, _) in found.items())
 
     reason = f"The motion from {initial} at a = {at:g} is {' and '.join(texts)}."
-    return under_conventions(evidence, worst(verdicts), reason, measured, elsewhere, labels)
+    return under_conventions(evidence, worst(verdicts), reason, measured, elsewhere, of_branches)
 
 
 def _by_repetition(kind: int, period: int, points: int) -> str:

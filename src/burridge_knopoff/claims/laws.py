@@ -10,6 +10,8 @@ import numpy as np
 
 from burridge_knopoff.claims.conventions import by_readings
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.for_all import Case, ForAll, for_all
+from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -17,15 +19,12 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Range,
-    Share,
     Verdict,
-    at_values,
     by_share,
     by_value,
-    known_share,
-    share_of,
+    extremes,
     shares_text,
-    verdict_of,
+    told_where,
 )
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.motion.kind import with_one_chaos
@@ -36,6 +35,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@judge("agreement")
 def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead to the same ⟨J⟩ at all a of a range, as curves in a figure correspond.
 
@@ -54,11 +54,12 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
         if np.isfinite(difference).any():
             measured.append(Measured(f"largest |Δ⟨J⟩| where they agree, {state}", float(np.nanmax(difference))))
     tolerance = 100.0 * next(iter(found.values())).attrs["relative_tolerance"]
-    reason, share, numbers, apart = _by_answers(answers, a, loose_share)
-    reason = f"The laws agree in ⟨J⟩ within {tolerance:g} % of the largest, {scale:.3f}, at {reason}."
-    return Verdict(verdict_of({"points": share}, loose_share), reason, [*numbers, *measured], "; ".join(apart))
+    text, points, numbers, apart = _by_answers(answers, a, loose_share)
+    reason = f"The laws agree in ⟨J⟩ within {tolerance:g} % of the largest, {scale:.3f}, at {text}."
+    return Verdict(points.verdict, reason, [*numbers, *measured], "; ".join(apart))
 
 
+@judge("agreement")
 def laws_agree_in_kind(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead to the same kind of motion at all a of a range.
 
@@ -73,15 +74,13 @@ def laws_agree_in_kind(evidence: Evidence, initial: Sequence[str], a: Range, loo
         strictly[state] = one["a"].values, np.where((same == Answer.YES) & (kind != other), Answer.NO, same)
     readings, texts, measured, apart = {}, [], [], []
     for number, answers in (("one kind", loosely), ("two kinds", strictly)):
-        text, share, numbers, where = _by_answers(answers, a, loose_share)
+        text, points, numbers, where = _by_answers(answers, a, loose_share)
         reading = f"with periodic and quasiperiodic motion as {number}"
-        readings[reading] = by_share(share, loose_share)
+        readings[reading] = by_share(points.share, loose_share)
         texts.append(f"at {text}, {reading} ({readings[reading]})")
         measured += [replace(item, quantity=f"{item.quantity}, {reading}") for item in numbers]
         apart += [f"{reading} {text}" for text in where]
-    verdict, own = by_readings(readings)
-    reason = f"The laws agree in the kind of motion {'; '.join(texts)}."
-    return Verdict(verdict, reason, measured, "; ".join(apart), readings, own)
+    return by_readings(readings, f"The laws agree in the kind of motion {'; '.join(texts)}.", measured, apart)
 
 
 def _compared(evidence: Evidence, state: str, a: Range) -> xarray.Dataset:
@@ -90,35 +89,34 @@ def _compared(evidence: Evidence, state: str, a: Range) -> xarray.Dataset:
 
 def _by_answers(
     answers: Mapping[str, tuple[np.ndarray, np.ndarray]], a: Range, loose_share: float
-) -> tuple[str, Share, list[Measured], list[str]]:
+) -> tuple[str, ForAll, list[Measured], list[str]]:
     """Return where the laws agree, by the points of all states together, as a figure shows them.
 
     answers : {initial state: (a, an Answer for each)}
 
-    Returned are the share as text, the share, those of the states, and where the laws differ or are not known to agree.
+    Returned are the share as text, the statement on all points, the shares of the states, and where the laws differ or
+    are not known to agree.
     """
-    shares, numbers, apart, unknown = {}, [], [], []
-    for state, (grid, same) in answers.items():
-        known, differ = same != Answer.UNDETERMINED, same == Answer.NO
-        if known.any():
-            shares[state] = share_of((same == Answer.YES)[known])
-            numbers.append(Measured(f"share of a at which the laws agree, {state}", shares[state].value))
-        if differ.any():
-            numbers.append(Measured(f"smallest a at which they differ, {state}", float(grid[differ][0])))
-            apart.append(f"they differ {at_values(grid, differ)} ({state})")
-        if not known.all():
-            unknown.append(f"unknown {at_values(grid, ~known)} ({state})")
-    same = np.concatenate([of_state for _, of_state in answers.values()])
+    cases = [
+        Case(state, grid, same == Answer.YES, same != Answer.UNDETERMINED) for state, (grid, same) in answers.items()
+    ]
+    shares, numbers = {}, []
+    for case in cases:
+        if case.known.any():
+            shares[case.name] = case.share
+            numbers.append(Measured(f"share of a at which the laws agree, {case.name}", case.share.value))
+        if len(differ := case.a[case.known & ~case.right]):
+            numbers.append(Measured(f"smallest a at which they differ, {case.name}", float(differ[0])))
+    apart = [f"{text} ({case.name})" for case in cases for text in case.exceptions("they differ")]
+    unknown = [text for case in cases for text in told_where("unknown", case.a, ~case.known, case.name)]
+    grid, same = (np.concatenate(part) for part in zip(*answers.values(), strict=True))
     reason = f"the laws could not be compared: {'; '.join(unknown)}"
-    share = known_share(same == Answer.YES, same != Answer.UNDETERMINED, loose_share, reason)
-    return (
-        f"{share} of the points, states and values of a with {a}: {shares_text(shares)}",
-        share,
-        numbers,
-        [*apart, *unknown],
-    )
+    points = for_all(loose_share, [Case("points", grid, same == Answer.YES, same != Answer.UNDETERMINED, reason)])
+    text = f"{points.share} of the points, states and values of a with {a}: {shares_text(shares)}"
+    return text, points, numbers, [*apart, *unknown]
 
 
+@judge("mean_distance")
 def linearization_justified(
     evidence: Evidence, initial: Sequence[str], law: str, a: Range, part: str, tolerance: float, loose: float
 ) -> Verdict:
@@ -135,8 +133,7 @@ def linearization_justified(
     measured = [
         Measured("largest difference of the laws on a slipping block", difference),
         Measured("largest aU'", float(product[top])),
-        Measured("smallest ratio of the fastest slip to v", float(speed.min())),
-        Measured("largest ratio of the fastest slip to v", float(speed.max())),
+        *extremes("ratio of the fastest slip to v", speed),
     ]
     verdict = HOLDS if difference <= tolerance else LOOSELY if difference <= loose else FAILS
     reason = (
@@ -147,6 +144,7 @@ def linearization_justified(
     return Verdict(verdict, reason, measured)
 
 
+@judge("mean_distance")
 def springs_help(
     evidence: Evidence, initial: Sequence[str], law: str, a: Range, claimed: float, tolerance: float, loose: float
 ) -> Verdict:
@@ -174,8 +172,7 @@ def springs_help(
         f"From a = {grid[largest]:g} down to {grid[least]:g} the difference of the laws on a slipping block falls "
         f"{'; '.join(texts)}. The claim says a^{claimed:g}."
     )
-    verdict, own = by_readings(readings)
-    return Verdict(verdict, reason, measured, "", readings, own)
+    return by_readings(readings, reason, measured)
 
 
 def _fastest_slips(

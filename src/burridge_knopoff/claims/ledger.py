@@ -14,10 +14,16 @@ from burridge_knopoff.claims.choices import other_tolerances
 from burridge_knopoff.claims.claim import Claim
 from burridge_knopoff.claims.conventions import of_rounded_states
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.judge import JUDGES
 from burridge_knopoff.claims.margins import turns
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.paper import PAPER_LAWS
+
+#: Summaries that the ledger itself reads: for states that round to the paper's, other tolerances, and the depth.
+OWN = ("attractors", "agreement", "lyapunov", "mean_distance", "two_blocks", "refined")
+#: Summaries that the ledger depends on: a change of another one leaves it up to date.
+READS = tuple(sorted({*OWN, *(name for judge in JUDGES.values() for name in judge.reads)}))
 
 
 def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None = None) -> Verdict:

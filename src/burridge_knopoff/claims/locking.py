@@ -9,6 +9,7 @@ import numpy as np
 
 from burridge_knopoff.claims.conventions import by_readings, shares_by_readings
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
+from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.verdict import (
     NOT_TESTABLE,
     Measured,
@@ -16,11 +17,11 @@ from burridge_knopoff.claims.verdict import (
     Range,
     Share,
     Verdict,
-    at_values,
     by_share,
     share_is_decided,
     share_of,
     shares_text,
+    told_where,
     verdict_of,
 )
 from burridge_knopoff.continuation.branch_changes import Change
@@ -36,6 +37,7 @@ TORUS = "quasiperiodic motion, or chaos too weak to tell from it,"
 UNFOLLOWED = "a closed orbit too long to be followed, or a torus beside it,"
 
 
+@judge("rotation")
 def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: float) -> Verdict:
     """Judge whether the unsynchronized motion, branch 1, is locked at all a of a range, under both laws.
 
@@ -70,8 +72,7 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
         shares[end_blocks][law] = share_of(together)
         if np.isfinite(apart).any():
             measured.append(Measured(f"largest difference of their frequencies, {law}", float(np.nanmax(apart))))
-        if not together.all():
-            where.append(f"the end blocks are not locked to each other {at_values(grid, ~together)} ({law})")
+        where += told_where("the end blocks are not locked to each other", grid, ~together, law)
         locked = found["locked"].values[known] == 1
         shares[middle][law] = share_of(locked)
         number = found["rotation_number"].values[inside]
@@ -88,8 +89,7 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
             where.append(
                 f"the widest plateau, {widest.ratio}, reaches from a = {widest.first:.5g} to {widest.last:.5g} ({law})"
             )
-        if locked.any():
-            where.append(f"locked to the middle block {at_values(grid, locked)} ({law})")
+        where += told_where("locked to the middle block", grid, locked, law)
     for reading, of_laws in shares.items():
         name = f"share of a at which branch 1 is locked, {reading}"
         measured += [Measured(f"{name}, {law}", share.value) for law, share in of_laws.items()]
@@ -99,10 +99,10 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
         f"Branch 1 is locked: {'; '.join(texts)}, of the values of a with {a}. Locked to each other, the end blocks "
         f"keep one frequency with {100 * detuning:g} % more mass of one of them."
     )
-    verdict, own = by_readings(readings)
-    return Verdict(verdict, reason, measured, "; ".join(where), readings, own)
+    return by_readings(readings, reason, measured, where)
 
 
+@judge("bifurcations", "refined")
 def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
     """Judge whether a closed orbit, not a torus, precedes chaos where a branch of attractors turns chaotic as a grows.
 

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from burridge_knopoff.claims.evidence import Evidence, finite
+from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -15,8 +16,9 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
-    at_values,
     by_value,
+    extremes,
+    told_where,
     worst,
 )
 from burridge_knopoff.laws import law_of
@@ -25,6 +27,7 @@ from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 
+@judge("equilibrium")
 def equilibrium_position(evidence: Evidence, law: str, coefficients: Sequence[float], tolerance: float) -> Verdict:
     """Judge the formula U_i − vτ = −c_i (1 − av) for the unstable equilibrium, with given c_i, at all a."""
     evidence.check_blocks()
@@ -45,6 +48,7 @@ def equilibrium_position(evidence: Evidence, law: str, coefficients: Sequence[fl
     return Verdict(verdict, reason, measured)
 
 
+@judge("equilibrium")
 def equilibrium_unstable(evidence: Evidence, a: Range) -> Verdict:
     """Judge whether the Jacobian at uniform sliding has eigenvalues with a positive real part, under both laws."""
     evidence.check_blocks()
@@ -64,10 +68,10 @@ def equilibrium_unstable(evidence: Evidence, a: Range) -> Verdict:
     reason = f"With {a} the largest real part is at least {min(m.value for m in measured[::2]):.3g}."
     whole = evidence.summary("equilibrium")
     stable = (whole["eigenvalue"].sel(part="real").max(dim="mode") <= 0.0).any(dim="law").values
-    changes = f"no growth {at_values(whole['a'].values, stable)}" if stable.any() else ""
-    return Verdict(worst(verdicts), reason, measured, changes)
+    return Verdict(worst(verdicts), reason, measured, "".join(told_where("no growth", whole["a"].values, stable)))
 
 
+@judge("equilibrium")
 def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, loose: float, a: Range) -> Verdict:
     """Judge the growth rate of perturbations of uniform sliding in units of −F'(v), the slope of friction at v."""
     evidence.check_blocks()
@@ -75,11 +79,8 @@ def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, 
     values = found["a"].values
     slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in values])
     ratio = found["growth_rate"].values / slope
-    measured = [
-        Measured("smallest growth rate over −F'(v), in simulations", float(ratio.min())),
-        Measured("largest growth rate over −F'(v), in simulations", float(ratio.max())),
-    ]
-    verdict = worst(by_value(float(value), claimed, tolerance, loose) for value in (ratio.min(), ratio.max()))
+    measured = extremes("growth rate over −F'(v), in simulations", ratio)
+    verdict = worst(by_value(item.value, claimed, tolerance, loose) for item in measured)
     rate = with_error(float(ratio.mean()), float(np.ptp(ratio)))
     reason = (
         f"Perturbations of uniform sliding grow at {rate} times −F'(v) with {a} ({law}); the claim says {claimed:g}."
@@ -87,6 +88,7 @@ def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, 
     return Verdict(verdict, reason, measured)
 
 
+@judge("equilibrium", "stick_slip")
 def near_equilibrium(
     evidence: Evidence, initial: tuple[str, str], law: str, at: float, near: float, loose: float
 ) -> Verdict:
@@ -118,6 +120,7 @@ def near_equilibrium(
     return Verdict(verdict, reason, measured)
 
 
+@judge("mean_distance")
 def friction_keeps_sign(evidence: Evidence, initial: Sequence[str], law: str, a: Range) -> Verdict:
     """Judge whether the friction on a slipping block stays positive in every run."""
     least, where = np.inf, ""
@@ -130,32 +133,26 @@ def friction_keeps_sign(evidence: Evidence, initial: Sequence[str], law: str, a:
         lowest = int(np.nanargmin(friction))
         if friction[lowest] < least:
             least, where = float(friction[lowest]), f"{state}, a = {runs['a'].values[lowest]:g}"
-        if (friction <= 0.0).any():
-            negative.append(f"not positive {at_values(runs['a'].values, friction <= 0.0)} ({state})")
+        negative += told_where("not positive", runs["a"].values, friction <= 0.0, state)
     reason = f"The least friction on a slipping block with {a} ({law}) is {least:.3f}, in the run {where}."
     return Verdict(HOLDS if least > 0.0 else FAILS, reason, [Measured("least Φ(U')", least)], "; ".join(negative))
 
 
+@judge("equilibrium")
 def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdict:
     """Judge the number of exponentials in the solution while all blocks slip; complex pairs count loosely as one."""
     evidence.check_blocks()
     found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)["eigenvalue"]
     real, imaginary = (found.sel(part=part).values for part in ("real", "imaginary"))
-    counts = [
-        len({(round(x, 12), round(y, 12)) for x, y in zip(*pair, strict=True)})
-        for pair in zip(real, imaginary, strict=True)
-    ]
-    pairs = [
-        len({(round(x, 12), round(abs(y), 12)) for x, y in zip(*pair, strict=True)})
-        for pair in zip(real, imaginary, strict=True)
-    ]
+    counts, pairs = (
+        np.array([len({*zip(x.round(12), y.round(12), strict=True)}) for x, y in zip(real, part, strict=True)])
+        for part in (imaginary, np.abs(imaginary))
+    )
     measured = [
-        Measured("smallest number of exponentials", float(min(counts))),
-        Measured("largest number of exponentials", float(max(counts))),
+        *extremes("number of exponentials", counts),
         Measured("largest number of complex pairs", float(max(pairs))),
     ]
-    right = {*counts} == {claimed}
-    verdict = HOLDS if right else LOOSELY if {*pairs} == {claimed} else FAILS
+    verdict = HOLDS if (counts == claimed).all() else LOOSELY if (pairs == claimed).all() else FAILS
     reason = (
         f"With {a} a position has at most {max(counts)} exponentials, in {max(pairs)} complex pairs; "
         f"the claim says {claimed}."
@@ -163,6 +160,7 @@ def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdic
     return Verdict(verdict, reason, measured)
 
 
+@judge("lyapunov", "equilibrium")
 def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed: int, a: Range) -> Verdict:
     """Judge the dimension of the map from event to event; the claim holds loosely if some directions vanish.
 
@@ -184,8 +182,7 @@ def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed:
     left = numbers - lost
     measured = [
         Measured("numbers in a state", float(numbers)),
-        Measured("smallest number of exponents of −∞", float(lost.min())),
-        Measured("largest number of exponents of −∞", float(lost.max())),
+        *extremes("number of exponents of −∞", lost),
     ]
     verdict = FAILS if numbers != claimed else HOLDS if left.min() == claimed else LOOSELY
     reason = (
@@ -195,6 +192,7 @@ def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed:
     return Verdict(verdict, reason, measured)
 
 
+@judge("equilibrium")
 def stable_where_friction_grows(evidence: Evidence, law: str, a: Range) -> Verdict:
     """Judge whether uniform sliding is stable in simulations if friction grows with velocity.
 
@@ -208,5 +206,5 @@ def stable_where_friction_grows(evidence: Evidence, law: str, a: Range) -> Verdi
     largest = float(np.nanmax(growth))
     words = f"decay at a rate of {-largest:.3g} or more" if largest < 0.0 else f"grow, at a rate of up to {largest:.3g}"
     reason = f"With {a} perturbations {words} if the slope of the {law} law is reversed."
-    changes = f"growth {at_values(found['a'].values, growth >= 0.0)}" if largest >= 0.0 else ""
+    changes = "".join(told_where("growth", found["a"].values, growth >= 0.0))
     return Verdict(HOLDS if largest < 0.0 else FAILS, reason, [Measured("largest growth rate", largest)], changes)

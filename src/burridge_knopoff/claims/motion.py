@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.attractors.lookup import reached
-from burridge_knopoff.claims.conventions import by_readings, judge_shares, under_conventions
+from burridge_knopoff.claims.conventions import by_readings, under_conventions
 from burridge_knopoff.claims.evidence import Evidence, finite
+from burridge_knopoff.claims.for_all import Case, for_all
+from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.outcomes import reached_at
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -21,9 +23,11 @@ from burridge_knopoff.claims.verdict import (
     Verdict,
     at_values,
     by_value,
-    known_share,
+    extremes,
+    judge_shares,
     share_of,
     shares_text,
+    told_where,
     verdict_of,
     worst,
 )
@@ -38,6 +42,7 @@ if TYPE_CHECKING:
 ONE_BLOCK, ANY_BLOCK = "from stop to stop of one block", "from a stop of any block to the next one"
 
 
+@judge("stick_slip", "attractors")
 def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence[str], at: float) -> Verdict:
     """Judge whether each block stops again and again at one a, from each state and under some laws."""
     verdicts, measured, never = [], [], []
@@ -54,23 +59,23 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
             everywhere = runs["stop_rate"].sel(law=law).values
             known = np.isfinite(everywhere).all(axis=-1)
             some = known & ~(everywhere > 0.0).all(axis=-1)
-            if some.any():
-                never.append(f"a block never stops {at_values(runs['a'].values, some)} ({law}, {state})")
+            never += told_where("a block never stops", runs["a"].values, some, f"{law}, {state}")
     right = sum(verdict == HOLDS for verdict in verdicts)
     reason = f"At a = {at:g} all three blocks stop again and again in {right} of {len(verdicts)} runs."
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {}
-        for state in initial:
-            for law in laws:
-                known, rate = reached(attractors.sel(a=[at]), state, law, "stop_rate")
-                if known[0]:
-                    found[f"{law}, {state}"] = Share(int((rate[0] > 0.0).all()), 1)
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = {
+            f"{law}, {state}": Share(int((rate[0] > 0.0).all()), 1)
+            for state in initial
+            for law in laws
+            if (rate := reached_at(attractors, at, state, law, "stop_rate"))
+        }
         return judge_shares(found, 1.0)
 
-    return under_conventions(evidence, worst(verdicts), reason, measured, never, labels)
+    return under_conventions(evidence, worst(verdicts), reason, measured, never, of_branches)
 
 
+@judge("equilibrium", "attractors")
 def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
     """Judge whether in every motion some block stops again and again.
 
@@ -91,10 +96,7 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
         real = equilibrium["eigenvalue"].sel(law=law, part="real").values
         slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in equilibrium["a"].values])
         shares[f"values of a, {law}"] = share_of(np.all(real > 0.0, axis=-1))
-        measured += [
-            Measured(f"smallest real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).min())),
-            Measured(f"largest real part of an eigenvalue over −F'(v), {law}", float((real / slope[:, None]).max())),
-        ]
+        measured += extremes("real part of an eigenvalue over −F'(v)", real / slope[:, None], law)
         found = attractors.sel(law=law)
         there = found["branch"].values >= 0
         if not there.any():
@@ -115,6 +117,7 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
     return Verdict(verdict_of(shares, loose_share), reason, measured, changes)
 
 
+@judge("stick_slip", "attractors")
 def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation: float) -> Verdict:
     """Judge whether the end blocks are in antiphase: the correlation of their velocities is at most `correlation`.
 
@@ -130,20 +133,21 @@ def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation
     reason = f"The correlation of U₁' and U₃' from {initial} at a = {at:g} ({law}) is {with_error(round(value, 2))}."
     exceptions = [f"negative {at_values(runs['a'].values, negative)}, not elsewhere"] if negative.any() else []
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        known, found = reached(attractors.sel(a=[at]), initial, law, "velocity_correlation")
-        if not known[0] or not np.isfinite(found[0]):
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = reached_at(attractors, at, initial, law, "velocity_correlation")
+        if not found or not np.isfinite(found[0]):
             return "", ""
         return _in_antiphase(found[0], correlation), with_error(round(float(found[0]), 2))
 
     measured = [Measured("correlation of U₁' and U₃'", value)]
-    return under_conventions(evidence, verdict, reason, measured, exceptions, labels)
+    return under_conventions(evidence, verdict, reason, measured, exceptions, of_branches)
 
 
 def _in_antiphase(value: float, correlation: float) -> str:
     return HOLDS if value <= correlation else LOOSELY if value < 0.0 else FAILS
 
 
+@judge("stick_slip", "agreement")
 def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: float) -> Verdict:
     """Judge whether end blocks in antiphase in a run stay so: the run is on its attractor.
 
@@ -152,31 +156,27 @@ def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: 
     """
     runs = evidence.choose(evidence.of_state("stick_slip", initial), a)
     ends = evidence.choose(evidence.of_state("agreement", initial), a)
-    shares, measured, passing = {}, [], []
-    for law in PAPER_LAWS:
-        opposed = runs["velocity_correlation"].sel(law=law).values < 0.0
-        settled = ends["settled"].sel(law=law).values
-        known = opposed & (settled >= 0)
-        if not opposed.any():
-            raise NotTestableError(f"no run from {initial} under the {law} law is in antiphase with {a}")
-        where = at_values(runs["a"].values, opposed & ~known)
-        unknown = f"whether the run from {initial} under the {law} law is on its attractor is unknown {where}"
-        shares[law] = known_share((settled == 1)[opposed], known[opposed], loose_share, unknown)
-        measured.append(
-            Measured(f"share of the runs in antiphase that are on their attractor, {law}", shares[law].value)
-        )
-        measured.append(Measured(f"values of a with a run in antiphase, {law}", float(known.sum())))
-        if shares[law].value < 1.0:
-            passing.append(f"transient {at_values(runs['a'].values, known & (settled == 0))} ({law})")
-        if not known[opposed].all():
-            passing.append(f"unknown {where} ({law})")
-    reason = (
-        f"Of the runs from {initial} with {a} whose end blocks move in antiphase, {shares_text(shares)} stay in "
-        "antiphase."
+
+    def cases() -> Iterator[Case]:
+        for law in PAPER_LAWS:
+            grid, opposed = runs["a"].values, runs["velocity_correlation"].sel(law=law).values < 0.0
+            settled = ends["settled"].sel(law=law).values
+            if not opposed.any():
+                raise NotTestableError(f"no run from {initial} under the {law} law is in antiphase with {a}")
+            where = at_values(grid, opposed & ~(settled >= 0))
+            unknown = f"whether the run from {initial} under the {law} law is on its attractor is unknown {where}"
+            yield Case(law, grid, settled == 1, settled >= 0, unknown, about=opposed)
+
+    found = for_all(loose_share, cases())
+    measured = found.measured(
+        "share of the runs in antiphase that are on their attractor",
+        lambda case: [Measured(f"values of a with a run in antiphase, {case.name}", float(case.share.count))],
     )
-    return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(passing))
+    reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase, {found} stay in antiphase."
+    return Verdict(found.verdict, reason, measured, "; ".join(found.exceptions("transient", "unknown")))
 
 
+@judge("stick_slip", "attractors")
 def half_frequency(
     evidence: Evidence, initial: str, law: str, at: float, claimed: float, tolerance: float, loose: float
 ) -> Verdict:
@@ -207,20 +207,20 @@ def half_frequency(
         f"stops; the claim says {claimed:g}."
     )
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        there = attractors.sel(a=[at])
-        (known, rate), (_, peak) = (reached(there, initial, law, name) for name in ("stop_rate", "velocity_frequency"))
-        if not known[0] or not np.isfinite(peak[0]).all():
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = reached_at(attractors, at, initial, law, "velocity_frequency", "stop_rate")
+        if not found or not np.isfinite(found[0]).all():
             return "", ""
-        if not rate[0, 1] > 0.0:
+        if not found[1][1] > 0.0:
             return FAILS, "the middle block never stops"
-        ratios = [item[0, end] / item[0, 1] for item in (peak, rate) for end in (0, -1)]
+        ratios = [item[end] / item[1] for item in found for end in (0, -1)]
         verdict = worst(by_value(ratio, claimed, tolerance, loose) for ratio in ratios)
         return verdict, f"{ratios[0]:.3f} by the peaks, {ratios[2]:.3f} by stops"
 
-    return under_conventions(evidence, worst(verdicts), reason, ratios, [], labels)
+    return under_conventions(evidence, worst(verdicts), reason, ratios, [], of_branches)
 
 
+@judge("stick_slip")
 def cycle_time(
     evidence: Evidence,
     initial: Sequence[str],
@@ -265,6 +265,5 @@ def cycle_time(
         texts.append(f"{span(least, most)} {reading} ({verdicts[reading]})")
     if ONE_BLOCK not in verdicts:
         raise NotTestableError(f"no block stops twice in a run with {a}")
-    verdict, own = by_readings(verdicts)
     reason = f"The median time with {a} is {'; '.join(texts)}. The claim says {low:g} to {high:g}."
-    return Verdict(verdict, reason, measured, "", verdicts, own)
+    return by_readings(verdicts, reason, measured)

@@ -7,19 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from burridge_knopoff.attractors.lookup import reached
-from burridge_knopoff.claims.conventions import judge_shares, under_conventions
+from burridge_knopoff.claims.conventions import under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
-from burridge_knopoff.claims.kinds import CLOSED
+from burridge_knopoff.claims.for_all import Case, for_all, judge_cases
+from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.outcomes import CLOSED
 from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Range,
     Verdict,
     at_values,
-    is_decided,
-    known_share,
-    share_of,
-    verdict_of,
+    told_where,
 )
 from burridge_knopoff.motion.kind import MotionKind
 
@@ -27,6 +26,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@judge("agreement", "lyapunov")
 def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loose_share: float) -> Verdict:
     """Judge whether the section W = 0, crossed upward, shows one point at each a of a range.
 
@@ -36,20 +36,19 @@ def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loos
     runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
     grid, period = runs["a"].values, runs["section_period"].values
     known = (period > 0) | ~np.isin(kind, (*CLOSED, MotionKind.UNDETERMINED))
-    one = period == 1
     unknown = f"the section of the run from {initial} is unknown {at_values(grid, ~known)}"
-    share = known_share(one, known, loose_share, unknown)
-    measured = [Measured("share of a with one section point", share.value)]
+    case = Case(law, grid, period == 1, known, unknown)
+    found = for_all(loose_share, [case])
+    share = found.share
     reason = (
         f"The section of runs from {initial} ({law}) is one point at {share} of the {share.count} values of a with {a} "
         "at which it is known."
     )
-    changes = [f"more than one {at_values(grid, known & ~one)}"] if share.value < 1.0 else []
-    if not known.all():
-        changes.append(f"unknown {at_values(grid, ~known)}")
-    return Verdict(verdict_of({law: share}, loose_share), reason, measured, "; ".join(changes))
+    measured = [Measured("share of a with one section point", share.value)]
+    return Verdict(found.verdict, reason, measured, "; ".join(case.exceptions("more than one", "unknown")))
 
 
+@judge("lyapunov", "bifurcation_diagram", "attractors")
 def cloud_at_lower_velocities(
     evidence: Evidence, initial: tuple[str, str], law: str, a: Range, points: int, loose_share: float
 ) -> Verdict:
@@ -65,36 +64,32 @@ def cloud_at_lower_velocities(
     pairs = [known[k] and not empty[k] for k in range(len(grid))]
     lower = np.array([both and other.mean() < one.mean() for both, one, other in zip(pairs, line, cloud, strict=True)])
     entirely = np.array([both and other.max() < one.min() for both, one, other in zip(pairs, line, cloud, strict=True)])
-    share = share_of((many & lower)[known])
-    own = verdict_of({law: share}, loose_share)
+    case = Case(law, grid, many & lower, known, about=known)
+    found = for_all(loose_share, [case])
     measured = [
         Measured(f"share of a with more than {points} section points from {initial[1]}", float(many[known].mean())),
         Measured("share of a with their mean W' below that of " + initial[0], float(lower[known].mean())),
         Measured("share of a with all of them below it", float(entirely[known].mean())),
     ]
     reason = (
-        f"From {initial[1]} ({law}) the section is a cloud at lower velocities than from {initial[0]} at {share} of "
-        f"the values of a with {a}."
+        f"From {initial[1]} ({law}) the section is a cloud at lower velocities than from {initial[0]} at {found.share} "
+        f"of the values of a with {a}."
     )
-    exceptions = [f"no lower cloud {at_values(grid, known & ~(many & lower))}"] if share.value < 1.0 else []
-    if (known & empty).any():
-        exceptions.append(f"no point at all {at_values(grid, known & empty)}")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = evidence.choose(attractors, a)
-        (there, first), (also, second) = (reached(found, name, law, "section_count") for name in initial)
-        (_, above), (_, below) = (reached(found, name, law, "section_velocity_mean") for name in initial)
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        inside = evidence.choose(attractors, a)
+        (there, first), (also, second) = (reached(inside, name, law, "section_count") for name in initial)
+        (_, above), (_, below) = (reached(inside, name, law, "section_velocity_mean") for name in initial)
         seen = there & also & (first > 0) & (second >= 0)
-        right = (second > points) & (below < above)
-        if not is_decided(right, seen, loose_share):
-            return "", ""
-        verdict, text = judge_shares({law: share_of(right[seen])}, loose_share)
-        none = seen & (second == 0)
-        return verdict, text + (f", no point at all {at_values(found['a'].values, none)}" if none.any() else "")
+        case = Case(law, inside["a"].values, (second > points) & (below < above), seen)
+        verdict, text = judge_cases(loose_share, [case])
+        return verdict, text + "".join(told_where(", no point at all", case.a, seen & (second == 0)))
 
-    return under_conventions(evidence, own, reason, measured, exceptions, labels)
+    exceptions = case.exceptions("no lower cloud") + told_where("no point at all", grid, known & empty)
+    return under_conventions(evidence, found.verdict, reason, measured, exceptions, of_branches)
 
 
+@judge("lyapunov", "bifurcation_diagram", "agreement", "attractors")
 def cloud_not_periodic(
     evidence: Evidence, initial: str, law: str, a: Range, points: int, loose_share: float
 ) -> Verdict:
@@ -109,36 +104,34 @@ def cloud_not_periodic(
     if not many.any():
         raise NotTestableError(f"no section of a run from {initial} is a cloud with {a}")
     kind = evidence.of_state("agreement", initial).sel(law=law, a=grid[many])["kind"].values
-    known, right = kind != MotionKind.UNDETERMINED, ~np.isin(kind, CLOSED)
+    known = kind != MotionKind.UNDETERMINED
     unknown = f"the kind of motion from {initial} under the {law} law is unknown {at_values(grid[many], ~known)}"
-    share = known_share(right, known, loose_share, unknown)
-    own = verdict_of({law: share}, loose_share)
+    case = Case(law, grid[many], ~np.isin(kind, CLOSED), known, unknown)
+    found = for_all(loose_share, [case])
     measured = [
         Measured("values of a with a cloud", float(many.sum())),
-        Measured("share of them with quasiperiodic or chaotic motion", share.value),
+        Measured("share of them with quasiperiodic or chaotic motion", found.share.value),
     ]
     longest = evidence.config["motion"]["longest_period"]
     reason = (
         f"From {initial} ({law}) the section is a cloud at {many.sum()} of the {len(grid)} values of a with {a}; at "
-        f"{share} of them the motion does not repeat within {longest:g} time units, or is chaotic."
+        f"{found.share} of them the motion does not repeat within {longest:g} time units, or is chaotic."
     )
-    exceptions = [f"periodic {at_values(grid[many], known & ~right)}"] if share.value < 1.0 else []
-    if not known.all():
-        exceptions.append(f"unknown {at_values(grid[many], ~known)}")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = evidence.choose(attractors, a)
-        (there, count), (_, kind) = (reached(found, initial, law, name) for name in ("section_count", "kind"))
-        seen = (there & (count > points))[there]
-        known, right = kind[there][seen] != MotionKind.UNDETERMINED, ~np.isin(kind[there][seen], CLOSED)
-        if not is_decided(right, known, loose_share):
-            return "", ""
-        verdict, text = judge_shares({law: share_of(right[known])}, loose_share)
-        return verdict, f"{text} of {seen.sum()} values with a cloud"
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        inside = evidence.choose(attractors, a)
+        (there, count), (_, kind) = (reached(inside, initial, law, name) for name in ("section_count", "kind"))
+        seen = there & (count > points)
+        known = kind != MotionKind.UNDETERMINED
+        case = Case(law, inside["a"].values, ~np.isin(kind, CLOSED), known, about=seen)
+        verdict, text = judge_cases(loose_share, [case])
+        return verdict, text and f"{text} of {seen.sum()} values with a cloud"
 
-    return under_conventions(evidence, own, reason, measured, exceptions, labels)
+    exceptions = case.exceptions("periodic", "unknown")
+    return under_conventions(evidence, found.verdict, reason, measured, exceptions, of_branches)
 
 
+@judge("lyapunov", "bifurcation_diagram", "attractors")
 def line_disappears(
     evidence: Evidence, initial: tuple[str, str], law: str, a: Range, near: float, loose_share: float
 ) -> Verdict:
@@ -155,24 +148,22 @@ def line_disappears(
             for k, one, found in zip(known, line, other, strict=True)
         ]
     )
-    share = share_of(~there[known])
-    own = verdict_of({law: share}, loose_share)
+    case = Case(law, grid, ~there, known, about=known)
+    found = for_all(loose_share, [case])
     reason = (
         f"From {initial[1]} ({law}) no section point lies within {100.0 * near:g} % of the line from {initial[0]} at "
-        f"{share} of the values of a with {a}."
+        f"{found.share} of the values of a with {a}."
     )
-    exceptions = [f"on the line {at_values(grid, known & there)}"] if share.value < 1.0 else []
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = evidence.choose(attractors, a)
-        (also, first), (there, second) = (reached(found, name, law, "branch") for name in initial)
-        if not is_decided(first != second, also & there, loose_share):
-            return "", ""
-        share = share_of((first != second)[also & there])
-        return judge_shares({law: share}, loose_share)[0], f"another attractor than from {initial[0]} at {share}"
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        inside = evidence.choose(attractors, a)
+        (also, first), (there, second) = (reached(inside, name, law, "branch") for name in initial)
+        case = Case(law, inside["a"].values, first != second, also & there)
+        verdict, text = judge_cases(loose_share, [case])
+        return verdict, text and f"another attractor than from {initial[0]} at {case.share}"
 
-    measured = [Measured("share of a without a point on the line", share.value)]
-    return under_conventions(evidence, own, reason, measured, exceptions, labels)
+    measured = [Measured("share of a without a point on the line", found.share.value)]
+    return under_conventions(evidence, found.verdict, reason, measured, case.exceptions("on the line"), of_branches)
 
 
 def _sections(

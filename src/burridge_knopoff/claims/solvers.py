@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings, judge_shares, under_conventions
+from burridge_knopoff.claims.conventions import by_readings, under_conventions
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.kinds import kinds_reached
+from burridge_knopoff.claims.for_all import Case, for_all
+from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.outcomes import kinds_reached
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -18,9 +20,7 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
-    at_values,
-    is_decided,
-    known_share,
+    judge_shares,
     share_of,
     shares_text,
     verdict_of,
@@ -33,6 +33,7 @@ if TYPE_CHECKING:
     import xarray
 
 
+@judge("agreement", "solvers", "attractors")
 def solutions_agree(
     evidence: Evidence, initial: Sequence[str], a: Range, relative: float, loose_share: float
 ) -> Verdict:
@@ -47,28 +48,31 @@ def solutions_agree(
     loose_share : fraction of points, and of the values of a, from which the claim holds loosely
     """
     solved, measured, apart = _solved(evidence, initial, relative)
-    shares = {"solvers": share_of(np.array(solved))}
-    for state in initial:
-        runs = evidence.choose(evidence.of_state("agreement", state), a)
-        kinds = runs["kind"].sel(law=list(PAPER_LAWS)).values
-        known = ~(np.isnan(kinds) | (kinds == MotionKind.UNDETERMINED)).any(axis=0)
-        same, where = same_result(*kinds), f"the kind of motion from {state} is unknown"
-        shares[f"laws, {state}"] = known_share(same, known, loose_share, where)
-        if (known & ~same).any():
-            apart.append(f"the laws differ {at_values(runs['a'].values, known & ~same)} ({state})")
+    solvers = {"solvers": share_of(np.array(solved))}
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        """Judge as if the solvers agreed at the same points under every convention."""
-        found = {"solvers": shares["solvers"]}
+    def of_runs() -> Iterator[Case]:
         for state in initial:
-            inside = evidence.choose(attractors, a)
-            (there, one), (also, other) = (kinds_reached(inside, state, law) for law in PAPER_LAWS)
-            known, same = there & also, same_result(one, other)
-            if not is_decided(same, known, loose_share):
-                return "", ""
-            found[f"laws, {state}"] = share_of(same[known])
-        return judge_shares(found, loose_share)
+            runs = evidence.choose(evidence.of_state("agreement", state), a)
+            kinds = runs["kind"].sel(law=list(PAPER_LAWS)).values
+            known = ~(np.isnan(kinds) | (kinds == MotionKind.UNDETERMINED)).any(axis=0)
+            unknown = f"the kind of motion from {state} is unknown"
+            yield Case(f"laws, {state}", runs["a"].values, same_result(*kinds), known, unknown)
 
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        """Judge as if the solvers agreed at the same points under every convention."""
+        inside, cases = evidence.choose(attractors, a), []
+        for state in initial:
+            one, other = (kinds_reached(inside, state, law) for law in PAPER_LAWS)
+            known = (one != MotionKind.UNDETERMINED) & (other != MotionKind.UNDETERMINED)
+            cases.append(Case(f"laws, {state}", inside["a"].values, same_result(one, other), known))
+        if not all(case.is_decided(loose_share) for case in cases):
+            return "", ""
+        return judge_shares({**solvers, **{case.name: case.share for case in cases}}, loose_share)
+
+    found = for_all(loose_share, of_runs())
+    for state, case in zip(initial, found.cases, strict=True):
+        apart += [f"{text} ({state})" for text in case.exceptions("the laws differ")]
+    shares = {**solvers, **found.shares}
     own = verdict_of(shares, loose_share)
     laws = shares_text({state: shares[f"laws, {state}"] for state in initial})
     reason = (
@@ -76,7 +80,7 @@ def solutions_agree(
         f"have the same result, synchrony, other regular motion or chaos, at {laws} of the values of a with {a}."
     )
     numbers = [Measured(f"share with agreement of the {name}", share.value) for name, share in shares.items()]
-    return under_conventions(evidence, own, reason, [*numbers, *measured], apart, labels)
+    return under_conventions(evidence, own, reason, [*numbers, *measured], apart, of_branches)
 
 
 def _solved(
@@ -113,6 +117,7 @@ def _solved(
     return solved, measured, apart
 
 
+@judge("solvers")
 def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) -> Verdict:
     """Judge whether the map needs far fewer steps per unit time than solvers of the differential equations.
 
@@ -155,9 +160,8 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
         f"{name} takes {taken[name]:.4g}, {_more(ratio)} ({readings[f'compared with {name}']})"
         for name, ratio in ratios.items()
     ]
-    verdict, first = by_readings(readings)
     reason = f"The map takes at most {largest:.2f} steps per unit time; {'; '.join(texts)}."
-    return Verdict(verdict, reason, measured, "", readings, first)
+    return by_readings(readings, reason, measured)
 
 
 def _more(times: float) -> str:

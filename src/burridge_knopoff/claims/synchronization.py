@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.attractors.lookup import reached
-from burridge_knopoff.claims.conventions import judge_shares, under_conventions
+from burridge_knopoff.claims.conventions import under_conventions
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.for_all import Case, for_all
+from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.outcomes import reached_at, synchrony
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -18,13 +20,8 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
-    at_values,
     by_interval,
     by_value,
-    is_decided,
-    share_of,
-    shares_text,
-    verdict_of,
     worst,
 )
 from burridge_knopoff.study.formatting import with_error
@@ -34,55 +31,46 @@ if TYPE_CHECKING:
     import xarray
 
 
+@judge("mean_distance", "attractors")
 def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool, loose_share: float) -> Verdict:
     """Judge whether an initial state always, or never, leads to synchrony, for all a of a range and both laws.
 
     loose_share : fraction of the values of a from which the claim holds loosely
     """
     runs = evidence.choose(evidence.of_state("mean_distance", initial), a)
-    outcome = {True: "synchrony", False: "no synchrony"}
-    shares, measured, exceptions = {}, [], []
-    for law in PAPER_LAWS:
-        state = runs["synchronized"].sel(law=law).values
-        known, right = np.isfinite(state), state == synchronized
-        if not is_decided(right, known, loose_share):
-            raise NotTestableError(f"too few runs from {initial} under the {law} law completed at {a}")
-        shares[law] = share_of(right[known])
-        measured.append(Measured(f"share of a with {outcome[synchronized]}, {law}", shares[law].value))
-        mean = runs["mean_distance"].sel(law=law).values[right]
-        if len(mean):
-            extreme, name = (mean.max(), "largest") if synchronized else (mean.min(), "smallest")
-            measured.append(Measured(f"{name} ⟨J⟩ there, {law}", float(extreme)))
-        if not right[known].all():
-            where = at_values(runs["a"].values, known & ~right)
-            exceptions.append(f"{outcome[not synchronized]} {where} ({law})")
+    here, elsewhere = ("synchrony", "no synchrony") if synchronized else ("no synchrony", "synchrony")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {}
+    def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
+        found = synchrony(evidence, initial, a, inside)
         for law in PAPER_LAWS:
-            branch = evidence.choose(attractors, a)["initial_branch"].sel(initial=initial, law=law).values
-            known, right = branch >= 0, (branch == 0) == synchronized
-            if is_decided(right, known, loose_share):
-                found[law] = share_of(right[known])
-        return judge_shares(found, loose_share)
+            state = found.sel(law=law).values
+            few = f"too few runs from {initial} under the {law} law completed at {a}"
+            yield Case(law, found["a"].values, state == synchronized, np.isfinite(state), few)
 
-    own = verdict_of(shares, loose_share)
-    reason = f"There is {outcome[synchronized]} from {initial} at {shares_text(shares)} of the values of a with {a}."
-    return under_conventions(evidence, own, reason, measured, exceptions, labels)
+    def extreme(case: Case) -> Iterator[Measured]:
+        mean = runs["mean_distance"].sel(law=case.name).values[case.right]
+        if len(mean):
+            value, name = (mean.max(), "largest") if synchronized else (mean.min(), "smallest")
+            yield Measured(f"{name} ⟨J⟩ there, {case.name}", float(value))
+
+    found = for_all(loose_share, cases())
+    reason = f"There is {here} from {initial} at {found} of the values of a with {a}."
+    measured = found.measured(f"share of a with {here}", extreme)
+    return under_conventions(
+        evidence, found.verdict, reason, measured, found.exceptions(elsewhere), found.reached(evidence, a, cases)
+    )
 
 
+@judge("attractors", "orbits", "proof")
 def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, tolerance: float, loose: float) -> Verdict:
     """Judge the largest a at which an initial state synchronizes, under both laws.
 
     It lies between two neighbours of the grid. The attractor reached decides, since close to the loss of synchrony a
     run is too short to get there. If the synchronized orbit loses stability between the two values, the edge is a_c.
     """
-    evidence.check_state(initial)
-    attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
     verdicts, measured, texts = [], [], []
-    for law in PAPER_LAWS:
-        branch = attractors["initial_branch"].sel(law=law, initial=initial).values
-        low, high = _edge(attractors["a"].values[branch >= 0], branch[branch >= 0] == 0)
+    for law, grid, synchronized in _reached(evidence, initial):
+        low, high = _edge(grid, synchronized)
         if not np.isfinite(low + high):
             raise NotTestableError(f"the grid does not hold the edge of synchrony from {initial}, {law} law")
         measured.append(Measured(f"largest a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
@@ -101,22 +89,19 @@ def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, toleranc
     return Verdict(worst(verdicts), reason, measured)
 
 
+@judge("attractors")
 def beginning_of_synchrony(evidence: Evidence, initial: str, claimed: float, tolerance: float, loose: float) -> Verdict:
     """Judge whether there is synchrony from an initial state from one a on, under both laws, by the attractor reached.
 
     The smallest a with synchrony lies between a value of the grid and the one before, or 0, where friction is constant.
     The claim holds if it is not larger than the claimed one.
     """
-    evidence.check_state(initial)
-    attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
     verdicts, measured, texts = [], [], []
-    for law in PAPER_LAWS:
-        branch = attractors["initial_branch"].sel(law=law, initial=initial).values
-        grid, synchronized = np.append(0.0, attractors["a"].values[branch >= 0]), branch[branch >= 0] == 0
+    for law, grid, synchronized in _reached(evidence, initial):
         if not synchronized.any():
             raise NotTestableError(f"no a with synchrony from {initial} is known, {law} law")
         first = int(np.argmax(synchronized))
-        low, high = float(grid[first]), float(grid[first + 1])
+        low, high = float(grid[first - 1]) if first else 0.0, float(grid[first])
         # Synchrony that begins earlier is there from the claimed value on.
         verdicts.append(by_interval(max(low, claimed), max(high, claimed), claimed, tolerance, loose))
         measured.append(Measured(f"smallest a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
@@ -125,12 +110,22 @@ def beginning_of_synchrony(evidence: Evidence, initial: str, claimed: float, tol
     return Verdict(worst(verdicts), reason, measured)
 
 
+def _reached(evidence: Evidence, initial: str) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+    """Yield (law, the values of a > 0 at which the branch reached from a state is known, whether it is synchrony)."""
+    evidence.check_state(initial)
+    attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
+    for law in PAPER_LAWS:
+        branch = attractors["initial_branch"].sel(law=law, initial=initial).values
+        yield law, attractors["a"].values[branch >= 0], branch[branch >= 0] == 0
+
+
 def _edge(grid: np.ndarray, synchronized: np.ndarray) -> tuple[float, float]:
     """Return the neighbours in the grid between which synchrony ends; NaN if it does not end inside the grid."""
     index = np.flatnonzero(synchronized)
     return (grid[index[-1]], grid[index[-1] + 1]) if len(index) and index[-1] + 1 < len(grid) else (np.nan, np.nan)
 
 
+@judge("mean_distance", "attractors")
 def mean_distance_at(
     evidence: Evidence, initial: str, laws: Sequence[str], at: float, claimed: float, tolerance: float, loose: float
 ) -> Verdict:
@@ -145,18 +140,19 @@ def mean_distance_at(
         measured.append(Measured(f"⟨J⟩, {law}", value, error))
         texts.append(f"{with_error(value, error)} ({law})")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {law: reached(attractors.sel(a=[at]), initial, law, "mean_distance") for law in laws}
-        means = {law: mean[0] for law, (known, mean) in found.items() if known[0]}
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = {law: reached_at(attractors, at, initial, law, "mean_distance") for law in laws}
+        means = {law: mean[0] for law, mean in found.items() if mean}
         if not means:
             return "", ""
         verdict = worst(by_value(mean, claimed, tolerance, loose) for mean in means.values())
         return verdict, "⟨J⟩ = " + ", ".join(f"{mean:.4f} ({law})" for law, mean in means.items())
 
     reason = f"⟨J⟩ from {initial} at a = {at:g} is {' and '.join(texts)}; the claim says {claimed:g}."
-    return under_conventions(evidence, worst(verdicts), reason, measured, [], labels)
+    return under_conventions(evidence, worst(verdicts), reason, measured, [], of_branches)
 
 
+@judge("mean_distance", "agreement", "attractors")
 def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -> Verdict:
     """Judge whether J fluctuates stationarily and does not vanish: the run is on its attractor, which is no synchrony.
 
@@ -170,11 +166,10 @@ def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -
     if not settled >= 0:
         raise NotTestableError(f"whether the run from {initial} at a = {at:g} is on its attractor is unknown")
 
-    def labels(attractors: xarray.Dataset) -> tuple[str, str]:
-        known, branch = reached(attractors.sel(a=[at]), initial, law, "branch")
-        if not known[0]:
+    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+        if not (found := reached_at(attractors, at, initial, law, "branch")):
             return "", ""
-        return (HOLDS, "no synchrony") if branch[0] else (FAILS, "synchrony, J = 0")
+        return (HOLDS, "no synchrony") if found[0] else (FAILS, "synchrony, J = 0")
 
     words = "is on its attractor" if settled else "is not on its attractor yet"
     reason = (
@@ -182,9 +177,10 @@ def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -
         f"{with_error(mean, error)}."
     )
     own = HOLDS if settled and not synchronized else FAILS
-    return under_conventions(evidence, own, reason, [Measured("⟨J⟩", mean, error)], [], labels)
+    return under_conventions(evidence, own, reason, [Measured("⟨J⟩", mean, error)], [], of_branches)
 
 
+@judge("mean_distance", "orbits")
 def distance_vanishes(
     evidence: Evidence, initial: str, law: str, at: float, by: float, level: float, loose: float
 ) -> Verdict:

@@ -82,15 +82,6 @@ class Range:
         high = f" ≤ {self.last:g}" if self.last is not None else f" < {self.below:g}" if self.below is not None else ""
         return f"{low}a{high}"
 
-    @property
-    def empty(self) -> bool:
-        """Whether the range contains no number."""
-        low = self.first if self.first is not None else self.above
-        high = self.last if self.last is not None else self.below
-        return (
-            low is not None and high is not None and (low > high or (low == high and None in (self.first, self.last)))
-        )
-
     def choose(self, a: np.ndarray) -> np.ndarray:
         """Return which values lie in the range, same shape as a."""
         chosen = np.ones(np.shape(a), dtype=bool)
@@ -153,27 +144,10 @@ def by_share(share: Share, loose: float) -> str:
     return FAILS if share.interval[1] < loose else NOT_TESTABLE
 
 
-def is_decided(right: np.ndarray, known: np.ndarray, loose: float) -> bool:
-    """Return whether «for all» is decided whatever the unknown values are; False if none is known. Shapes (n,)."""
-    if not known.any():
-        return False
-    return share_is_decided(int((right & known).sum()), int((right | ~known).sum()), len(right), loose)
-
-
 def share_is_decided(least: int, most: int, count: int, loose: float) -> bool:
-    """The same from bounds on the number of true values."""
+    """Return whether «for all» is decided by bounds on the number of true values."""
     worst_case, best_case = (by_share(Share(hits, count), loose) for hits in (least, most))
     return worst_case == best_case or {worst_case, best_case} == {HOLDS, LOOSELY}
-
-
-def known_share(right: np.ndarray, known: np.ndarray, loose: float, unknown: str) -> Share:
-    """Return the true fraction of the known values, for `by_share`; both arrays have shape (n,).
-
-    Raises NotTestableError, with `unknown` as its reason, if the unknown values decide.
-    """
-    if not is_decided(right, known, loose):
-        raise NotTestableError(unknown)
-    return share_of(right[known])
 
 
 def shares_text(shares: Mapping[str, Share]) -> str:
@@ -196,6 +170,14 @@ def verdict_of(shares: Mapping[str, Share], loose: float) -> str:
             f"{share.interval[1]:.2f}: whether it is {loose:g} is not resolved"
         )
     return found
+
+
+def judge_shares(shares: Mapping[str, Share], loose: float) -> tuple[str, str]:
+    """Return (the verdict for the worst share, the shares as text); no verdict, "", if there is none or it is open."""
+    if not shares:
+        return "", ""
+    verdict = worst(by_share(share, loose) for share in shares.values())
+    return ("" if verdict == NOT_TESTABLE else verdict), shares_text(shares)
 
 
 def by_value(value: float, claimed: float, tolerance: float, loose: float) -> str:
@@ -243,3 +225,15 @@ def at_values(a: np.ndarray, chosen: np.ndarray) -> str:
         between = index[-1] - index[0] + 1
         return f"at {len(index)} of the {between} values of a from {a[index[0]]:g} to {a[index[-1]]:g}"
     return f"at a = {', '.join(parts)}"
+
+
+def extremes(quantity: str, values: np.ndarray, name: str = "") -> list[Measured]:
+    """Return the smallest and the largest of some values as measured numbers, with the name of a case."""
+    end = f", {name}" if name else ""
+    ends = ("smallest", np.min(values)), ("largest", np.max(values))
+    return [Measured(f"{word} {quantity}{end}", float(value)) for word, value in ends]
+
+
+def told_where(words: str, a: np.ndarray, chosen: np.ndarray, name: str = "") -> list[str]:
+    """Return what is so at the chosen values, by `at_values`, with the name of a case; empty if none is chosen."""
+    return [f"{words} {at_values(a, chosen)}{f' ({name})' if name else ''}"] if np.any(chosen) else []

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from burridge_knopoff.claims.evidence import READ_BY_JUDGES
+from burridge_knopoff.claims.ledger import READS
 from burridge_knopoff.figures.description import Description, figure_descriptions
 from burridge_knopoff.jobs.params import keys, model_config
 from burridge_knopoff.jobs.rule import Rule, Shown
@@ -158,7 +158,7 @@ def claims(study: Study, pictures: Sequence[str]) -> list[Rule]:
             "verdicts on the claims of the paper",
             tuple(f"summary/claims.{suffix}" for suffix in ("json", "csv", "md")),
             "claims.making:make",
-            reads={"summaries": [f"summary/{name}.nc" for name in READ_BY_JUDGES]},
+            reads={"summaries": [f"summary/{name}.nc" for name in READS]},
             if_there=True,
             params=lambda job: {
                 "study": study.name,
