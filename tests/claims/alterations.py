@@ -51,7 +51,7 @@ def cloud(scale: float, shift: float) -> Alteration:
 
     def move(world: Summaries) -> None:
         bifurcation = world["bifurcation_diagram"]
-        of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == 1
+        of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == "plus"
         bifurcation["crossing_velocity"].values[of_plus] *= scale
         bifurcation["crossing_velocity"].values[of_plus] += shift
 
@@ -64,7 +64,8 @@ def few_points(where: Callable[[np.ndarray], np.ndarray]) -> Alteration:
     def move(world: Summaries) -> None:
         bifurcation = world["bifurcation_diagram"]
         chosen = np.repeat(
-            (bifurcation["initial"].values == 1) & where(bifurcation["a"].values), bifurcation["crossing_count"].values
+            (bifurcation["initial"].values == "plus") & where(bifurcation["a"].values),
+            bifurcation["crossing_count"].values,
         )
         bifurcation["crossing_velocity"].values[chosen] = 0.3
 
@@ -94,7 +95,7 @@ def line_from(first: float) -> Alteration:
         count = bifurcation["crossing_count"].values
         a, initial = (np.repeat(bifurcation[name].values, count) for name in ("a", "initial"))
         velocity = bifurcation["crossing_velocity"].values
-        velocity[initial == 1] = np.where(a >= first, 0.5, 0.3)[initial == 1]
+        velocity[initial == "plus"] = np.where(a >= first, 0.5, 0.3)[initial == "plus"]
 
     return move
 
@@ -102,7 +103,7 @@ def line_from(first: float) -> Alteration:
 def no_crossings(world: Summaries) -> None:
     """Let the runs from plus cross the section downward only."""
     bifurcation = world["bifurcation_diagram"]
-    of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == 1
+    of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == "plus"
     bifurcation["crossing_direction"].values[of_plus] = -1
 
 
@@ -271,9 +272,13 @@ CASES: list[tuple[str, str, Alteration]] = [
         NOT_TESTABLE,
         alter("mean_distance", "status", Status.DIVERGED, initial="minus", a=lambda a: a > 0.02),
     ),
+    # Under the first law alone, which is not the last that is looked at.
+    ("first_block_decides", CONVENTION, reached(0, initial="plus", law="linearized", **OTHER)),
     ("first_block_decides", HOLDS, reached(-1, initial="minus", **OTHER)),
     ("same_for_both_laws", FAILS, both(synchronized(1, initial="plus", law="nonlinear"), reached(0, law="linearized"))),
     ("same_for_both_laws", CONVENTION, synchronized(1, initial="plus", law="nonlinear")),
+    # From the first state alone.
+    ("same_for_both_laws", CONVENTION, reached(1, initial="minus", law="linearized", **OTHER)),
     ("phases_decide", FAILS, alter("phases", "branch", 2, phase_difference=30.0)),
     ("phases_decide", FAILS, alter("phases", "velocity_correlation", 1.0, phase_difference=180.0)),
     # Neither close nor opposite.

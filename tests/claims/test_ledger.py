@@ -273,9 +273,8 @@ def test_a_study_without_the_papers_states_is_judged_without_an_error(missing: s
     for key, dataset in paper_world().items():
         if "initial" in dataset.dims:
             dataset = dataset.assign_coords(initial=[names[name] for name in dataset["initial"].values])
-        elif "initial" in dataset and "flag_meanings" in dataset["initial"].attrs:
-            meanings = [names[name] for name in dataset["initial"].attrs["flag_meanings"].split()]
-            dataset["initial"].attrs["flag_meanings"] = " ".join(meanings)
+        elif "initial" in dataset:
+            dataset = dataset.assign_coords(initial=("point", [names[name] for name in dataset["initial"].values]))
         summaries[key] = dataset
     states = {names[name]: state for name, state in CONFIG["initial"].items()}
     found = ledger("other", CLAIMS.values(), evidence(summaries, initial=states), [])

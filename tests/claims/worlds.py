@@ -180,22 +180,16 @@ def _bifurcation() -> xarray.Dataset:
 
     Above 0.1 the cloud reaches up to it.
     """
-    law, initial, a = (part.ravel() for part in np.meshgrid([0, 1], [0, 1], A, indexing="ij"))
+    law, initial, a = (part.ravel() for part in np.meshgrid(LAWS, STATES, A, indexing="ij"))
     cloud = np.where(a[:, None] > 0.1, np.linspace(0.2, 0.5, 100), np.linspace(0.2, 0.4, 100))
-    velocity = np.where(initial[:, None] == 1, cloud, 0.5)
-    names = {"law": LAWS, "initial": STATES}
-    flags = {key: {"flag_values": [0, 1], "flag_meanings": " ".join(values)} for key, values in names.items()}
+    velocity = np.where(initial[:, None] == "plus", cloud, 0.5)
     return xarray.Dataset(
         {
             "crossing_velocity": ("crossing", velocity.ravel()),
             "crossing_direction": ("crossing", np.ones(velocity.size, "i1")),
             "crossing_count": ("point", np.full(len(a), 100, "i4")),
         },
-        {
-            "law": ("point", law.astype("i1"), flags["law"]),
-            "initial": ("point", initial.astype("i2"), flags["initial"]),
-            "a": ("point", a),
-        },
+        {"law": ("point", law), "initial": ("point", initial), "a": ("point", a)},
     )
 
 

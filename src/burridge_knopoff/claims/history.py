@@ -82,9 +82,7 @@ def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, 
     def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
         both = [synchrony(evidence, state, a, inside) for state in initial]
         for law in PAPER_LAWS:
-            # Under another convention the last law tells for both: so the ledger has it.
-            told = law if inside is None else PAPER_LAWS[-1]
-            one, other = (found.sel(law=told).values for found in both)
+            one, other = (found.sel(law=law).values for found in both)
             few = f"too few runs under the {law} law completed at {a}"
             yield Case(law, both[0]["a"].values, one != other, np.isfinite(one + other), few)
 
@@ -101,9 +99,7 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
 
     def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
         for state in initial:
-            # Under another convention the last state tells for all: so the ledger has it.
-            told = state if inside is None else initial[-1]
-            found = synchrony(evidence, told, a, inside)
+            found = synchrony(evidence, state, a, inside)
             one, other = (found.sel(law=law).values for law in PAPER_LAWS)
             few = f"too few runs from {state} completed at {a}"
             yield Case(state, found["a"].values, one == other, np.isfinite(one + other), few)
