@@ -109,6 +109,7 @@ def test_another_value_makes_its_points_only(copy):
     assert all(name in listed for name in added)
 
 
+@pytest.mark.slow
 def test_a_killed_stretch_goes_on_where_it_stopped(tmp_path):
     study = Study(tmp_path / "killed", PLANE.replace("window: 200", "window: 60000"))
     command = study.command(MARK)
