@@ -17,7 +17,9 @@ from tests.workflow.conftest import LIMITS
 def summaries(tmp_path_factory):
     """Those that know of it, made by the jobs of the study in this process."""
     folder = tmp_path_factory.mktemp("limits")
-    return run_study(folder, yaml.safe_load(LIMITS), ("points", "attractors", "mean_distance", "agreement")).found
+    return run_study(
+        folder, yaml.safe_load(LIMITS), ("points", "attractors", "mean_distance", "lyapunov", "agreement")
+    ).found
 
 
 @pytest.mark.slow
