@@ -258,6 +258,7 @@ def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
     check_end(copy, finished)
 
 
+@pytest.mark.slow
 def test_damaged_texts_and_pictures_are_made_again(copy, finished):
     """No job needs to read them: the next run looks at them itself."""
     results = copy.folder / "results" / "tiny"
