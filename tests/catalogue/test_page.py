@@ -1,10 +1,6 @@
 """docs/catalogues.md prints what it says."""
 
-import pytest
-
 from tests.pages import outputs
-
-pytestmark = pytest.mark.slow
 
 
 def test_the_page_prints_what_it_says(repository):
