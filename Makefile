@@ -1,5 +1,5 @@
 # `make`: set up and run the default study.  `make setup`: only set up.
-# `make test`: set up and run the quick checks (minutes).  `make test-all`: every check (half an hour).
+# `make test`: set up and run the quick checks.  `make test-all`: every check.
 # `make kernel`: compile the kernel again.  `make test-oldest`: the workflow with the oldest Snakemake that is allowed.
 # `make benchmark`: most tables of docs/performance.md (over an hour).  `make docs`: the figures and claims of docs/.
 # `make site`: the documentation, with all docstrings, as a site in build/site.
@@ -127,7 +127,7 @@ faults: .venv/kernel .venv/test
 size: .venv/kernel
 	$(BIN)/python benchmarks/size.py
 
-# A hundred times what `make test-all` tries: a quarter of an hour on two cores.
+# A hundred times what `make test` tries: a quarter of an hour on two cores.
 fuzz: .venv/kernel .venv/test
 	BK_FUZZ=100 $(BIN)/python -m pytest tests/fuzzing
 
