@@ -60,11 +60,12 @@ def test_bad_input_is_refused_in_one_line(options, words):
         basin_map(**{"law": "linearized", "a": 0.08, "pixels": 2, "samples": 3, **options})
 
 
+@pytest.mark.slow
 def test_a_model_of_its_own():
     """Labels of a map for a law by formula in an asymmetric chain, and a short form that says the same."""
     law = FormulaLaw(0.1, "1/(1 + a*u)**p", p=1.2)
     chain = Chain(3, coupling=(1.0, 1.2))
-    options = {"pixels": 4, "samples": 4, "transient": 500.0, "window": 500.0}
+    options = {"pixels": 4, "samples": 10, "transient": 1000.0, "window": 1000.0}
     basins, attractors = basin_map(Model(chain, law, v=0.12), **options)
     again = basin_map(law.at(0.5), 0.1, chain=chain, v=0.12, **options)
     assert basins.identical(again[0])
