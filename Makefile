@@ -1,4 +1,5 @@
-# `make`: set up and run the default study.  `make test`: set up and run every check.  `make setup`: only set up.
+# `make`: set up and run the default study.  `make setup`: only set up.
+# `make test`: set up and run the quick checks.  `make test-all`: every check.
 # `make kernel`: compile the kernel again.  `make test-oldest`: the workflow with the oldest Snakemake that is allowed.
 # `make benchmark`: most tables of docs/performance.md (over an hour).  `make docs`: the figures and claims of docs/.
 # `make site`: the documentation, with all docstrings, as a site in build/site.
@@ -21,7 +22,7 @@ $(PIP) install --no-build-isolation --no-deps --editable .
 endef
 COMPILE := $(BIN)/python -m compileall -qq -j 0 -x /tests/ .venv/lib src
 
-.PHONY: study announce setup kernel test types style test-oldest durations benchmark faults fuzz sanitize mutants size docs site lock clean
+.PHONY: study announce setup kernel test test-all types style test-oldest durations benchmark faults fuzz sanitize mutants size docs site lock clean
 
 study: announce setup
 	$(BIN)/snakemake -c2
@@ -60,9 +61,10 @@ kernel: .venv/study
 	@touch $@
 
 # What is installed and read on one core goes on beside the compiler.
-test:
+test: QUICK := -m "not slow"
+test test-all:
 	@$(MAKE) --no-print-directory --jobs=2 types style
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest $(QUICK)
 
 # The kernel has its types in stubs.
 types: .venv/test

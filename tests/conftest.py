@@ -11,7 +11,6 @@ if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import fcntl
-import itertools
 import pickle
 import shutil
 from collections.abc import Callable
@@ -25,25 +24,24 @@ settings.register_profile("study", deadline=None, derandomize=True, print_blob=T
 settings.load_profile("study")
 
 
+@pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Let one of two workers begin with Slurm, the other with all else that is long, and both end with what is short.
 
     Each has one half to begin with; whoever is done first takes over from the end of the other's. So no worker is left
-    alone with a long test.
+    alone with a long test. It comes last, when what is not to be run has been left out.
     """
-    names = (
-        "tests/workflow/test_slurm.py",
-        "tests/workflow/test_faults.py",
-        "tests/test_extending.py",
-        "tests/workflow/",
-        "",
-    )
-    groups: dict[str, list[pytest.Item]] = {name: [] for name in names}
+    slurm, slow, workflow, short = groups = [], [], [], []
     for item in items:
-        groups[next(name for name in names if item.nodeid.startswith(name))].append(item)
-    slurm, *long, short = groups.values()
+        is_of = (
+            item.path.name == "test_slurm.py",
+            item.get_closest_marker("slow") is not None,
+            item.path.parent.name == "workflow",
+            True,
+        )
+        groups[is_of.index(True)].append(item)
     half = max(0, len(items) // 2 - len(slurm))
-    items[:] = [*slurm, *short[:half], *itertools.chain(*long), *short[half:]]
+    items[:] = [*slurm, *short[:half], *slow, *workflow, *short[half:]]
 
 
 @pytest.fixture(scope="session")

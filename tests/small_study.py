@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import pytest
 import xarray
 
 from burridge_knopoff.dataset.point import write_point
@@ -76,6 +77,10 @@ STUDIES: dict[str, dict[str, Any]] = {
     },
     "two_blocks": {"initial": {"pair": {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}}},
 }
+
+#: Their names, as of fixtures. The finished study of the workflow is like that of the paper; the others are left to
+#: `make test-all`.
+SOME_STUDIES = [pytest.param(name, marks=() if name == "one_law" else pytest.mark.slow) for name in STUDIES]
 
 
 @dataclass(frozen=True)

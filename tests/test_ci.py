@@ -1,4 +1,4 @@
-"""What `.ci/run` lets the tests use: it is what the README says that they need."""
+"""What `.ci/run` runs, and what it lets the tests use: every check, with what the README says that they need."""
 
 import os
 import re
@@ -13,11 +13,13 @@ def test_the_tests_run_with_nothing_but_what_the_readme_names(repository, tmp_pa
     needed = re.search(r"\*\*Requirements\*\*: (.*?)\n\n", (repository / "README.md").read_text(), re.DOTALL)[1]
     names = {name for words in re.findall(r"`(.*?)`", needed) for name in words.split()}
     compiler = Path(sysconfig.get_config_var("CXX").split()[0]).name
-    # In place of `make test`: it tells what it is given.
+    # In place of `make`: it tells what it is given.
     make = tmp_path / "make"
-    make.write_text('#!/usr/bin/env bash\ncd "$PATH" && echo *\n')
+    make.write_text('#!/usr/bin/env bash\necho "$@"\ncd "$PATH" && echo *\n')
     make.chmod(0o755)
     path = os.pathsep.join((str(tmp_path), os.environ["PATH"]))
     environment = {**os.environ, **dict.fromkeys(SETTINGS, ""), "PATH": path}
     run = subprocess.run([repository / ".ci" / "run"], capture_output=True, text=True, env=environment)
-    assert set(run.stdout.split()) == names | {compiler}, run.stderr
+    target, programs = run.stdout.splitlines()
+    assert target == "test-all"
+    assert set(programs.split()) == names | {compiler}, run.stderr

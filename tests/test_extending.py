@@ -15,6 +15,8 @@ from tests.conftest import made_once
 from tests.pages import apply, blocks
 from tests.workflow.conftest import Study
 
+pytestmark = pytest.mark.slow
+
 REPOSITORY = Path(__file__).parent.parent
 PAGE = (REPOSITORY / "docs" / "extending.md").read_text()
 

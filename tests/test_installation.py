@@ -12,6 +12,8 @@ import pytest
 
 from tests.pages import blocks
 
+pytestmark = pytest.mark.slow
+
 # Rooms of a study alone, which `snakemake` uses from a checkout: the extra `study`.
 OF_STUDY = ("proof", "report", "summaries.proof")
 

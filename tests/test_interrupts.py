@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+pytestmark = pytest.mark.slow
+
 BK = Path(sys.executable).with_name("bk")
 HEAD = """
 from concurrent.futures import ThreadPoolExecutor

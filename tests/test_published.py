@@ -1,9 +1,12 @@
 """docs/published.md prints what it says and draws what it shows, in the sections that take seconds."""
 
 import numpy as np
+import pytest
 from matplotlib.image import imread
 
 from tests.pages import outputs
+
+pytestmark = pytest.mark.slow
 
 SHORT = {"Huang and Turcotte: two unequal blocks", "De Sousa Vieira: chaos of equal blocks"}
 

@@ -14,6 +14,8 @@ import burridge_knopoff
 from tests.conftest import made_once
 from tests.optional import launch_chromium, needs
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[1]
 
 

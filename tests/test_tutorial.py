@@ -3,9 +3,12 @@
 import re
 
 import numpy as np
+import pytest
 from matplotlib.image import imread
 
 from tests.pages import blocks, outputs
+
+pytestmark = pytest.mark.slow
 
 FROM_FILES = "From the files of a study"
 

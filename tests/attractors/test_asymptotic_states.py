@@ -76,6 +76,7 @@ def test_chaos_that_ends_is_the_orbit_after_it(law, a, state):
     )
 
 
+@pytest.mark.slow
 def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
     """In runs of the usual length some of these look like a torus; a window of 400 000 tells them apart from one."""
     found = endings(pair("linearized", 0.08), STATES)

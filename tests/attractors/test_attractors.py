@@ -243,7 +243,7 @@ def test_attractors_of_any_model_are_what_runs_end_in(found_model):
             assert run.mean_distance == pytest.approx(expected.mean_distance, abs=1e-3 + error)
 
 
-@pytest.mark.parametrize(("coupling", "section_period"), [(1.5, 0), (2.0, 104)])
+@pytest.mark.parametrize(("coupling", "section_period"), [pytest.param(1.5, 0, marks=pytest.mark.slow), (2.0, 104)])
 def test_synchrony_of_a_long_period_is_synchrony(coupling, section_period):
     """Strong coupling: the end blocks move as one, and the middle block repeats after many of their periods only.
 

@@ -36,10 +36,10 @@ def test_motion_that_is_locked_with_a_period_that_no_run_shows_is_not_periodic(l
 @pytest.mark.parametrize(
     ("law", "a", "coupling", "blocks", "mean"),
     [
-        ("nonlinear", 0.3, 1e-5, 2, 0.284064),
+        pytest.param("nonlinear", 0.3, 1e-5, 2, 0.284064, marks=pytest.mark.slow),
         ("nonlinear", 0.3, 1e-4, 2, 0.284029),
         ("linearized", 0.2, 1e-6, 2, None),
-        ("nonlinear", 0.3, 1e-5, 3, None),
+        pytest.param("nonlinear", 0.3, 1e-5, 3, None, marks=pytest.mark.slow),
     ],
 )
 def test_what_drifts_more_slowly_than_it_is_followed_is_no_attractor(law, a, coupling, blocks, mean):

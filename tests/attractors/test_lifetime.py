@@ -176,6 +176,7 @@ def test_what_attracts_slowly_is_waited_for(find, rate, radius, way):
     assert asked[0] == (32, pytest.approx(2.0 * (way + 20.0) + TIME), 1)
 
 
+@pytest.mark.slow
 def test_lifetimes_do_not_depend_on_how_slowly_a_trajectory_is_captured():
     """At a = 0.243828 an orbit takes some 3000 time units to capture what leaves chaos, whose mean lifetime is 109 000
     (97 100 to 122 700): 289 ends of trajectories of another solver, each seen by J."""

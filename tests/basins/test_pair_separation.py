@@ -33,7 +33,7 @@ def check_fractions(label, ranges, count, seeds, drawn, separations):
         assert abs(mean[k] - expected) < 3.5 * np.hypot(error[k], own), k
 
 
-@pytest.mark.parametrize("label", [half_plane, cantor(3)], ids=["half_plane", "cantor"])
+@pytest.mark.parametrize("label", [half_plane, pytest.param(cantor(3), id="cantor", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("ranges", [(UNIT, UNIT), ((0.0, 1.0), (0.2, 0.7))], ids=["square", "strip"])
 def test_the_fraction_is_that_of_plain_sampling(label, ranges):
     check_fractions(label, ranges, 200, 60, 1_000_000, (0, 1, 3, 5))

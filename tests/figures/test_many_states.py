@@ -11,6 +11,7 @@ from burridge_knopoff.dataset.point import to_dataset
 from burridge_knopoff.figures.description import figure_descriptions
 from burridge_knopoff.running.simulation import run
 
+#: The layout, which takes most of the time, is made once.
 STATES = range(1, 9)
 #: Summaries that know of initial states.
 OF_STATES = {"mean_distance", "bifurcation_diagram", "lyapunov", "agreement", "stick_slip", "solvers"}
@@ -48,7 +49,9 @@ def point(small):
     return to_dataset(run(study.model("linearized", 0.2), grid.initial["minus"], grid.settings["linearized"]))
 
 
-@pytest.mark.parametrize("count", STATES)
+@pytest.mark.parametrize(
+    "count", [pytest.param(count, marks=() if count in (1, 4) else pytest.mark.slow) for count in STATES]
+)
 def test_figures_of_one_to_eight_states(count, small, point):
     names = [f"s{k}" for k in range(count)]
     found = {name: with_states(data, names) for name, data in small.found.items()}
@@ -61,7 +64,6 @@ def test_figures_of_one_to_eight_states(count, small, point):
         draw = import_module(f"burridge_knopoff.figures.{figure.name}").draw
         made = draw(*taken, **{name: getattr(small.study, name) for name in figure.from_study})
         if count < STATES[-1]:
-            # The layout takes most of the time.
             made.set_layout_engine("none")
         made.draw_without_rendering()
         drawn.append(figure.name)

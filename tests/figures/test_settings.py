@@ -74,7 +74,9 @@ def test_figures_in_a_notebook_look_the_same(run):
     assert all(np.array_equal(*pair) for pair in zip(plain, own, strict=True))
 
 
-@pytest.mark.parametrize("backend", ["module://matplotlib_inline.backend_inline", "none_such"])
+@pytest.mark.parametrize(
+    "backend", [pytest.param("module://matplotlib_inline.backend_inline", marks=pytest.mark.slow), "none_such"]
+)
 def test_a_backend_that_is_not_installed(backend, run, tmp_path):
     """As a notebook of another environment hands it to the programs that it starts."""
     bk = Path(sys.executable).parent / "bk"

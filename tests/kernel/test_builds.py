@@ -50,6 +50,7 @@ def output(instructions, *python):
     return subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout.splitlines()
 
 
+@pytest.mark.slow
 def test_every_module_of_a_wheel_without_optimisation_makes_the_bits_of_the_kernel(installed, monkeypatch):
     """Builds that differ in both: that is half the time of twice as many."""
     monkeypatch.setenv("BURRIDGE_KNOPOFF_LANES", "all")

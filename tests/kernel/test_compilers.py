@@ -19,6 +19,8 @@ from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.values import MOST_NUMBERS
 from tests.optional import needs, setting
 
+pytestmark = pytest.mark.slow
+
 SOURCE = Path(__file__).with_name("bits.cpp")
 EDGES, TIMES, STEP, COUNT = np.array([5.0, 20.0, 40.0]), np.array([7.0, 30.0]), 0.01, 11
 # The last one moves in groups.

@@ -60,6 +60,7 @@ def test_bad_input_is_refused_in_one_line(options, words):
         basin_map(**{"law": "linearized", "a": 0.08, "pixels": 2, "samples": 3, **options})
 
 
+@pytest.mark.slow
 def test_a_model_of_its_own():
     """Labels of a map for a law by formula in an asymmetric chain, and a short form that says the same."""
     law = FormulaLaw(0.1, "1/(1 + a*u)**p", p=1.2)

@@ -136,6 +136,7 @@ def test_a_study_that_snakemake_has_made(finished):
     assert study["grid"].mean_distance.equals(study["summary/mean_distance"].mean_distance)
 
 
+@pytest.mark.slow
 def test_threads_may_open_studies(results):
     """In a process of its own, which HDF5 may crash."""
     script = (

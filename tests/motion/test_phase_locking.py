@@ -6,12 +6,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, Model, OrbitError, Settings, Symmetry, law_of
+from burridge_knopoff import Chain, Model, Settings, law_of
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion import phase_locking as locking
+from burridge_knopoff.motion.limit_cycle import limit_cycle
 from burridge_knopoff.motion.phase_locking import locked_orbit, recurrence
 from burridge_knopoff.motion.section_returns import state_of, visit
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.running.simulation import run
+from tests.flows import weakly_repelling
 
 LOCKED = Model(Chain(3), law_of("linearized", 0.0275))
 #: A state on a torus there, which comes nearer to its closed orbit by the factor e in 30 000 time units.
@@ -82,27 +85,23 @@ def test_any_coordinate_may_keep_returns_apart():
     assert recurrence(np.arange(9.0), returns) == 2.0
 
 
-def test_an_orbit_has_to_be_there_to_attract_and_to_be_approached(monkeypatch):
-    asked = []
+def test_an_orbit_has_to_be_there_to_attract_and_to_be_approached():
+    model = Model(Chain(3), law_of("linearized", 0.08))
+    stable, unstable = limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=1000.0), weakly_repelling()
 
-    def find(model, guess, time, symmetry):
-        asked.append((guess.vector().tolist(), time, symmetry))
-        if orbit is None:
-            raise OrbitError("none")
-        return orbit
+    def found(orbit, away, time, window):
+        """Return the orbit that is found of returns so far from those of an orbit in one window after the other."""
+        turn = visit(orbit.model, orbit.reference, 0.0, window).returns
+        return locked_orbit(orbit.model, np.concatenate([turn + distance for distance in away]), time)
 
-    monkeypatch.setattr(locking, "find_periodic_orbit", find)
-    monkeypatch.setattr(locking, "multipliers", lambda orbit: SimpleNamespace(unstable=orbit.unstable))
-    monkeypatch.setattr(locking, "_approaches", lambda returns, orbit: orbit.approached)
-    returns = np.random.default_rng(3).uniform(0.1, 1.0, (5, 6))
-    for unstable, approached, expected in ((0, True, True), (1, True, False), (0, False, False)):
-        orbit = SimpleNamespace(unstable=unstable, approached=approached)
-        assert (locked_orbit(LOCKED, returns, 7.0) is orbit) == expected
-    orbit = None
-    assert locked_orbit(LOCKED, returns, 7.0) is None
-    assert asked == [(returns[-1].tolist(), 7.0, Symmetry.ASYMMETRIC)] * 4
-    assert locked_orbit(LOCKED, returns, 0.0) is None
-    assert len(asked) == 4
+    coming, period = (3e-6, 2e-6, 1e-6), stable.period
+    assert found(stable, coming, period, period).period == pytest.approx(period, abs=1e-9)
+    assert found(stable, coming[::-1], period, period) is None
+    # Gone round three times: a single turn has too few returns.
+    assert found(unstable, coming, 3.0 * unstable.period, 3.0 * unstable.period) is None
+    # No orbit has such a period.
+    for time in (0.0, 0.4 * period):
+        assert found(stable, coming, time, period) is None
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,10 @@
 
 from typing import Any, TypeVar
 
+import numpy as np
+
+from burridge_knopoff.periodic_orbits.floquet import Multipliers
+
 _T = TypeVar("_T")
 
 
@@ -10,3 +14,8 @@ def stand_in(kind: type[_T], **told: Any) -> _T:
     one = object.__new__(kind)
     one.__dict__.update(told)
     return one
+
+
+def only(*keeping: complex) -> Multipliers:
+    """Return multipliers that have no others beside these."""
+    return Multipliers(np.array(keeping), np.empty(0), power=1)

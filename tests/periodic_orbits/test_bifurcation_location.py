@@ -9,9 +9,10 @@ from burridge_knopoff import Chain, Model, OrbitError, Symmetry, law_of
 from burridge_knopoff.periodic_orbits import bifurcations
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
+from burridge_knopoff.periodic_orbits.floquet import Multipliers
 from burridge_knopoff.periodic_orbits.following import BranchOrbit
 from burridge_knopoff.periodic_orbits.parameter_line import along_a
-from tests.periodic_orbits.stand_in import stand_in
+from tests.periodic_orbits.stand_in import only, stand_in
 
 LINE = along_a(Chain(3))
 
@@ -41,15 +42,14 @@ def test_the_pair_whose_product_is_1_tells_a_torus_from_a_saddle(values, kind):
 
 @pytest.fixture
 def branch(monkeypatch):
-    """Return how a branch is made whose critical value and a are told at each length, which returns its points."""
+    """Return how a branch is made of which are told, by length, a and how far its multiplier is from that `at` 0."""
 
-    def made(value, a=lambda length: length, kind=BifurcationKind.PERIOD_DOUBLING):
+    def made(value, a=lambda length: length, at=-1.0):
         def point(length, slope=1.0):
             orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
-            told = {"value": a(length), "multipliers": value(length), "length": length, "tangent": [slope]}
+            told = {"value": a(length), "multipliers": only(at + value(length)), "length": length, "tangent": [slope]}
             return stand_in(BranchOrbit, line=LINE, orbit=orbit, **told)
 
-        monkeypatch.setattr(bifurcations, "critical_values", lambda orbit, value: {(kind, "keeping"): value})
         monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
         return point
 
@@ -61,7 +61,7 @@ def branch(monkeypatch):
 )
 def test_a_branch_turns_back_in_a_at_a_fold(monkeypatch, branch, slopes, kind):
     """Where it does not, it is a symmetry other than the mirror's that breaks."""
-    point = branch(lambda length: length - 0.3, kind=BifurcationKind.FOLD)
+    point = branch(lambda length: length - 0.3, at=1.0)
     monkeypatch.setattr(bifurcations, "simplest", lambda orbit, _: SimpleNamespace(symmetry=orbit.symmetry, period=1.0))
     found = bifurcations._root(point(0.0, slopes[0]), point(0.5, slopes[1]), (BifurcationKind.FOLD, "keeping"))
     assert (None if found is None else found[1].kind) == kind
@@ -112,33 +112,16 @@ def test_a_value_that_is_0_for_long_is_no_bifurcation(monkeypatch, branch):
 
 
 def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeypatch):
-    """Only what changes its sign is one."""
-    roots = {"period_doubling": 0.4, "torus": 0.1, "pitchfork": 0.2, "fold": 0.7}
-    kinds = dict(
-        zip(
-            roots,
-            (
-                BifurcationKind.PERIOD_DOUBLING,
-                BifurcationKind.NEIMARK_SACKER,
-                BifurcationKind.PITCHFORK,
-                BifurcationKind.FOLD,
-            ),
-            strict=True,
-        )
-    )
+    """A pair leaves the unit circle, one multiplier comes to 1 and one to -1; farther on another one would."""
 
     def point(length):
-        values = np.array([0.6 + 0.8j, 0.6 - 0.8j])
+        pair = (1.0 + length - 0.1) * np.array([0.6 + 0.8j, 0.6 - 0.8j])
+        keeping = np.array([*pair, -1.0 - (length - 0.4), 1.0 + 0.1 * (length - 0.7)])
+        multipliers = Multipliers(keeping, np.array([1.0 + length - 0.2]), power=1)
         orbit = SimpleNamespace(symmetry=Symmetry.SYNCHRONIZED)
-        multipliers = SimpleNamespace(keeping=values, breaking=values, length=length)
         told = {"value": 0.1 + length, "multipliers": multipliers, "length": length, "tangent": [1.0]}
         return stand_in(BranchOrbit, line=LINE, orbit=orbit, **told)
 
-    def values(orbit, found):
-        sign = {"period_doubling": 1.0, "torus": -1.0, "pitchfork": -1.0, "fold": 1.0}
-        return {(kinds[name], "keeping"): sign[name] * (found.length - root) for name, root in roots.items()}
-
-    monkeypatch.setattr(bifurcations, "critical_values", values)
     monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
     found = bifurcations._roots(point(0.0), point(0.5))
     assert [bifurcation.a for bifurcation in found] == pytest.approx([0.2, 0.3, 0.5])

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, OrbitError
+from burridge_knopoff import Chain, ChainState, OrbitError, Symmetry
 from burridge_knopoff.model.own_units import OwnUnits
 from burridge_knopoff.periodic_orbits import border_collision
-from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.parameter_line import along_a
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+from tests.periodic_orbits.stand_in import only
 
 
 @pytest.mark.parametrize(
@@ -24,13 +24,12 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
         ((0.2,), 0.1, np.inf),
     ],
 )
-def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(monkeypatch, values, length, expected):
-    key = BifurcationKind.FOLD, "keeping"
-    monkeypatch.setattr(border_collision, "critical_values", lambda orbit, value: {key: value})
-    way = [SimpleNamespace(orbit=None, multipliers=value, length=length) for value in values]
+def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(values, length, expected):
+    orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC)
+    way = [SimpleNamespace(orbit=orbit, multipliers=only(1.0 + value), length=length) for value in values]
     assert border_collision._joint_ahead(way) == pytest.approx(expected)
     # A longer way has the same end.
-    ahead = border_collision._joint_ahead([SimpleNamespace(orbit=None, multipliers=9.0, length=9.0), *way])
+    ahead = border_collision._joint_ahead([SimpleNamespace(orbit=orbit, multipliers=only(10.0), length=9.0), *way])
     assert ahead == pytest.approx(expected) or len(way) == 1
 
 

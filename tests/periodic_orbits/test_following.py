@@ -6,13 +6,13 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, follow, law_of, limit_cycle, synchronized_orbit
+from burridge_knopoff import Chain, ChainState, Model, Symmetry, follow, law_of, limit_cycle, synchronized_orbit
 from burridge_knopoff.periodic_orbits import following
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import locate_bifurcations
 from burridge_knopoff.periodic_orbits.following import Following
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
-from tests.periodic_orbits.stand_in import stand_in
+from tests.periodic_orbits.stand_in import only, stand_in
 
 
 @pytest.mark.parametrize(
@@ -30,9 +30,12 @@ from tests.periodic_orbits.stand_in import stand_in
     ],
 )
 def test_a_branch_turns_without_a_fold_where_it_touches_a_simpler_one(monkeypatch, slopes, values, away, touches):
-    monkeypatch.setattr(following, "critical_values", lambda orbit, value: {(BifurcationKind.FOLD, "keeping"): value})
     monkeypatch.setattr(following, "simplest", lambda orbit, tolerance: "simpler" if away <= tolerance else orbit)
-    points = [SimpleNamespace(orbit=x, tangent=[x], multipliers=v) for x, v in zip(slopes, values, strict=True)]
+    orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC)
+    points = [
+        SimpleNamespace(orbit=orbit, tangent=[slope], multipliers=only(1.0 + value))
+        for slope, value in zip(slopes, values, strict=True)
+    ]
     assert following._passed(*points) == ("simpler" if touches else None)
 
 

@@ -1,5 +1,8 @@
 """Orbits over a: how they are continued where Newton's method needs a near orbit to begin with."""
 
+import re
+
+import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, law_of, limit_cycle, synchronized_orbit
@@ -11,6 +14,14 @@ from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, beside
 @pytest.fixture
 def known():
     return KnownOrbits(synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05))))
+
+
+@pytest.fixture(scope="module")
+def asymmetric():
+    """An orbit whose end blocks stop six and three times, at a = 0.12."""
+    model = Model(Chain(3), law_of("linearized", 0.12))
+    start = model.begin(InitialState("one", (-0.989, -0.993, -0.991), (0.099, 0.1012, 0.1023)))
+    return limit_cycle(model, start, settling=10_000.0)
 
 
 def test_steps_are_halved_until_the_orbit_is_found(known, monkeypatch):
@@ -31,19 +42,20 @@ def test_steps_are_halved_until_the_orbit_is_found(known, monkeypatch):
     assert len(tried) == pytest.approx(3 + 0.02 / 0.0025, abs=1)
 
 
-def test_where_it_is_lost_the_error_is_told_after_the_least_step(known, monkeypatch):
-    (here,) = known.known
-    tried = []
-
-    def lost(orbit, a):
-        tried.append(a)
-        raise OrbitError("lost")
-
-    monkeypatch.setattr(orbits_over_a, "beside", lost)
-    with pytest.raises(OrbitError, match="lost"):
-        known.at(here + 0.02)
-    assert tried[-1] - here == pytest.approx(orbits_over_a.LEAST_STEP, rel=1.0)
-    assert len(tried) < 20
+def test_where_it_is_lost_the_error_is_told_after_the_least_step(asymmetric):
+    """Where the branch turns back, at a = 0.13247: steps become half as long again and again."""
+    known = KnownOrbits(asymmetric)
+    with pytest.raises(
+        OrbitError, match=r"^a = 0\.1324\d+: no periodic orbit found .*, on the way to a = 0\.14$"
+    ) as lost:
+        known.at(0.14)
+    found = list(known.known)
+    assert found[0] == 0.12
+    steps = np.log2(0.02 / np.diff(found))
+    assert steps == pytest.approx(np.round(steps), abs=1e-6)
+    assert (np.diff(steps) > 0.5).all()
+    tried = float(re.search(r"0\.1324\d+", str(lost.value))[0])
+    assert 1.0 <= (tried - found[-1]) / orbits_over_a.LEAST_STEP < 2.0
 
 
 def test_steps_become_as_short_as_the_stick_is(known, monkeypatch):
@@ -67,13 +79,10 @@ def test_an_orbit_of_another_period_is_not_on_the_branch(known):
         beside(orbit, 0.3)
 
 
-def test_orbits_of_any_symmetry_are_continued_to_where_runs_settle():
-    """Asymmetric ones, whose end blocks stop six and three times: at either a a run of its own ends on the orbit."""
-    model = Model(Chain(3), law_of("linearized", 0.12))
-    start = model.begin(InitialState("one", (-0.989, -0.993, -0.991), (0.099, 0.1012, 0.1023)))
-    first = limit_cycle(model, start, settling=10_000.0)
-    orbit = KnownOrbits(first).at(0.121)
-    again = limit_cycle(orbit.model, first.reference, settling=10_000.0)
+def test_orbits_of_any_symmetry_are_continued_to_where_runs_settle(asymmetric):
+    """At either a a run of its own ends on the orbit."""
+    orbit = KnownOrbits(asymmetric).at(0.121)
+    again = limit_cycle(orbit.model, asymmetric.reference, settling=10_000.0)
     assert (orbit.stop_counts, orbit.symmetry) == (again.stop_counts, again.symmetry)
     assert orbit.period == pytest.approx(again.period, abs=1e-9)
     assert orbit.residual < 1e-13

@@ -1,6 +1,10 @@
 """docs/bifurcations.md prints what it says."""
 
+import pytest
+
 from tests.pages import outputs
+
+pytestmark = pytest.mark.slow
 
 
 def test_scripts(repository):

@@ -7,7 +7,7 @@ from playwright import sync_api as playwright
 from burridge_knopoff.report.page import render
 from tests.optional import launch_chromium, needs
 
-pytestmark = needs("BK_CHROMIUM")
+pytestmark = [pytest.mark.slow, needs("BK_CHROMIUM")]
 
 # Text of every element whose contrast with what lies behind it is below WCAG AA, and none that a chart draws.
 LOW_CONTRAST = """() => {

@@ -79,7 +79,7 @@ def test_a_wrong_grid_gets_one_line(changes, words):
         load(**changes)
 
 
-@pytest.mark.parametrize("values", [3, 40, 1500, 24_000])
+@pytest.mark.parametrize("values", [3, 40, 1500, pytest.param(24_000, marks=pytest.mark.slow)])
 def test_stretches_are_all_points_in_order(values):
     study = load(grid={"a": [0.2], "v": [{"from": 0.001, "to": values / 1000, "step": 0.001}]})
     parts = stretches(study)

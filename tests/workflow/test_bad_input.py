@@ -3,7 +3,9 @@
 import json
 import shutil
 import subprocess
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -17,6 +19,11 @@ ANNOUNCED = ("Using workflow specific profile", "Assuming unrestricted shared fi
 
 # What Snakemake makes before it reads the Snakefile: empty folders, and its log.
 OF_SNAKEMAKE = ".snakemake"
+
+
+def some(cases: Iterable[str], count: int) -> list[Any]:
+    """Return cases that a study refuses in the same place, all but the first few of them marked as slow."""
+    return [pytest.param(case, marks=pytest.mark.slow if n >= count else ()) for n, case in enumerate(cases)]
 
 
 def check(run: subprocess.CompletedProcess[str], folder: Path, files: list[str], words: list[str]) -> None:
@@ -38,7 +45,7 @@ def check(run: subprocess.CompletedProcess[str], folder: Path, files: list[str],
 FILES, KEYS = (list(BAD_FILES)[part] for part in (slice(FIRST_OF_KEYS), slice(FIRST_OF_KEYS, None, 9)))
 
 
-@pytest.mark.parametrize("case", [*FILES, *KEYS])
+@pytest.mark.parametrize("case", [*FILES, *some(KEYS, 2)])
 def test_a_bad_config(tmp_path, case):
     content, words = BAD_FILES[case]
     study = Study(tmp_path)
@@ -70,7 +77,7 @@ TARGETS = {
 }
 
 
-@pytest.mark.parametrize("target", TARGETS)
+@pytest.mark.parametrize("target", some(TARGETS, 5))
 def test_a_target_that_is_not_of_the_study(tmp_path, target):
     check(Study(tmp_path, TINY).run(target), tmp_path, ["study.yaml"], TARGETS[target])
 

@@ -113,6 +113,7 @@ def test_the_statistics_are_those_of_the_events(study):
         assert one["shown_magnitude"].max() == one["largest_magnitude"] == magnitude.max()
 
 
+@pytest.mark.slow
 def test_a_picture_is_the_same_under_a_users_own_settings_of_matplotlib(study):
     """As of a matplotlibrc, and of a notebook that starts snakemake. It is the program itself that is started."""
     before = study.files("figures")
@@ -172,6 +173,7 @@ catalogue: {transient: 0, window: 300}
 """
 
 
+@pytest.mark.slow
 def test_a_catalogue_whose_run_diverged_is_a_failure(tmp_path, capsys):
     study = Study(tmp_path / "study", RUNAWAY)
     said = study.ok()

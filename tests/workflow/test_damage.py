@@ -147,6 +147,7 @@ def remade(study, text, *targets):
     return command
 
 
+@pytest.mark.slow
 def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
     """The files are newer than what was made of them: the next run reads them. The command that it names mends all."""
     study = copied(limited.folder, tmp_path / "study")
@@ -207,6 +208,7 @@ def test_a_bad_file_as_old_as_it_was(copy, path, rule):
     assert command.endswith(f" -R results/tiny/{path}")
 
 
+@pytest.mark.slow
 def test_a_bad_summary_is_remade(finished, copy):
     target = copy.folder / "results" / "tiny" / "summary" / "stick_slip.nc"
     times = target.stat()
@@ -225,6 +227,7 @@ def as_old_as(path: Path, change) -> None:
     os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
 
 
+@pytest.mark.slow
 def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
     """Of another tile, of another law, of a study with another v, and of one of another shape: four in one run."""
     results = copy.folder / "results" / "tiny"
@@ -255,6 +258,7 @@ def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
     check_end(copy, finished)
 
 
+@pytest.mark.slow
 def test_damaged_texts_and_pictures_are_made_again(copy, finished):
     """No job needs to read them: the next run looks at them itself."""
     results = copy.folder / "results" / "tiny"

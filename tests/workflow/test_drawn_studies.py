@@ -13,6 +13,8 @@ import yaml
 from tests.fuzzing import TIMES
 from tests.workflow.conftest import Study
 
+pytestmark = pytest.mark.slow
+
 #: So little of everything that a study takes half a minute.
 BASE = {
     "a": [0.08],

@@ -14,6 +14,8 @@ from tests.pages import outputs
 from tests.test_tutorial import FROM_FILES
 from tests.workflow.conftest import REPOSITORY, Study
 
+pytestmark = pytest.mark.slow
+
 TARGETS = {
     "velocity": ["mean_distance.nc", "orbits.nc"],
     "history": ["mean_distance.nc", "lyapunov.nc", "basins.nc"],

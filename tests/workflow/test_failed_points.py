@@ -6,44 +6,50 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
+import yaml
 
 from burridge_knopoff import in_words
 from burridge_knopoff.figures.mean_distance import draw
+from tests.small_study import run_study
+from tests.workflow.conftest import LIMITS
 
 
-@pytest.fixture
-def summary(limited):
-    return lambda name: xr.load_dataset(limited.folder / f"results/limits/summary/{name}.nc")
+@pytest.fixture(scope="module")
+def summaries(tmp_path_factory):
+    """Those that know of it, made by the jobs of the study in this process."""
+    folder = tmp_path_factory.mktemp("limits")
+    return run_study(
+        folder, yaml.safe_load(LIMITS), ("points", "attractors", "mean_distance", "lyapunov", "agreement")
+    ).found
 
 
+@pytest.mark.slow
 def test_the_study_ends_and_its_last_lines_count_them(limited):
     path = "results/limits/summary/mean_distance.nc"
     assert f"points: 2 of 8 did not complete: diverged 2 (status in {path})" in limited.output
     assert "study limits: done in" in limited.output
 
 
-def test_summaries_carry_the_status_and_have_no_value(summary):
-    found = summary("mean_distance")
+def test_summaries_carry_the_status_and_have_no_value(summaries):
+    found, agreement = summaries["mean_distance"], summaries["agreement"]
     failed = in_words(found["status"]) == "diverged"
     assert failed.sel(law="linearized").values.tolist() == [[False, True], [False, True]]
     assert not failed.sel(law="nonlinear").any()
     for name in ("mean_distance", "mean_distance_error"):
         assert (np.isnan(found[name]) == failed).all()
     assert (found["synchronized"].where(failed, 0) == 0).all()
-    kind = summary("agreement")["kind"]
-    assert (in_words(kind).values[failed.values] == "undetermined").all()
-    agreement = summary("agreement")
+    assert (in_words(agreement["kind"]).values[failed.values] == "undetermined").all()
     assert (agreement["agrees"].sel(a=2.5) == -1).all()
     assert np.isnan(agreement["difference"].sel(a=2.5)).all()
 
 
-def test_a_figure_leaves_a_gap(summary):
-    figure = draw(summary("mean_distance"), summary("attractors"))
+def test_a_figure_leaves_a_gap(summaries):
+    figure = draw(summaries["mean_distance"], summaries["attractors"])
     drawn = [line.get_ydata() for axes in figure.axes for line in axes.get_lines() if len(line.get_ydata()) == 2]
     assert any(np.isfinite(y[0]) and np.isnan(y[1]) for y in drawn)
 
 
+@pytest.mark.slow
 def test_the_check_tells_them_from_errors(limited):
     command = [str(Path(sys.executable).parent / "bk"), "check", "results/limits"]
     run = subprocess.run(command, cwd=limited.folder, capture_output=True, text=True)
@@ -54,6 +60,7 @@ def test_the_check_tells_them_from_errors(limited):
     assert lines[-1].endswith("0 missing, 0 corrupt, 0 stale, 4 failed")
 
 
+@pytest.mark.slow
 def test_the_report_shows_them(limited):
     page = (limited.folder / "results/limits/report.html").read_text()
     assert "diverged" in page

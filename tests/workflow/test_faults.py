@@ -36,6 +36,8 @@ from tests.workflow.faults import (
     wait_for_stages,
 )
 
+pytestmark = pytest.mark.slow
+
 NO_MOUNTS = no_mounts()
 needs_mounts = pytest.mark.skipif(bool(NO_MOUNTS), reason=NO_MOUNTS)
 ATTRACTORS = "results/tiny/attractors/linearized.nc"

@@ -49,6 +49,7 @@ def check(study):
     return subprocess.run(command, cwd=study.folder, env=study.environment(), capture_output=True, text=True).stdout
 
 
+@pytest.mark.slow
 def test_a_summary_that_no_figure_shows_is_checked(with_unseen):
     study = with_unseen
     results = study.folder / "results/one"

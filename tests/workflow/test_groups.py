@@ -5,7 +5,11 @@ import subprocess
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
+import pytest
+
 from tests.workflow.conftest import Study
+
+pytestmark = pytest.mark.slow
 
 # With nothing but a shell.
 NOTE = """#!/bin/sh

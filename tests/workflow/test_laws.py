@@ -28,7 +28,7 @@ DESCRIPTIONS = {
 FOUR_LAWS = f"""
 study: laws
 a: [0.2, 2.5]
-initial: {{minus: {{}}, plus: {{}}}}
+initial: {{plus: {{}}}}
 laws: {json.dumps(DESCRIPTIONS)}
 {SHORT}"""
 
@@ -65,7 +65,7 @@ def test_points_of_four_laws(laws, law):
     from burridge_knopoff.model.initial import PAPER_STATES
 
     found = sorted(str(path.relative_to(laws / "points" / law)) for path in (laws / "points" / law).rglob("*.nc"))
-    assert found == [f"{initial}/a{a}.nc" for initial in ("minus", "plus") for a in ("0.2000", "2.5000")]
+    assert found == [f"plus/a{a}.nc" for a in ("0.2000", "2.5000")]
     settings = Settings(transient=20.0, window=30.0, batches=2)
     for a in (0.2, 2.5):
         model = Model(Chain(3), law_of(law, a, DESCRIPTIONS[law]))
@@ -87,7 +87,7 @@ def test_a_summary_has_the_laws_in_the_order_of_the_config(laws):
 def test_another_number_of_one_law_remakes_its_points_only(laws):
     study = Study(laws.parent.parent, FOUR_LAWS.replace('"sigma": 0.01', '"sigma": 0.02'))
     planned = study.ok("-n", "points")
-    assert planned.count("simulate drop law") == 4
+    assert planned.count("simulate drop law") == 2
     assert "simulate stribeck law" not in planned
 
 

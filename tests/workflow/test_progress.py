@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 
+import pytest
 import xarray as xr
 
 POINTS = [f"results/tiny/points/{law}/plus/a0.0{a}00.nc" for law in ("linearized", "nonlinear") for a in (5, 8)]
@@ -47,6 +48,7 @@ def plain(text):
     return re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", text).replace("\r", "\n")
 
 
+@pytest.mark.slow
 def test_a_terminal_shows_stages_and_time_left(study):
     command = [argument for argument in study.command(*[]) if argument != "--nocolor"]
     # So many that the display is drawn anew while some are still to come.
@@ -63,6 +65,7 @@ def test_a_terminal_shows_stages_and_time_left(study):
     assert written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l") > 0
 
 
+@pytest.mark.slow
 def test_interrupted_on_a_terminal(study):
     # Points that take minutes, and the time in which two of them have started: it is their runs that are interrupted.
     command = study.command("points", "--config", "window=1e7")

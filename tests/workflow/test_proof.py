@@ -8,12 +8,17 @@ import xarray as xr
 from tests.workflow.conftest import TINY, Study
 
 
+@pytest.mark.slow
 def test_the_target_makes_its_files_and_nothing_else(finished, study):
     study.ok("proof", cores=1)
     made = study.files("points", "summary", "figures")
     assert set(made) == {"summary/proof.nc", "summary/proof.txt"}
     assert made.items() <= finished.files("summary").items()
-    results = study.folder / "results" / "tiny"
+    assert (study.folder / "results" / "tiny" / "logs" / "proof.log").read_text() == ""
+
+
+def test_the_critical_values_are_proved(finished):
+    results = finished.folder / "results" / "tiny"
     with xr.open_dataset(results / "summary" / "proof.nc") as proof:
         assert proof["law"].values.tolist() == ["linearized", "nonlinear"]
         low, high = proof["critical_a"].sel(law="linearized").values
@@ -22,16 +27,18 @@ def test_the_target_makes_its_files_and_nothing_else(finished, study):
         assert 0.08871722297117 < low < high < 0.08871722297118
         for digits in proof["critical_a_digits"].values:
             assert f"a_c = {digits}" in (results / "summary" / "proof.txt").read_text()
-    assert (results / "logs" / "proof.log").read_text() == ""
-    # It depends on the model, not on the grid or on the runs; other laws are none of its.
-    assert "Nothing to be done" in study.ok("proof", "-n")
-    study.config.write_text(TINY.replace("a: [0.05, 0.08", "a: [0.06, 0.08").replace("window: 200", "window: 300"))
-    assert "Nothing to be done" in study.ok("proof", "-n")
+
+
+def test_it_depends_on_the_model_alone(copy):
+    """Not on the grid or on the runs; other laws are none of its."""
+    assert "Nothing to be done" in copy.ok("proof", "-n")
+    copy.config.write_text(TINY.replace("a: [0.05, 0.08", "a: [0.06, 0.08").replace("window: 200", "window: 300"))
+    assert "Nothing to be done" in copy.ok("proof", "-n")
     laws = "laws: {mine: {formula: 1/(1 + a*u)**2}, linearized: {}, nonlinear: {}}\n"
-    study.config.write_text(TINY + laws)
-    assert "Nothing to be done" in study.ok("proof", "-n")
-    study.config.write_text(TINY + "v: 0.2\n")
-    assert re.search(r"^proof +1$", study.ok("proof", "-n", "--quiet", "rules"), re.MULTILINE)
+    copy.config.write_text(TINY + laws)
+    assert "Nothing to be done" in copy.ok("proof", "-n")
+    copy.config.write_text(TINY + "v: 0.2\n")
+    assert re.search(r"^proof +1$", copy.ok("proof", "-n", "--quiet", "rules"), re.MULTILINE)
 
 
 @pytest.mark.parametrize(

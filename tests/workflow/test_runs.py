@@ -17,7 +17,7 @@ def jobs(output):
     return {rule: int(count) for rule, count in (line.split() for line in table[1].splitlines())} if table else {}
 
 
-@pytest.mark.parametrize("other", ["Snakefile", "workflow/Snakefile"])
+@pytest.mark.parametrize("other", ["Snakefile", pytest.param("workflow/Snakefile", marks=pytest.mark.slow)])
 def test_nothing_to_do_with_the_snakefile_by_another_path(finished, other):
     """As the commands of messages name it, relative to the current folder; and with that of the catalog."""
     snakefile = str(finished.repository / "Snakefile")
@@ -27,6 +27,7 @@ def test_nothing_to_do_with_the_snakefile_by_another_path(finished, other):
     assert "Nothing to be done" in run.stdout + run.stderr
 
 
+@pytest.mark.slow
 def test_the_same_bytes_on_one_core_and_in_a_second_checkout(limited, tmp_path, repository, monkeypatch):
     """Points, summaries, and figures of both kinds; the kernel is copied (benchmarks/faults.py compiles it)."""
     # Sets are walked in another order.
@@ -153,6 +154,7 @@ def test_a_wider_grid_keeps_the_points_that_are_there(copy):
     assert jobs(copy.ok("-n"))["simulate"] == 4
 
 
+@pytest.mark.slow
 def test_a_wider_grid_is_searched_where_it_is_new(copy):
     """What the first run has kept is taken again, and what no value needs any more goes."""
     law, values = "linearized", 4

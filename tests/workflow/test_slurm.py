@@ -20,7 +20,7 @@ import pytest
 from tests.optional import needs, setting
 from tests.workflow.conftest import REPOSITORY, TINY, Study
 
-pytestmark = needs("BK_SLURM")
+pytestmark = [pytest.mark.slow, needs("BK_SLURM")]
 
 SCRIPT = REPOSITORY / "tests" / "slurm" / "cluster.sh"
 PROFILE = REPOSITORY / "workflow" / "profiles" / "slurm"

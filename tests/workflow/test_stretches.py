@@ -78,7 +78,10 @@ def test_nothing_is_made_twice(copy):
     assert times(copy) == before
 
 
-@pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_bytes(path.read_bytes()[:-5])])
+@pytest.mark.parametrize(
+    "damage",
+    [Path.unlink, pytest.param(lambda path: path.write_bytes(path.read_bytes()[:-5]), marks=pytest.mark.slow)],
+)
 def test_a_point_that_is_gone_or_damaged_is_made_again_alone(copy, damage):
     before, content = times(copy), (copy.folder / POINT).read_bytes()
     damage(copy.folder / POINT)
@@ -109,6 +112,7 @@ def test_another_value_makes_its_points_only(copy):
     assert all(name in listed for name in added)
 
 
+@pytest.mark.slow
 def test_a_killed_stretch_goes_on_where_it_stopped(tmp_path):
     study = Study(tmp_path / "killed", PLANE.replace("window: 200", "window: 60000"))
     command = study.command(MARK)
