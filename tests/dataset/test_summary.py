@@ -1,5 +1,8 @@
 """Summaries: what is described is what is written, read back and refused."""
 
+import subprocess
+import sys
+
 import netCDF4
 import numpy as np
 import pytest
@@ -62,6 +65,25 @@ def test_what_is_written_is_read_back(tmp_path):
             assert file["verdict"].filters()["zlib"] == (count >= 64)
             assert "_FillValue" not in file["value"].ncattrs()
     assert (tmp_path / "one.nc").read_bytes() == (tmp_path / "two.nc").read_bytes()
+
+
+OPEN_AGAIN = """
+import sys
+import netCDF4, xarray
+for opened in (netCDF4.Dataset, xarray.open_dataset):
+    for _ in range(50):
+        file = opened(sys.argv[1])
+print(*file["law"].values)
+"""
+
+
+def test_a_file_is_opened_again_while_it_is_open(tmp_path):
+    """As by a cell of a notebook that runs once more: HDF5 crashes where texts may have any length."""
+    write_summary(made(), tmp_path / "one.nc")
+    run = subprocess.run(
+        [sys.executable, "-c", OPEN_AGAIN, tmp_path / "one.nc"], capture_output=True, text=True, check=False
+    )
+    assert (run.returncode, run.stdout) == (0, "linearized nonlinear\n"), run.stderr
 
 
 def test_what_is_no_summary_of_now_is_refused(tmp_path):

@@ -12,6 +12,7 @@ import xarray
 from burridge_knopoff.dataset.variables import (
     COMPRESSED_FROM,
     COMPRESSION_LEVEL,
+    TEXT,
     Variable,
     described,
     global_attributes,
@@ -61,7 +62,10 @@ def write_summary(dataset: xarray.Dataset, path: str | Path, about: Mapping[str,
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in dataset.variables.items():
         encoding[str(name)] = {"_FillValue": None}
-        if variable.dtype != object and variable.size >= COMPRESSED_FROM:
+        if variable.dtype.kind in TEXT:
+            # Letters, since HDF5 crashes where a file with texts of any length is opened again and again.
+            encoding[str(name)]["dtype"] = "S1"
+        elif variable.size >= COMPRESSED_FROM:
             encoding[str(name)].update(zlib=True, complevel=COMPRESSION_LEVEL, shuffle=True)
     about = {"sources": dataset.attrs["source_fingerprint"]} if about is None else about
     write_sealed(path, lambda name: dataset.to_netcdf(name, engine="netcdf4", encoding=encoding), about)
