@@ -4,6 +4,7 @@ import inspect
 
 import numpy as np
 import pytest
+import xarray
 
 import burridge_knopoff
 from burridge_knopoff import (
@@ -91,6 +92,7 @@ def correct_calls():
             "v": 0.1,
             **QUICK,
         },
+        "in_words": {"flags": xarray.DataArray([0], attrs={"flag_values": [0], "flag_meanings": "stop"})},
         "sweep": {
             "law": "linearized",
             "a": [0.08],

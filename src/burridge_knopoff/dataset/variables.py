@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from burridge_knopoff.provenance.sources import provenance
+from burridge_knopoff.values import refusal
 
 if TYPE_CHECKING:
     import netCDF4
@@ -93,8 +94,8 @@ def in_words(flags: xarray.DataArray) -> xarray.DataArray:
     >>> in_words(kind).values.tolist()
     ['stop', 'start']
     """
-    if "flag_meanings" not in flags.attrs:
-        raise ValueError(f"{flags.name}: got no flag_meanings, expected a flag variable")
+    if "flag_meanings" not in getattr(flags, "attrs", ()):
+        raise refusal("flags", flags, "a flag variable: an xarray.DataArray with flag_values and flag_meanings")
     words = np.full(flags.shape, "", dtype=object)
     values, meanings = np.atleast_1d(flags.attrs["flag_values"]), flags.attrs["flag_meanings"].split()
     for value, meaning in zip(values, meanings, strict=True):

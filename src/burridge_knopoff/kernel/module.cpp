@@ -270,11 +270,13 @@ NB_MODULE(_core, m) {
                 made["velocity"] = numbers(o.trajectory_velocity, {count, blocks});
                 made["crossing_time"] = numbers(o.crossings.time);
                 made["crossing"] = numbers(o.crossings.value, {o.crossings.time.size(), 2});
-                auto known = [](const double (&of)[2]) {
-                    return numbers({std::fabs(of[0]) < NEVER ? of[0] : NAN, std::fabs(of[1]) < NEVER ? of[1] : NAN});
+                auto seen = [](std::vector<double> extremes) {
+                    for (double &one : extremes)
+                        if (std::fabs(one) >= NEVER) one = NAN;
+                    return extremes;
                 };
-                made["highest_speed"] = known(o.highest_speed);
-                made["lowest_force"] = known(o.lowest_force);
+                made["highest_speed"] = numbers(seen({o.highest_speed[0], o.highest_speed[1]}));
+                made["lowest_force"] = numbers(seen({o.lowest_force[0], o.lowest_force[1]}));
                 return made;
             },
             "All that was measured, as NumPy arrays.");
