@@ -146,6 +146,8 @@ def click_run(page, law, initial, a):
     )
     page.mouse.move(x - 1, y)
     page.mouse.move(x, y)
+    # A click is on what is under the pointer, which Plotly looks up a little later.
+    page.wait_for_function("box => box._hoverdata?.length", arg=chart.element_handle())
     page.mouse.down()
     page.mouse.up()
 
