@@ -11,15 +11,13 @@ import json
 import os
 import subprocess
 import sys
-import time
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
-from measure import print_table
+from measure import least, print_table
 
 SOURCE = Path(__file__).resolve().parent.parent / "src"
 RUNS = (("minus", 0.08), ("plus", 0.08), ("plus", 0.25))
@@ -28,16 +26,6 @@ LABELS = tuple((law, blocks, a) for law in LAWS for blocks in (3, 8) for a in (0
 STATES, END, RADIUS, RETURNS = 400, 150.0, 0.01, 8
 # A long stiff chain, as of Carlson and Langer.
 BLOCKS, SLOW, LONG = 100, 0.01, 2000.0
-
-
-def least(call: Callable[[], object], repeats: int = 3) -> float:
-    """Return the least CPU time of a call, in ms."""
-    times = []
-    for _ in range(repeats):
-        begin = time.process_time()
-        call()
-        times.append(time.process_time() - begin)
-    return 1e3 * min(times)
 
 
 def starts(blocks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -26,8 +26,7 @@ os.environ["OPENBLAS_NUM_THREADS"] = "1"
 sys.path.insert(0, str(Path(__file__).resolve().parent))
 
 import numpy as np
-from before import least
-from measure import print_table
+from measure import least, print_table
 
 from burridge_knopoff import Chain, Model, Settings, Trajectory, law_of, simulate
 from burridge_knopoff.model.initial import PAPER_STATES

@@ -1,4 +1,4 @@
-"""What the benchmarks share: CPU times of contestants in alternation, and tables in Markdown."""
+"""What the benchmarks share: CPU times of a call and of contestants in alternation, and tables in Markdown."""
 
 from __future__ import annotations
 
@@ -22,6 +22,16 @@ def cpu_times(contestants: Mapping[str, Callable[[], object]], rounds: int) -> d
             contestant()
             times[name].append(time.process_time() - begin)
     return {name: statistics.median(values) for name, values in times.items()}
+
+
+def least(call: Callable[[], object], repeats: int = 3) -> float:
+    """Return the least CPU time of a call, in ms."""
+    times = []
+    for _ in range(repeats):
+        begin = time.process_time()
+        call()
+        times.append(time.process_time() - begin)
+    return 1e3 * min(times)
 
 
 def print_table(header: Sequence[str], rows: Sequence[Sequence[object]]) -> None:
