@@ -103,13 +103,14 @@ class EventSearch {
 
     // Take g of the block that was found in each clock, for `due`.
     void aim(const Series<L> &series) {
-        int first[LANES];
-        for (int lane = 0; lane < LANES; lane++) first[lane] = block[lane] < 0 ? 0 : block[lane];
         for (int k = 0; k <= ORDER; k++) {
             const size_t row = size_t(k) * width * LANES;
-            for (int lane = 0; lane < LANES; lane++)
-                candidate[k][lane] =
-                    series.gap.lane(L::ONE_CLOCK ? row + first[0] : row + size_t(first[lane]) * LANES + lane);
+            if (L::ONE_CLOCK) {
+                candidate[k] = splat(series.gap.lane(row + std::max(block[0], 0)));
+            } else {
+                for (int lane = 0; lane < LANES; lane++)
+                    candidate[k][lane] = series.gap.lane(row + size_t(std::max(block[lane], 0)) * LANES + lane);
+            }
         }
     }
 
@@ -117,7 +118,9 @@ class EventSearch {
     // Then their events are one, whatever rounding leaves of them at its time.
     mask due(const Series<L> &series, int c) const {
         mask same = found & series.layout.present[c];
-        for (int k = 0; k <= ORDER && any(same); k++) same &= series.gap[size_t(k) * width + c] == candidate[k];
+        // The block itself is the same for certain.
+        const int own = L::ONE_CLOCK && block[0] / LANES == c ? 1 << block[0] % LANES : 0;
+        for (int k = 0; k <= ORDER && bits(same) != own; k++) same &= series.gap[size_t(k) * width + c] == candidate[k];
         return same;
     }
 

@@ -23,6 +23,18 @@ namespace bk {
 // The largest order of a series.
 constexpr int MOST_TERMS = 24;
 
+inline constexpr auto BINOMIAL = [] {
+    struct {
+        double row[MOST_TERMS + 1][MOST_TERMS + 1];
+        constexpr const double *operator[](int n) const { return row[n]; }
+    } table{};
+    for (int n = 0; n <= MOST_TERMS; n++) {
+        table.row[n][0] = 1.0;
+        for (int k = 1; k <= n; k++) table.row[n][k] = table.row[n][k - 1] * (n - k + 1) / k;
+    }
+    return table;
+}();
+
 class Polynomial {
   public:
     double coefficient[MOST_TERMS + 1] = {};
@@ -34,7 +46,7 @@ class Polynomial {
         for (int k = 0; k <= order; k++) coefficient[k] = factor * terms[k * stride];
     }
 
-    double value(double t) const { return evaluate(0, t); }
+    double value(double t) const { return evaluate<0>(t); }
 
     // Divide out the roots at t = 0 (leading coefficients that are exactly 0) and return how many there were. A
     // polynomial that is identically zero keeps one coefficient.
@@ -140,16 +152,22 @@ class Polynomial {
     double lowest, highest;
 
     // The value, or a derivative, at t: even and odd powers apart, as each sum waits for the last.
-    double evaluate(int derivative, double t) const {
+    template <int DERIVATIVE>
+    double evaluate(double t) const {
         const double square = t * t;
-        double sum[2] = {0.0, 0.0};
-        for (int k = degree; k >= derivative; k--) {
-            double term = coefficient[k];
-            for (int d = 0; d < derivative; d++) term *= k - d;
-            double &own = sum[(k - derivative) & 1];
-            own = own * square + term;
+        double even = 0.0, odd = 0.0;
+        auto term = [this](int k) {
+            double made = coefficient[k];
+            for (int d = 0; d < DERIVATIVE; d++) made *= k - d;
+            return made;
+        };
+        int k = degree;
+        if (k >= DERIVATIVE && (k - DERIVATIVE) % 2 == 0) even = even * square + term(k--);
+        for (; k > DERIVATIVE; k -= 2) {
+            odd = odd * square + term(k);
+            even = even * square + term(k - 1);
         }
-        return sum[0] + t * sum[1];
+        return even + t * odd;
     }
 
     // Put the terms at t = length into the first row and return the degree that matters there. `lowest` and `highest`
@@ -180,11 +198,8 @@ class Polynomial {
 
     // Turn the scaled terms in the first row into Bernstein coefficients.
     void convert(int n) {
-        double *b = bernstein[0], binomial = 1.0;
-        for (int k = 1; k <= n; k++) {
-            binomial = binomial * (n - k + 1) / k;
-            b[k] /= binomial;
-        }
+        double *b = bernstein[0];
+        for (int k = 1; k <= n; k++) b[k] /= BINOMIAL[n][k];
         for (int j = 1; j <= n; j++)
             for (int k = n; k >= j; k--) b[k] += b[k - 1];
     }
@@ -208,13 +223,13 @@ class Polynomial {
         const double at_low = bernstein[top][0], at_high = bernstein[top][n];
         double t = low + (high - low) * at_low / (at_low - at_high);
         for (int i = 0; i < ITERATIONS; i++) {
-            const double value = evaluate(0, t), slope = evaluate(1, t);
+            const double value = evaluate<0>(t), slope = evaluate<1>(t);
             if (value == 0.0) return t;
             (value > 0.0 ? low : high) = t;
             double change = 0.5 * (low + high) - t;
             if (slope < 0.0) {
                 if (std::fabs(value) <= -RESOLUTION * slope * t) return t;
-                const double step = -(value * slope) / (slope * slope - 0.5 * value * evaluate(2, t));
+                const double step = -(value * slope) / (slope * slope - 0.5 * value * evaluate<2>(t));
                 if (low < t + step && t + step < high) change = step;
             }
             t += change;
@@ -225,11 +240,11 @@ class Polynomial {
 
     // The maximum in [low, high], where the derivative changes its sign from + to − at most once.
     double peak_between(double low, double high) const {
-        if (evaluate(1, low) <= 0.0) return value(low);
-        if (evaluate(1, high) >= 0.0) return value(high);
+        if (evaluate<1>(low) <= 0.0) return value(low);
+        if (evaluate<1>(high) >= 0.0) return value(high);
         double t = 0.5 * (low + high);
         for (int i = 0; i < ITERATIONS; i++) {
-            const double slope = evaluate(1, t), curvature = evaluate(2, t);
+            const double slope = evaluate<1>(t), curvature = evaluate<2>(t);
             (slope > 0.0 ? low : high) = t;
             double change = 0.5 * (low + high) - t;
             if (curvature < 0.0) {

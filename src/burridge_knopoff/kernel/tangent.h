@@ -124,14 +124,14 @@ class Tangent {
         int v = 0;
         // Several side by side, as each waits for itself.
         for (; v + 3 <= vectors; v += 3) {
-            columns == 1 ? propagate<3, 1>(layout, v) : propagate<3, 0>(layout, v);
+            propagate<3>(layout, v);
             watch.worked(3 * blocks);
         }
         if (v + 2 <= vectors) {
-            columns == 1 ? propagate<2, 1>(layout, v) : propagate<2, 0>(layout, v);
+            propagate<2>(layout, v);
             v += 2;
         }
-        if (v < vectors) columns == 1 ? propagate<1, 1>(layout, v) : propagate<1, 0>(layout, v);
+        if (v < vectors) propagate<1>(layout, v);
     }
 
   private:
@@ -194,20 +194,66 @@ class Tangent {
     // With all coefficients multiplied by the power of t that they belong to,
     //
     //     u_(n+1) = (t (pulls of x_n)/m + sum of rate_k u_(n−k))/(n + 1),      x_(n+1) = t u_n/(n + 1).
-    template <int COUNT, int COLUMNS>
+    template <int COUNT>
     void propagate(const Blocks &layout, int v) {
-        const int count = COLUMNS ? COLUMNS : columns;
-        // x_n of vector i is row[i · count + c], u_n is speed[(n · count + c) · COUNT + i].
+        if (columns > 1)
+            propagate_columns<COUNT>(layout, v);
+        else if (layout.row && !layout.closed)
+            propagate_column<COUNT, true>(layout, v);
+        else
+            propagate_column<COUNT, false>(layout, v);
+    }
+
+    // In one column all that a row needs, but for the speeds before, stays in registers.
+    template <int COUNT, bool OPEN>
+    void propagate_column(const Blocks &layout, int v) {
+        const vec *rate = rates.at(), first_rate = rate[0], scale = pull_scale[0], diagonal = layout.diagonal[0];
+        const vec left = OPEN ? layout.left[0] : vec{}, right = OPEN ? layout.right[0] : vec{};
+        vec *speed = speeds.at(), x[COUNT], u[COUNT], position[COUNT], velocity[COUNT];
+        for (int i = 0; i < COUNT; i++) {
+            x[i] = position[i] = this->position[v + i];
+            velocity[i] = this->velocity[v + i];
+            u[i] = speed[i] = velocity[i] * moving[0];
+        }
+        const int before_rates = rate_terms > 1 ? 0 : degree;
+        for (int n = 0; n < degree; n++) {
+            const double factor = INVERSE[n + 1];
+            vec change[COUNT]{};
+            for (int j = before_rates; j < n; j++)
+                for (int i = 0; i < COUNT; i++) change[i] += rate[n - j] * speed[j * COUNT + i];
+            for (int i = 0; i < COUNT; i++) {
+                vec pull;
+                if constexpr (OPEN)
+                    pull = left * before(x[i], x[i]) + right * after(x[i], x[i]);
+                else
+                    pull = layout.pull(x + i, 0);
+                change[i] += scale * (pull - diagonal * x[i]);
+                const vec next = (change[i] + first_rate * u[i]) * factor;
+                x[i] = u[i] * (part * factor);
+                position[i] += x[i];
+                velocity[i] += next;
+                u[i] = speed[(n + 1) * COUNT + i] = next;
+            }
+        }
+        for (int i = 0; i < COUNT; i++) {
+            this->position[v + i] = position[i];
+            this->velocity[v + i] = velocity[i];
+        }
+    }
+
+    template <int COUNT>
+    void propagate_columns(const Blocks &layout, int v) {
+        // x_n of vector i is row[i · columns + c], u_n is speed[(n · columns + c) · COUNT + i].
+        const int count = columns;
         vec *row = rows.at(), *speed = speeds.at();
-        vec *position = this->position.at(size_t(v) * columns), *velocity = this->velocity.at(size_t(v) * columns);
+        vec *position = this->position.at(size_t(v) * count), *velocity = this->velocity.at(size_t(v) * count);
         for (int i = 0; i < COUNT; i++)
             for (int c = 0; c < count; c++) {
                 speed[c * COUNT + i] = velocity[i * count + c] * moving[c];
                 row[i * count + c] = position[i * count + c];
             }
         const bool vary = rate_terms > 1;
-        auto extend = [&](auto n) __attribute__((always_inline)) {
-            if (n >= degree) return false;
+        for (int n = 0; n < degree; n++) {
             const double factor = INVERSE[n + 1];
             const vec *now = speed + size_t(n) * count * COUNT;
             vec *next = speed + size_t(n + 1) * count * COUNT;
@@ -230,15 +276,6 @@ class Tangent {
                     row[i * count + c] = now[c * COUNT + i] * (part * factor);
                     position[i * count + c] += row[i * count + c];
                 }
-            return true;
-        };
-        if constexpr (COLUMNS == 1 && COUNT > 1) {
-            // Every row for itself: a processor need not guess where its sums end.
-            [&]<int... N>(std::integer_sequence<int, N...>) {
-                (void)(extend(std::integral_constant<int, N>{}) && ...);
-            }(std::make_integer_sequence<int, LENGTH - 1>{});
-        } else {
-            for (int n = 0; extend(n); n++) {}
         }
     }
 };
