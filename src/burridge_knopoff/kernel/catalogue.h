@@ -15,7 +15,7 @@
 
 #include "polynomial.h"
 #include "record.h"
-#include "springs.h"
+#include "layout.h"
 
 namespace bk {
 

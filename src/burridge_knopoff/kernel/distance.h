@@ -85,6 +85,7 @@ class Distance {
     }
 
   private:
+    using vec = Lanes<WIDEST>::vec;
     static constexpr double RELATIVE_ERROR = 1e-15, ABSOLUTE_ERROR = 1e-17;
     static constexpr int DEEPEST = 40;
     bool resting = false;
@@ -115,7 +116,7 @@ class Distance {
     double panel(double start, double stop, int depth) const {
         const double middle = 0.5 * (start + stop), half = 0.5 * (stop - start);
         alignas(64) double value[NODES];
-        for (int j = 0; j < NODES; j += LANES) {
+        for (int j = 0; j < NODES; j += WIDEST) {
             vec node, d, rate;
             std::memcpy(&node, GAUSS.node + j, sizeof node);
             at<vec>(middle + half * node, d, rate);

@@ -28,12 +28,16 @@ struct Outcome {
 
 class Ensemble {
   public:
+    static constexpr int LANES = Trajectories::LANES;
+    using vec = Trajectories::vec;
+    using mask = Trajectories::mask;
+
     const Model &model;
     long long rounds = 0;
 
     Ensemble(const Model &model, long long rate_limit)
-        : model(model), blocks(model.springs.blocks), rate_limit(double(rate_limit)), layout(model.springs),
-          state(model, layout), series(model, layout), search(polynomial), relative(blocks), slipped(blocks) {}
+        : model(model), blocks(model.springs.blocks), rate_limit(double(rate_limit)), layout(model),
+          law(model.law, blocks), state(layout), series(layout, law), search(polynomial), relative(blocks), slipped(blocks) {}
 
     long long searches() const { return search.searches; }
 
@@ -50,11 +54,12 @@ class Ensemble {
     const int blocks;
     const double rate_limit;
     Trajectories layout;
+    FrictionSeries<Trajectories> law;
     State<Trajectories> state;
     Series<Trajectories> series;
     Polynomial polynomial;
     EventSearch<Trajectories> search;
-    Vectors relative, slipped;
+    Trajectories::Rows relative, slipped;
     vec clock{}, clock_rest{}, target{}, count{}, unit_start{}, unit_count{};
     mask active{}, accumulating{};
     int member[LANES] = {}, next_time[LANES] = {};
@@ -85,7 +90,7 @@ class Ensemble {
         const vec left = (times->back() - clock) - clock_rest;
         const mask ended = active & (left <= length);
         if (any(ended)) {
-            clock = select(ended, splat(times->back()), clock);
+            clock = select(ended, Trajectories::splat(times->back()), clock);
             finish(ended, COMPLETED);
         }
         series.move(state, length, active);
@@ -159,7 +164,7 @@ class Ensemble {
                 changing |= own;
             }
             for (int i = 0; i < blocks; i++)
-                if (due[i]) change(i, from_bits(due[i]));
+                if (due[i]) change(i, Trajectories::from_bits(due[i]));
             where = changing;
         }
     }

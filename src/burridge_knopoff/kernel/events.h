@@ -23,11 +23,14 @@ constexpr int LOW = 8;
 constexpr double SEAM = 1e-14;
 
 // Bounds of polynomials over [0, 1] from their scaled terms.
+template <class L>
 struct Bounds {
+    using vec = typename L::vec;
+    using mask = typename L::mask;
     vec low, high, corner[LOW + 1];
 
-    template <int ORDER>
     BK_INLINE void take(const vec *term) {
+        constexpr int ORDER = L::ORDER;
         static constexpr double inverse[LOW + 1] = {1.0,        1.0 / 8.0,  1.0 / 28.0, 1.0 / 56.0, 1.0 / 70.0,
                                                     1.0 / 56.0, 1.0 / 28.0, 1.0 / 8.0,  1.0};
         vec rest{}, other{}, b[LOW + 1];
@@ -50,7 +53,7 @@ struct Bounds {
 
     // Where the control polygon first falls through 0, as a share of the interval; UNKNOWN where it does not.
     BK_INLINE vec fall() const {
-        vec share = splat(UNKNOWN);
+        vec share = L::splat(UNKNOWN);
         for (int k = LOW - 1; k >= 0; k--) {
             const mask falls = (corner[k] > 0.0) & (corner[k + 1] <= 0.0);
             share = select(falls, (1.0 / LOW) * (double(k) + corner[k] / (corner[k] - corner[k + 1])), share);
@@ -62,7 +65,9 @@ struct Bounds {
 template <class L>
 class EventSearch {
   public:
-    static constexpr int ORDER = L::ORDER;
+    static constexpr int ORDER = L::ORDER, LANES = L::LANES;
+    using vec = typename L::vec;
+    using mask = typename L::mask;
     // How often a trajectory had to be searched block by block.
     long long searches = 0;
     vec time;    // of the event, or the reach where there is none
@@ -70,31 +75,41 @@ class EventSearch {
 
     explicit EventSearch(Polynomial &polynomial) : polynomial(polynomial) {}
 
-    // Find the first events within the reach. section : the lane of W in g, −1 if it is not looked for
+    // Find the first events within the reach. section : the lane of W in g, or its column where each lane has a clock,
+    // −1 if it is not looked for
     void find(Series<L> &series, const State<L> &state, vec reach, mask where, int section = -1) {
         columns = series.columns;
         width = series.width;
-        for (Vectors *row : {&root_at, &lowest, &highest, &zeros}) row->reserve(width);
+        for (auto *row : {&root_at, &lowest, &highest, &zeros}) row->reserve(width);
         deflate(series, state);
         time = reach_of_bounds = reach;
         found = mask{};
-        crossing = UNCERTAIN;
+        for (double &one : crossing) one = UNCERTAIN;
         mask wanted = bound(series, reach, where, section), doubtful{};
-        const mask backward = state.model.symmetric ? turns_back(state, where) : mask{};
-        if (section >= 0 && lowest.lane(section) > SEAM) crossing = NONE;
-        if (L::ONE_CLOCK && (any(wanted) || (section >= 0 && root_at.lane(section) < UNKNOWN)))
+        const mask backward = state.layout.symmetric ? turns_back(state, where) : mask{};
+        bool crosses = false;
+        for (int clock = 0; section >= 0 && clock < CLOCKS; clock++) {
+            const size_t place = of_section(section, clock);
+            if (lowest.lane(place) > SEAM) crossing[clock] = NONE;
+            crosses |= root_at.lane(place) < UNKNOWN;
+        }
+        if (L::ONE_CLOCK && (any(wanted) || crosses))
             refine_columns(series, reach, where);
+        else if (crosses)
+            refine_column(series, section, reach, where);
         if (any(wanted)) {
             if (!L::ONE_CLOCK) refine_candidate(series, reach, where);
             doubtful = wanted & where & ~backward & ~proved(series, where & ~backward, section);
-            // Another block than the one that was guessed may be the first.
+            // Another block than the one that was guessed may be the first, by however little.
+            if (!L::ONE_CLOCK) doubtful |= wanted & where & ~backward & contested;
             if (!L::ONE_CLOCK && any(doubtful)) {
                 const vec before_time = time;
                 const mask before_found = found;
+                bound(series, reach, doubtful, -1);
                 refine_columns(series, reach, doubtful);
                 time = select(doubtful, time, before_time);
                 found = (doubtful & found) | (~doubtful & before_found);
-                doubtful &= ~proved(series, doubtful);
+                doubtful &= ~proved(series, doubtful, -1);
             }
         }
         doubtful |= backward;
@@ -106,7 +121,7 @@ class EventSearch {
         for (int k = 0; k <= ORDER; k++) {
             const size_t row = size_t(k) * width * LANES;
             if (L::ONE_CLOCK) {
-                candidate[k] = splat(series.gap.lane(row + std::max(block[0], 0)));
+                candidate[k] = L::splat(series.gap.lane(row + std::max(block[0], 0)));
             } else {
                 for (int lane = 0; lane < LANES; lane++)
                     candidate[k][lane] = series.gap.lane(row + size_t(std::max(block[lane], 0)) * LANES + lane);
@@ -127,10 +142,11 @@ class EventSearch {
     // When W changes its sign in the first `length` of the reach: NONE if it does not, UNCERTAIN if it has to be looked
     // for.
     static constexpr double NONE = -1.0, UNCERTAIN = -2.0;
-    double crossing_within(const Series<L> &series, double length, int section) const {
-        if (crossing == NONE) return NONE;
-        const double at = root_at.lane(section);
-        if (series.gap.lane(section) > 0.0 && at < UNKNOWN && fall * std::fabs(length - at) > SEAM)
+    double crossing_within(const Series<L> &series, double length, int section, int clock = 0) const {
+        if (crossing[clock] == NONE) return NONE;
+        const size_t place = of_section(section, clock);
+        const double at = root_at.lane(place);
+        if (series.gap.lane(place) > 0.0 && at < UNKNOWN && fall[clock] * std::fabs(length - at) > SEAM)
             return at < length ? at : NONE;
         return UNCERTAIN;
     }
@@ -138,8 +154,8 @@ class EventSearch {
     // Bounds on g in the piece, for the blocks of a column.
     vec bound_in_piece(int c) const {
         vec bound = largest(highest[c], vec{});
-        for (int lane = 0; lane < LANES; lane++)
-            for (int times = int(zeros[c][lane]); times > 0; times--) bound[lane] *= reach_of_bounds[lane];
+        for (vec left = zeros[c]; any(left > vec{}); left -= 1.0)
+            bound = select(left > vec{}, bound * reach_of_bounds, bound);
         return bound;
     }
 
@@ -154,12 +170,20 @@ class EventSearch {
     static constexpr double NEAR = 1e-3;
 
     int columns, width;
-    Vectors root_at, lowest, highest, zeros;
+    typename L::Rows root_at, lowest, highest, zeros;
     vec power[ORDER + 1], scaled[ORDER + 1], quotient[ORDER + 1], candidate[ORDER + 1];
     int block[LANES];
-    double crossing, fall;
+    static constexpr int CLOCKS = L::ONE_CLOCK ? 1 : LANES;
+    double crossing[CLOCKS], fall[CLOCKS];
     vec reach_of_bounds;
+    mask contested;
     Polynomial &polynomial;
+
+    // Where W is in g.
+    static size_t of_section(int section, int clock) {
+        return L::ONE_CLOCK ? size_t(section) : size_t(section) * LANES + clock;
+    }
+    static int column_of(int section) { return L::ONE_CLOCK ? section / LANES : section; }
 
     // Divide the known zeros at the start out of g: a block that has just started has U' = 0.
     void deflate(Series<L> &series, const State<L> &state) {
@@ -177,7 +201,7 @@ class EventSearch {
                 for (int k = 0; k < ORDER; k++)
                     g[size_t(k) * width] = select(where, g[size_t(k + 1) * width], g[size_t(k) * width]);
                 g[size_t(ORDER) * width] = select(where, zero, g[size_t(ORDER) * width]);
-                zeros[c] += select(where, splat(1.0), zero);
+                zeros[c] += select(where, L::splat(1.0), zero);
             }
         }
     }
@@ -185,7 +209,7 @@ class EventSearch {
     // Four chains of products, as each waits for the last.
     BK_INLINE void raise(vec t) {
         const vec square = t * t, fourth = square * square;
-        vec now[4] = {splat(1.0), t, square, square * t};
+        vec now[4] = {L::splat(1.0), t, square, square * t};
         for (int k = 0; k <= ORDER; k += 4)
             for (int j = 0; j < 4 && k + j <= ORDER; j++) {
                 power[k + j] = now[j];
@@ -197,19 +221,20 @@ class EventSearch {
     mask bound(Series<L> &series, vec reach, mask where, int section) {
         mask wanted{};
         raise(reach);
-        for (int c = 0; c < width; c++) {
+        for (int c = 0; c < (section >= 0 ? width : columns); c++) {
             const vec *g = series.gap.at(c);
             for (int k = 0; k <= ORDER; k++) scaled[k] = g[size_t(k) * width] * power[k];
-            Bounds bounds;
-            bounds.take<ORDER>(scaled);
-            lowest[c] = bounds.low;
-            highest[c] = bounds.high;
+            Bounds<L> bounds;
+            bounds.take(scaled);
+            lowest[c] = select(where, bounds.low, lowest[c]);
+            highest[c] = select(where, bounds.high, highest[c]);
             const mask own = where & (bounds.low <= 0.0);
-            root_at[c] = splat(UNKNOWN);
+            root_at[c] = select(where, L::splat(UNKNOWN), root_at[c]);
             if (any(own)) {
                 const vec share = bounds.fall();
                 root_at[c] = select(own & (share < UNKNOWN), share * reach, root_at[c]);
-                if (section >= 0 && c == section / LANES) steepness(bounds, reach, section % LANES);
+                for (int clock = 0; section >= 0 && c == column_of(section) && clock < CLOCKS; clock++)
+                    steepness(bounds, reach, of_section(section, clock) % LANES, clock);
             }
             // Lanes without a block have g = 0 or W.
             if (c < columns) wanted |= own & series.layout.present[c];
@@ -218,12 +243,12 @@ class EventSearch {
     }
 
     // Set `fall`: how fast W falls everywhere in the reach, at least, if that is positive.
-    void steepness(const Bounds &bounds, vec reach, int lane) {
+    void steepness(const Bounds<L> &bounds, vec reach, int lane, int clock) {
         double steepest = bounds.corner[1][lane] - bounds.corner[0][lane], rest = 0.0;
         for (int k = 1; k < LOW; k++)
             steepest = std::max(steepest, bounds.corner[k + 1][lane] - bounds.corner[k][lane]);
         for (int k = LOW + 1; k <= ORDER; k++) rest += k * std::fabs(scaled[k][lane]);
-        fall = -(LOW * steepest + rest) / reach[lane];
+        fall[clock] = -(LOW * steepest + rest) / reach[lane];
     }
 
     // Where a stuck block may start backward, which g does not tell.
@@ -237,12 +262,10 @@ class EventSearch {
 
     // Refine the guesses of all columns, and take the earliest.
     void refine_columns(Series<L> &series, vec reach, mask where) {
-        vec first = splat(UNKNOWN);
-        if (!L::ONE_CLOCK) bound(series, reach, where, -1);
-        for (int c = 0; c < width; c++) {
-            const mask wanted = where & (root_at[c] < UNKNOWN);
-            if (any(wanted)) root_at[c] = refine(series.gap.at(c), width, root_at[c], reach, wanted);
-            if (c < columns) first = least(first, select(series.layout.present[c], root_at[c], splat(UNKNOWN)));
+        vec first = L::splat(UNKNOWN);
+        for (int c = 0; c < (L::ONE_CLOCK ? width : columns); c++) {
+            refine_column(series, c, reach, where);
+            if (c < columns) first = least(first, select(series.layout.present[c], root_at[c], L::splat(UNKNOWN)));
         }
         first = L::least_of_clock(first);
         found = (first <= reach) & where;
@@ -257,13 +280,18 @@ class EventSearch {
         }
     }
 
+    void refine_column(Series<L> &series, int c, vec reach, mask where) {
+        const mask wanted = where & (root_at[c] < UNKNOWN);
+        if (any(wanted)) root_at[c] = refine(series.gap.at(c), width, root_at[c], reach, wanted);
+    }
+
     // Refine the earliest guess of each lane.
     void refine_candidate(Series<L> &series, vec reach, mask where) {
-        vec first = splat(UNKNOWN), number = splat(-1.0);
+        vec first = L::splat(UNKNOWN), number = L::splat(-1.0);
         for (int c = 0; c < columns; c++) {
             const mask earlier = root_at[c] < first;
             first = select(earlier, root_at[c], first);
-            number = select(earlier, splat(double(c)), number);
+            number = select(earlier, L::splat(double(c)), number);
         }
         for (int lane = 0; lane < LANES; lane++) block[lane] = int(number[lane]);
         aim(series);
@@ -312,14 +340,15 @@ class EventSearch {
             done |= now;
             open = good & ~now;
         }
-        return select(done, t, splat(UNKNOWN));
+        return select(done, t, L::splat(UNKNOWN));
     }
 
     // Where no block has an event before `time`, by bounds over [0, time].
     // section : the lane of W, −1 if it is not looked for
-    mask proved(Series<L> &series, mask where, int section = -1) {
+    mask proved(Series<L> &series, mask where, int section) {
         const vec zero{};
         mask failed = where & ~found;
+        contested = mask{};
         raise(time);
         for (int c = 0; c < columns; c++) {
             const mask own = where & series.layout.present[c];
@@ -335,16 +364,28 @@ class EventSearch {
             // A block that has come near to its own event is proved by q, the others as they are.
             const mask near = (total <= NEAR) & (total < scaled[0]);
             failed |= own & near & (total < -COMMON * highest[c]);
+            if (!L::ONE_CLOCK) contest(g, c, own & near);
             if (any(near & own))
                 for (int k = 0; k <= ORDER; k++) scaled[k] = select(near, quotient[k], scaled[k]);
-            Bounds bounds;
-            bounds.take<ORDER>(scaled);
+            Bounds<L> bounds;
+            bounds.take(scaled);
             failed |= own & ~(bounds.low > zero);
-            if (section >= 0 && c == section / LANES && !near[section % LANES] && bounds.low[section % LANES] > SEAM)
-                crossing = NONE;
+            for (int clock = 0; section >= 0 && c == column_of(section) && clock < CLOCKS; clock++) {
+                const int lane = of_section(section, clock) % LANES;
+                if (!near[lane] && bounds.low[lane] > SEAM) crossing[clock] = NONE;
+            }
             highest[c] = select(near | ~own, highest[c], least(highest[c], bounds.high));
         }
         return ~L::any_of_clock(failed);
+    }
+
+    // Note where a block that is near its own event too, and no image of the one that was found, may be first.
+    void contest(const vec *g, int c, mask near) {
+        for (int lane = 0; lane < LANES; lane++) near[lane] &= -int64_t(block[lane] != c);
+        near &= root_at[c] < UNKNOWN;
+        mask same = near;
+        for (int k = 0; k <= ORDER && any(same); k++) same &= g[size_t(k) * width] == candidate[k];
+        contested |= near & ~same;
     }
 
     // Search all blocks of some clocks, by halving.
@@ -360,7 +401,7 @@ class EventSearch {
                 const size_t place = L::ONE_CLOCK ? i : size_t(i) * LANES + lane;
                 if (L::ONE_CLOCK && !series.layout.present[i / LANES][i % LANES]) break;
                 const bool slips = state.slip.lane(place) != 0.0;
-                for (int side = 1; side >= (state.model.symmetric && !slips ? -1 : 1); side -= 2) {
+                for (int side = 1; side >= (state.layout.symmetric && !slips ? -1 : 1); side -= 2) {
                     load(series, state, place, side);
                     // In the whole reach: what one block does must not move the event of another by a bit.
                     const double t = polynomial.first_root(reach[lane]);
@@ -372,8 +413,8 @@ class EventSearch {
             }
             block[lane] = own;
             if (L::ONE_CLOCK) {
-                time = splat(first);
-                found = all_lanes(own >= 0);
+                time = L::splat(first);
+                found = L::all_lanes(own >= 0);
             } else {
                 time[lane] = first;
                 found[lane] = -int64_t(own >= 0);

@@ -14,6 +14,11 @@ enum Status { HALTED = -2, FULL = -1, COMPLETED = 0, STEP_LIMIT = 1, ACCUMULATIN
 constexpr double ABSURD_SPEED = 1e9;
 
 struct Group {
+    static constexpr int LANES = Blocks::LANES;
+    using vec = Blocks::vec;
+    using mask = Blocks::mask;
+    using Rows = Blocks::Rows;
+
     Blocks layout;
     State<Blocks> state;
     Series<Blocks> series;
@@ -28,8 +33,8 @@ struct Group {
     int number = 0, first = 0;  // its own number, and that of its first block
     bool alive = false;         // whether it has blocks
 
-    explicit Group(const Model &model, Polynomial &polynomial)
-        : state(model, layout), series(model, layout), search(polynomial) {}
+    Group(const Model &model, FrictionSeries<Blocks> &law, Polynomial &polynomial)
+        : layout(model), state(layout), series(layout, law), search(polynomial) {}
 
     int size() const { return int(layout.member.size()); }
     // For how many blocks there is memory.
@@ -53,7 +58,7 @@ struct Group {
         if (!(start.time + reach[0] > start.time) || !(largest_lane(fastest) < ABSURD_SPEED)) return false;
         section = wanted_side ? n : -1;
         if (wanted_side) load_section(begin, end, extra);
-        search.find(series, state, reach, all_lanes(true), section);
+        search.find(series, state, reach, Blocks::all_lanes(true), section);
         length = search.time[0];
         event = search.found[0];
         if (event) search.aim(series);
@@ -64,7 +69,7 @@ struct Group {
 
     // Move the state on by t along the piece.
     void advance(double t) {
-        series.move(state, splat(t), all_lanes(true));
+        series.move(state, Blocks::splat(t), Blocks::all_lanes(true));
         for (int c = 0; c < layout.columns; c++) layout.sliding_force[c] += layout.drift[c] * t;
         start = start.after(t);
         planned = false;
@@ -73,7 +78,7 @@ struct Group {
     // Where blocks of a column change at this instant, once `measure` has been called.
     mask pending(int c) const { return state.pending(relative.at(), c); }
     void measure() {
-        for (int c = 0; c < layout.columns; c++) relative[c] = state.velocity[c] - state.model.v;
+        for (int c = 0; c < layout.columns; c++) relative[c] = state.velocity[c] - layout.v;
     }
 
     // The coefficients of W = Σ x_i over some lanes.
@@ -90,9 +95,9 @@ struct Group {
     double sum_rate(int begin, int end, double t) const {
         double total = 0.0;
         for (int c = begin / LANES; c * LANES < end; c++) {
-            const vec speed = series.value(series.velocity, c, splat(t));
+            const vec speed = series.value(series.velocity, c, Blocks::splat(t));
             for (int i = std::max(begin, c * LANES); i < std::min(end, (c + 1) * LANES); i++)
-                total += speed[i % LANES] - state.model.v;
+                total += speed[i % LANES] - layout.v;
         }
         return total;
     }
@@ -120,7 +125,7 @@ struct Group {
         for (int c = 0; c < layout.columns; c++) {
             const mask slips = state.slip[c] != vec{};
             const vec bound = search.bound_in_piece(c);
-            const vec speed = splat(std::min(observer.highest_speed[0], observer.highest_speed[1]));
+            const vec speed = Blocks::splat(std::min(observer.highest_speed[0], observer.highest_speed[1]));
             const vec gap = layout.threshold[c] - std::max(observer.lowest_force[0], observer.lowest_force[1]);
             const int which = bits(layout.present[c] & (bound > select(slips, speed, gap)));
             for (int lane = 0; which >> lane; lane++) {
@@ -135,13 +140,13 @@ struct Group {
     // Add to the slip events what the blocks of a piece do between two times of it.
     // advanced : whether the state is at the later time, else at the start of the piece
     void record(Catalogue &catalogue, Polynomial &polynomial, double from, double to, bool advanced) {
-        const double t = to - from, v = state.model.v;
+        const double t = to - from, v = layout.v;
         if (!(t > 0.0)) return;
         if (from > 0.0 || !advanced) {
-            for (Vectors *row : {&begun, &ended}) row->reserve(layout.columns);
+            for (Rows *row : {&begun, &ended}) row->reserve(layout.columns);
             for (int c = 0; c < layout.columns; c++) {
-                begun[c] = series.value(series.position, c, splat(from));
-                ended[c] = series.value(series.position, c, splat(to));
+                begun[c] = series.value(series.position, c, Blocks::splat(from));
+                ended[c] = series.value(series.position, c, Blocks::splat(to));
             }
         }
         const vec *first = from > 0.0 || !advanced ? begun.at() : series.x(0);
@@ -154,8 +159,8 @@ struct Group {
             const vec before = force(first, c, drifted - t), after = force(last, c, drifted);
             vec energy = 0.5 * (before + (after - load * t)) * far;
             if (v > 0.0) {
-                vec path = series.integral(c, splat(to));
-                if (from > 0.0) path -= series.integral(c, splat(from));
+                vec path = series.integral(c, Blocks::splat(to));
+                if (from > 0.0) path -= series.integral(c, Blocks::splat(from));
                 energy += load * (t * (far - 0.5 * v * t) - (path - first[c] * t));
             }
             const vec bound = search.bound_in_piece(c);
@@ -174,7 +179,7 @@ struct Group {
     }
 
   private:
-    Vectors begun, ended;
+    Rows begun, ended;
 
     // The spring forces on a column of blocks at positions x, at a time of the piece.
     vec force(const vec *x, int c, double t) const {
@@ -186,7 +191,7 @@ struct Group {
         if (from > 0.0) polynomial.shift(from);
     }
 
-    Vectors relative;
+    Rows relative;
 
     void load_section(int begin, int end, int extra) {
         const int n = size();
@@ -195,7 +200,7 @@ struct Group {
             double total = 0.0;
             for (int i = begin; i < end; i++) total += x[i];
             vec *g = series.g(k);
-            if (extra) g[series.columns] = splat(k == 0 ? 1.0 : 0.0);
+            if (extra) g[series.columns] = Blocks::splat(k == 0 ? 1.0 : 0.0);
             g[n / LANES][n % LANES] = side * total;
         }
     }

@@ -257,7 +257,7 @@ Polynomial Run::motion_of(int i, bool speed, const Clock &at) {
         return made;
     }
     Group &group = *groups[group_of[i]];
-    const Vectors &rows = speed ? group.series.velocity : group.series.position;
+    const Blocks::Rows &rows = speed ? group.series.velocity : group.series.position;
     made.load(&rows.lane(lane_of[i]), group.series.columns * LANES, Blocks::ORDER);
     made.shift(group.start.until(at));
     return made;

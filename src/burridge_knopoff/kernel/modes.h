@@ -91,7 +91,7 @@ class Modes {
         for (int i = 0; i < blocks; i++) {
             const bool slips = state.slip.lane(i) != 0.0;
             state.position.lane(i) = slips ? origin[i] : origin[i] - model.v * t;
-            if (slips && state.age.lane(i) >= state.model.young()) state.velocity.lane(i) = origin_velocity[i];
+            if (slips && state.age.lane(i) >= state.layout.model.young()) state.velocity.lane(i) = origin_velocity[i];
         }
         for (const Stretch &run : runs) {
             const int length = run.last - run.first + 1;
@@ -105,7 +105,7 @@ class Modes {
                 const double speed = b * (cosine - 1.0) + (half * b - eigenvalue * a) * sine;
                 for (int i = run.first; i <= run.last; i++) {
                     state.position.lane(i) += vector[i - run.first] * q;
-                    if (state.age.lane(i) >= state.model.young())
+                    if (state.age.lane(i) >= state.layout.model.young())
                         state.velocity.lane(i) += vector[i - run.first] * speed;
                 }
             }

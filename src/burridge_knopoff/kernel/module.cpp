@@ -145,7 +145,7 @@ void check_shape(const Ensemble &ensemble, const Table &position, const Table &v
 }  // namespace
 
 NB_MODULE(_core, m) {
-    m.attr("LANES") = LANES;
+    m.attr("LANES") = WIDEST;
     nb::dict status;
     for (auto [name, value] : {std::pair("HALTED", HALTED),
                                {"FULL", FULL},
@@ -203,10 +203,10 @@ NB_MODULE(_core, m) {
             "friction_series",
             [](const Model &model, Numbers speed) {
                 if (model.law.linear) throw nb::value_error("law: got a linear one, expected one with a series");
-                FrictionSeries series(model.law, 1, int(speed.size()));
+                FrictionSeries<Blocks> series(model.law, 1, int(speed.size()));
                 std::vector<double> value(speed.size()), slope(speed.size());
                 for (int n = 0; n < int(speed.size()); n++) {
-                    series.row(0, 0)[n] = splat(speed(n));
+                    series.row(0, 0)[n] = Blocks::splat(speed(n));
                     series.fill(0, n, 0, int(model.law.tape.size()));
                     value[n] = series.row(model.law.value, 0)[n][0];
                     slope[n] = series.row(model.law.slope, 0)[n][0];

@@ -88,8 +88,8 @@ void Run::state_of(int i, double &position, double &speed, double &direction) {
     const double t = group.start.until(now);
     if (group.planned && t > 0.0) {
         const int c = lane / LANES;
-        position = group.series.value(group.series.position, c, splat(t))[lane % LANES];
-        if (direction != 0.0) speed = group.series.value(group.series.velocity, c, splat(t))[lane % LANES];
+        position = group.series.value(group.series.position, c, Blocks::splat(t))[lane % LANES];
+        if (direction != 0.0) speed = group.series.value(group.series.velocity, c, Blocks::splat(t))[lane % LANES];
     }
 }
 
@@ -105,14 +105,14 @@ double Run::stuck_position(int i, const Clock &at) const {
 Group &Run::build(std::vector<int> members, const Clock &at) {
     if (spare.empty()) {
         spare.push_back(int(groups.size()));
-        groups.push_back(std::make_unique<Group>(model, polynomial));
+        groups.push_back(std::make_unique<Group>(model, law, polynomial));
     }
     const int number = spare.back(), n = int(members.size());
     spare.pop_back();
     // Memory that a group of many blocks has left behind is given back.
     if (groups[number]->capacity() > 16 * size_t(n) + 1024) {
         const uint64_t version = groups[number]->version;
-        groups[number] = std::make_unique<Group>(model, polynomial);
+        groups[number] = std::make_unique<Group>(model, law, polynomial);
         groups[number]->version = version;
     }
     Group &group = *groups[number];
@@ -133,8 +133,8 @@ Group &Run::build(std::vector<int> members, const Clock &at) {
         lane_of[members[k]] = k;
     }
     auto place = [&](int i) { return group_of[i] == number ? lane_of[i] : -1; };
-    group.layout.lay(model.springs, place);
-    if (n < blocks) group.layout.outside(model.springs, place, model.v, [&](int i) { return stuck_position(i, at); });
+    group.layout.lay(place);
+    if (n < blocks) group.layout.outside(place, [&](int i) { return stuck_position(i, at); });
     group.widen();
     for (size_t k = n; k < size_t(group.layout.columns) * LANES; k++) group.state.place(k, 0.0, 0.0, true);
     for (int k = 0; k < n; k++) {
@@ -186,7 +186,7 @@ void Run::change(Group &group, int lane, const Clock &at) {
     const int i = group.layout.member[lane];
     if (exponents.tangent.vectors > 0) exponents.tangent.change(group.state, i);
     const int kind = group.state.slip.lane(lane) == 0.0;
-    group.state.transition(lane / LANES, from_bits(1 << lane % LANES));
+    group.state.transition(lane / LANES, Blocks::from_bits(1 << lane % LANES));
     if (catalogue && kind) catalogue->start(model.springs, i, at, loading_clock(at), group.state.position.lane(lane));
     if (catalogue && !kind) catalogue->stop(model.springs, model.v, i, at, group.state.position.lane(lane));
     log.add(i, kind, at.time, [&](double *row) {
@@ -254,7 +254,7 @@ void Run::remember() {
 
 // Begin the closed form where the run that goes on had its last event.
 void Run::start_modes(Group &group, const Mark &mark) {
-    const Vectors position = group.state.position, velocity = group.state.velocity;
+    const Blocks::Rows position = group.state.position, velocity = group.state.velocity;
     for (int i = 0; i < blocks; i++) {
         group.state.position.lane(i) = mark.origin[i];
         group.state.velocity.lane(i) = mark.origin_velocity[i];
@@ -329,12 +329,12 @@ int Run::run_whole() {
 // Let the driver, which stands while blocks slip, go on until a block starts; false if the run ends before.
 bool Run::load_next(Group &group) {
     const Blocks &layout = group.layout;
-    Vectors left(layout.columns);
+    Blocks::Rows left(layout.columns);
     double least = NEVER;
     for (int c = 0; c < layout.columns; c++) {
         const mask pulled = layout.present[c] & (layout.driving[c] > vec{});
         const vec gap = largest(layout.threshold[c] - group.state.force(c), vec{});
-        left[c] = select(pulled, gap / (loading * layout.driving[c]), splat(NEVER));
+        left[c] = select(pulled, gap / (loading * layout.driving[c]), Blocks::splat(NEVER));
         least = std::min(least, least_lane(left[c]));
     }
     // The state stays where the last slip left it until the next start.
@@ -406,8 +406,8 @@ void Run::observe(Group &group, double to) {
         const double t = start.until(observer.trajectory_time[observer.next_trajectory]);
         if (t > to) break;
         observer.sample([&](int i, double &position, double &speed) {
-            position = group.series.value(group.series.position, i / LANES, splat(t))[i % LANES];
-            speed = group.series.value(group.series.velocity, i / LANES, splat(t))[i % LANES];
+            position = group.series.value(group.series.position, i / LANES, Blocks::splat(t))[i % LANES];
+            speed = group.series.value(group.series.velocity, i / LANES, Blocks::splat(t))[i % LANES];
         });
     }
 }

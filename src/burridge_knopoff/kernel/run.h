@@ -60,6 +60,9 @@ class Run {
     // Longest time, in units of the chain, over which perturbations are followed at once: without events, too, they
     // have to be kept apart.
     static constexpr double LONGEST_FOLLOW = 4.0;
+    static constexpr int LANES = Blocks::LANES;
+    using vec = Blocks::vec;
+    using mask = Blocks::mask;
 
     const Model &model;
     EventLog &log;
@@ -87,7 +90,7 @@ class Run {
           local(exponents.tangent.vectors == 0 && (local < 0 ? model.springs.blocks >= MANY : local > 0)),
           step_limit(step_limit), loading(loading), end(observer.end()), blocks(model.springs.blocks),
           first(observer.section ? observer.section - 1 : 0),
-          last(observer.section ? observer.section : model.springs.blocks), alone(blocks), group_of(blocks, -1),
+          last(observer.section ? observer.section : model.springs.blocks), law(model.law, 1), alone(blocks), group_of(blocks, -1),
           lane_of(blocks, -1), version(blocks), begins(blocks) {
         log.unit = model.springs.unit;
         exponents.interval = loading > 0.0 ? 0.0 : model.springs.unit;
@@ -131,6 +134,7 @@ class Run {
     double since_event = 0.0;
     Mark marked;
     Polynomial polynomial;
+    FrictionSeries<Blocks> law;  // of the group whose piece was expanded last
     std::vector<Block> alone;  // of those in a group, when it began
     std::vector<int> group_of, lane_of;
     std::vector<uint64_t> version;

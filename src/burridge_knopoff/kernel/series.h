@@ -12,6 +12,7 @@
 
 #include <utility>
 
+#include "friction_series.h"
 #include "polynomial.h"
 #include "state.h"
 
@@ -59,26 +60,32 @@ inline double step_length(double coefficient, int power) {
 template <class L>
 struct Series {
     static constexpr int ORDER = L::ORDER;
+    using vec = typename L::vec;
+    using mask = typename L::mask;
+    using Rows = typename L::Rows;
+    using Number = typename L::Number;
+
     L &layout;
     int columns = 0, width = 0;
-    Vectors position, velocity, gap;
-    Vectors slipping, stuck;  // 1 where a block slips, or sticks
-    FrictionSeries law;
+    Rows position, velocity, gap;
+    Rows slipping, stuck;  // 1 where a block slips, or sticks
+    // Of the piece that was expanded last, of this series or of another that shares it.
+    FrictionSeries<L> &law;
 
-    Series(const Model &model, L &layout) : layout(layout), law(model.law, layout.columns, ORDER), model(model) {}
+    Series(L &layout, FrictionSeries<L> &law) : layout(layout), law(law) {}
 
     // Fill the series with the motion that starts from the state; return the time for which it is valid: 0 where a
     // state has no motion. extra : columns of g beyond those of the blocks
     vec expand(const State<L> &state, int extra) {
         begin(state, extra);
-        if (model.law.linear)
+        if (law.law.linear)
             rows<LINEAR_LAW>(state);
-        else if (model.law.hyperbolic)
+        else if (law.law.hyperbolic)
             rows<HYPERBOLIC_LAW>(state);
         else
             rows<ANY_LAW>(state);
         vec reach = step();
-        if (model.law.exponential) {
+        if (law.law.exponential) {
             reach = law.shorten(reach, columns);
             if (L::ONE_CLOCK) reach = L::least_of_clock(reach);
         }
@@ -90,7 +97,7 @@ struct Series {
     BK_INLINE vec *g(int n) { return gap.at(size_t(n) * width); }
 
     // Positions or velocities of a column at t: even and odd powers apart, as each sum waits for the last.
-    BK_INLINE vec value(const Vectors &series, int c, vec t) const {
+    BK_INLINE vec value(const Rows &series, int c, vec t) const {
         const vec *term = series.at(c), square = t * t;
         vec even = term[size_t(ORDER) * columns], odd = term[size_t(ORDER - 1) * columns];
         for (int k = ORDER - 2; k > 0; k -= 2) {
@@ -120,7 +127,7 @@ struct Series {
             state.velocity[c] = select(moved, value(velocity, c, t), state.velocity[c]);
             state.touching[c] = select(moved & (t > zero), zero, state.touching[c]);
             state.age[c] = select(moved & (slipping[c] > zero), state.age[c] + t, state.age[c]);
-            const mask young = moved & (state.age[c] < model.young());
+            const mask young = moved & (state.age[c] < layout.young);
             if (!any(young)) continue;
             vec slope{};
             for (int k = ORDER; k > 0; k--) slope = slope * t + double(k) * u(k)[c];
@@ -130,8 +137,7 @@ struct Series {
 
   private:
     enum Kind { LINEAR_LAW, HYPERBOLIC_LAW, ANY_LAW };
-    const Model &model;
-    Vectors signed_threshold, damping, pressed, force;
+    Rows signed_threshold, damping, pressed, force;
     // What the rows of a column need, and the last of them.
     struct Column {
         vec slip, stuck, moving, damping, pressed, diagonal, line_slope, inverse_slope, start, force, speed;
@@ -147,12 +153,12 @@ struct Series {
         position.reserve(rows * columns);
         velocity.reserve(rows * columns);
         gap.reserve(rows * width);
-        for (Vectors *row : {&slipping, &stuck, &signed_threshold, &damping, &pressed, &force}) row->reserve(columns);
+        for (Rows *row : {&slipping, &stuck, &signed_threshold, &damping, &pressed, &force}) row->reserve(columns);
         law.widen(columns);
         for (int c = 0; c < columns; c++) {
             x(0)[c] = state.position[c];
             u(0)[c] = state.velocity[c];
-            x(1)[c] = state.velocity[c] - model.v;
+            x(1)[c] = state.velocity[c] - layout.v;
         }
         for (int c = 0; c < columns; c++) {
             const vec slip = state.slip[c], own = slip * u(0)[c], s = state.force(c);
@@ -161,21 +167,21 @@ struct Series {
             // Signed by the direction of slip, as friction is; per mass, as all that accelerates.
             signed_threshold[c] = (slip * layout.threshold[c]) * layout.inverse_mass[c];
             vec friction, slope;
-            if (model.law.linear) {
-                friction = model.law.at_rest - model.law.rate * own;
-                slope = splat(-model.law.rate);
+            if (law.law.linear) {
+                friction = layout.at_rest - layout.rate * own;
+                slope = -layout.rate - vec{};
             } else {
                 law.start(c, own);
                 friction = law.friction(c, 0);
-                slope = law.slopes(c)[model.law.value];
+                slope = law.slopes(c)[law.law.value];
             }
             damping[c] = signed_threshold[c] * (slope * slip);
-            if (model.law.hyperbolic) {
-                const double scale = model.law.value == 3 ? model.law.tape[2].alpha : 1.0;
+            if (law.law.hyperbolic) {
+                const Number scale = law.law.value == 3 ? law.tape[2].alpha : Number{} + 1.0;
                 pressed[c] = -(signed_threshold[c] * (scale * law.row(2, c)[0]));
             }
             vec acceleration = slipping[c] * (s * layout.inverse_mass[c]) - signed_threshold[c] * friction;
-            const mask young = (slip != vec{}) & ((state.touching[c] > 0.0) | (state.age[c] < model.young()));
+            const mask young = (slip != vec{}) & ((state.touching[c] > 0.0) | (state.age[c] < layout.young));
             if (any(young)) acceleration = select(young, state.slip_acceleration(c, s), acceleration);
             u(1)[c] = acceleration;
             g(0)[c] = slip * u(0)[c] + stuck[c] * (layout.threshold[c] - s);
@@ -264,12 +270,12 @@ struct Series {
             total += one + other;
         }
         if (L::ONE_CLOCK) {
-            for (int lane = 0; lane < LANES; lane++)
+            for (int lane = 0; lane < L::LANES; lane++)
                 if (!(total[lane] < 1e300)) return vec{};
-            return splat(length(largest_lane(last), largest_lane(previous)));
+            return L::splat(length(largest_lane(last), largest_lane(previous)));
         }
         vec reach;
-        for (int lane = 0; lane < LANES; lane++)
+        for (int lane = 0; lane < L::LANES; lane++)
             reach[lane] = total[lane] < 1e300 ? length(last[lane], previous[lane]) : 0.0;
         return reach;
     }

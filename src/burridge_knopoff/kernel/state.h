@@ -5,35 +5,14 @@
 // starts where the spring force on it passes θ_i.
 #pragma once
 
-#include "law.h"
-#include "springs.h"
+#include "layout.h"
 
 namespace bk {
 
-// Times closer than this, in units of the chain, are one instant: the clock does not resolve them. Blocks whose motion
-// is the same to the bit change together, however far from their threshold rounding leaves them.
-constexpr double COINCIDENCE = 1e-14;
-
-// A block that has slipped for less than this, in units of the chain, keeps the acceleration that was carried along
-// since its start, which began at exactly 0: 1 − s recomputed from positions would be rounding (1e-16), and its sign
-// could stop the block.
-constexpr double YOUNG = 1e-6;
 constexpr double LONG = 1e300;
 
 // Rounding of a spring force at its threshold, as a share of the terms that make it up.
 constexpr double AT_THRESHOLD = 1e-13;
-
-// The friction and the driver of a model.
-struct Model {
-    Springs springs;
-    Law law;
-    double v;
-    bool symmetric;  // whether a block that is pulled below −θ_i slips backward
-
-    bool drops() const { return law.at_rest < 1.0; }
-    double coincidence() const { return COINCIDENCE * springs.unit; }
-    double young() const { return YOUNG * springs.unit; }
-};
 
 // Positions x_i, velocities U_i', slip directions (0 stuck, 1 forward, −1 backward) and what the next event depends on.
 //
@@ -41,14 +20,16 @@ struct Model {
 // stopped again) at this very instant. `age` is the time since the start of the present slip.
 template <class L>
 struct State {
-    const Model &model;
-    L &layout;
-    Vectors position, velocity, acceleration, age, slip, touching;
+    using vec = typename L::vec;
+    using mask = typename L::mask;
 
-    State(const Model &model, L &layout) : model(model), layout(layout) { widen(); }
+    L &layout;
+    typename L::Rows position, velocity, acceleration, age, slip, touching;
+
+    explicit State(L &layout) : layout(layout) { widen(); }
 
     void widen() {
-        for (Vectors *row : {&position, &velocity, &acceleration, &age, &slip, &touching}) row->reserve(layout.columns);
+        for (auto *row : {&position, &velocity, &acceleration, &age, &slip, &touching}) row->reserve(layout.columns);
     }
 
     // Set one block, in lane k of all lanes: a stuck one has velocity 0.
@@ -71,26 +52,26 @@ struct State {
 
     // Friction at a speed |U_i'|, one by one where it matters little how long that takes.
     BK_INLINE vec friction(vec speed) const {
-        if (model.law.linear) return model.law.at_rest - model.law.rate * speed;
-        return each(speed, [this](double u) { return model.law.at(u); });
+        if (layout.linear) return layout.at_rest - layout.rate * speed;
+        return each(speed, [this](double u, int lane) { return layout.law(lane).at(u); });
     }
 
     // U_i'' of a block that starts at its threshold: 0, exactly, unless friction drops at the start.
     BK_INLINE vec start_acceleration(int c) const {
-        return (layout.threshold[c] * (1.0 - model.law.at_rest)) * layout.inverse_mass[c];
+        return (layout.threshold[c] * (1.0 - layout.at_rest)) * layout.inverse_mass[c];
     }
 
     // U_i'' of slipping blocks.
     BK_INLINE vec slip_acceleration(int c, vec force) const {
         const vec own = slip[c] * velocity[c];
         vec made = (force - slip[c] * (layout.threshold[c] * friction(own))) * layout.inverse_mass[c];
-        made = select(age[c] < model.young(), acceleration[c], made);
+        made = select(age[c] < layout.young, acceleration[c], made);
         return select((touching[c] > 0.0), slip[c] * start_acceleration(c), made);
     }
 
     // Where blocks change at this very instant: they are past their threshold, or within COINCIDENCE of it.
     mask pending(const vec *relative, int c) const {
-        const double coincidence = model.coincidence();
+        const auto coincidence = layout.coincidence;
         const vec zero{}, s = force(c);
         const mask touches = touching[c] > 0.0, stuck = slip[c] == zero;
         const vec rate = force_rate(relative, c);
@@ -100,11 +81,11 @@ struct State {
         if (any(close)) stopping |= close & (gap < -coincidence * (slip[c] * slip_acceleration(c, s)));
         // At a start with Φ(0) < 1 the block has an acceleration, whatever the rate of the force.
         stopping &= ~touches;
-        if (!model.drops()) stopping |= touches & (slip[c] * rate < zero);
+        if (!layout.drops) stopping |= touches & (slip[c] * rate < zero);
         const vec near = coincidence * layout.diagonal[c];
         gap = layout.threshold[c] - s;
         mask starting = (gap < zero) | ((gap <= near) & (gap < coincidence * rate));
-        if (model.symmetric) {
+        if (layout.symmetric) {
             gap = layout.threshold[c] + s;
             starting |= (gap < zero) | ((gap <= near) & (gap < -coincidence * rate));
         }
@@ -121,14 +102,14 @@ struct State {
     void transition(int c, mask where) {
         const vec zero{}, s = force(c);
         const mask starting = where & (slip[c] == zero);
-        const vec direction = select(s > zero, splat(1.0), splat(-1.0));
+        const vec direction = select(s > zero, L::splat(1.0), L::splat(-1.0));
         velocity[c] = select(where, zero, velocity[c]);
         acceleration[c] = select(where, zero, acceleration[c]);
         slip[c] = select(where, select(starting, direction, zero), slip[c]);
-        age[c] = select(where, splat(LONG), age[c]);
+        age[c] = select(where, L::splat(LONG), age[c]);
         // A block that stopped beyond its threshold starts again with the acceleration that the excess gives it.
         const mask touches = starting & at_threshold(c, s);
-        touching[c] = select(touches, splat(1.0), touching[c]);
+        touching[c] = select(touches, L::splat(1.0), touching[c]);
         age[c] = select(touches, zero, age[c]);
         acceleration[c] = select(touches, direction * start_acceleration(c), acceleration[c]);
     }

@@ -21,9 +21,13 @@ namespace bk {
 
 class Tangent {
   public:
+    static constexpr int LANES = Blocks::LANES;
+    using vec = Blocks::vec;
+    using Rows = Blocks::Rows;
+
     const int blocks, vectors, columns;
     // Vector v has the lanes of its blocks in columns v · columns …
-    Vectors position, velocity;
+    Rows position, velocity;
 
     Tangent(int blocks, int vectors)
         : blocks(blocks), vectors(vectors), columns((blocks + LANES - 1) / LANES),
@@ -50,20 +54,20 @@ class Tangent {
             }
             return;
         }
-        const double sign = force > 0.0 ? 1.0 : -1.0, mass = state.model.springs.mass[i];
+        const double sign = force > 0.0 ? 1.0 : -1.0, mass = state.layout.model.springs.mass[i];
         if (deceleration[i] != 0.0) {
             const double factor =
-                (force - sign * (state.model.springs.threshold[i] * state.model.law.at_rest)) / mass / deceleration[i];
+                (force - sign * (state.layout.model.springs.threshold[i] * state.layout.model.law.at_rest)) / mass / deceleration[i];
             for (int v = 0; v < vectors; v++) u(v)[i] = factor * lost[size_t(v) * blocks + i];
-        } else if (state.model.drops() && state.at_threshold(c, state.force(c))[lane]) {
-            Vectors relative(columns);
-            for (int k = 0; k < columns; k++) relative[k] = state.velocity[k] - state.model.v;
+        } else if (state.layout.drops && state.at_threshold(c, state.force(c))[lane]) {
+            Rows relative(columns);
+            for (int k = 0; k < columns; k++) relative[k] = state.velocity[k] - state.layout.v;
             const double rate = state.force_rate(relative.at(), c)[lane];
             // Where the driver stands the perturbed block starts at the same time: the driver has gone less or more
             // far.
             if (rate == 0.0) return;
             const double factor = sign * state.start_acceleration(c)[lane] / rate;
-            for (int v = 0; v < vectors; v++) u(v)[i] = factor * state.model.springs.pull(x(v), i);
+            for (int v = 0; v < vectors; v++) u(v)[i] = factor * state.layout.model.springs.pull(x(v), i);
         }
     }
 
@@ -80,8 +84,8 @@ class Tangent {
     // Expand −θ dΦ/dU' / m along a piece of the motion; return into how many parts to divide its length. Coefficient k
     // is multiplied by t^(k + 1), with t the length of a part, and is 0 where a block sticks.
     int load(const State<Blocks> &state, Series<Blocks> &series, double length) {
-        const Model &model = state.model;
         const Blocks &layout = state.layout;
+        const Model &model = layout.model;
         const double pace = model.springs.fastest + model.springs.firmest * model.law.steepest;
         const int parts = 1 + int(pace * length / STRIDE);
         part = parts > 1 ? length / parts : length;
@@ -151,7 +155,7 @@ class Tangent {
     static constexpr double SLOWER = 1.25;
 
     std::vector<double> lost, deceleration;
-    Vectors moving, pull_scale, rates, speeds, rows;
+    Rows moving, pull_scale, rates, speeds, rows;
     double part = 0.0;
     int rate_terms = 0, degree = 0;
     Watch watch;
@@ -171,7 +175,7 @@ class Tangent {
     }
 
     void expand_rates(const State<Blocks> &state, Series<Blocks> &series, int c, int first) {
-        const vec *slope = series.law.row(state.model.law.slope, c);
+        const vec *slope = series.law.row(state.layout.model.law.slope, c);
         vec *rate = rates.at(size_t(c) * LENGTH), factor = -(state.layout.threshold[c] * pull_scale[c]);
         series.law.complete_slope(c, first, rate_terms);
         for (int n = 0; n < rate_terms; n++) {

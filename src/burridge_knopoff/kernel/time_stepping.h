@@ -22,6 +22,7 @@ struct StepMark {
 // ends the motion is the cubic through both states and their slopes.
 class TimeStepping {
   public:
+    static constexpr int LANES = Blocks::LANES;
     const Model &model;
     EventLog &log;
     Observer &observer;
@@ -34,12 +35,12 @@ class TimeStepping {
 
     TimeStepping(const Model &model, EventLog &log, Observer &observer, double step, bool euler)
         : model(model), log(log), observer(observer), step(step), euler(euler), n(model.springs.blocks),
-          state(model, layout), old_x(n), old_u(n) {
+          layout(model), state(layout), old_x(n), old_u(n) {
         log.unit = model.springs.unit;
         for (auto *table : {&speed, &acceleration}) table->assign(4, std::vector<double>(n));
         for (auto *table : {&x, &u}) table->assign(4, std::vector<double>(n));
         for (int i = 0; i < n; i++) layout.member.push_back(i);
-        layout.lay(model.springs, [](int i) { return i; });
+        layout.lay([](int i) { return i; });
         state.widen();
         relative.reserve(layout.columns);
         for (int k = n; k < layout.columns * LANES; k++) state.place(k, 0.0, 0.0, true);
@@ -120,7 +121,7 @@ class TimeStepping {
     const int n;
     Blocks layout;
     State<Blocks> state;
-    Vectors relative;
+    Blocks::Rows relative;
     Polynomial polynomial;
     long long earlier_steps = 0;
     bool settled = false;
@@ -259,7 +260,7 @@ class TimeStepping {
                 for (int lane = 0; due[c] >> lane; lane++) {
                     if (!(due[c] >> lane & 1)) continue;
                     const int i = c * LANES + lane, kind = state.slip.lane(i) == 0.0;
-                    state.transition(c, from_bits(1 << lane));
+                    state.transition(c, Blocks::from_bits(1 << lane));
                     const double x = state.position.lane(i);
                     if (catalogue && kind) catalogue->start(model.springs, i, {clock, 0.0}, {clock, 0.0}, x);
                     if (catalogue && !kind) catalogue->stop(model.springs, model.v, i, {clock, 0.0}, x);

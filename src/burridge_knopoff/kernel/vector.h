@@ -1,7 +1,7 @@
-// A vector of LANES doubles: every operation works on all lanes at once, and on each lane as on a double alone.
+// Vectors of doubles: every operation works on all lanes at once, and on each lane as on a double alone.
 //
-// LANES is 8 with AVX-512, 4 with AVX2, else 2. An operation that has an instruction of its own gives what the plain
-// loop beside it gives, bit for bit. So all widths give the same numbers.
+// WIDEST is 8 with AVX-512, 4 with AVX2, else 2: as many lanes as the processor has. An operation that has an
+// instruction of its own gives what the plain loop beside it gives, bit for bit. So all widths give the same numbers.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #ifndef BK_LANES
-#if defined(__AVX512DQ__)
+#if defined(__AVX512DQ__) && defined(__AVX512VL__)
 #define BK_LANES 8
 #elif defined(__AVX2__)
 #define BK_LANES 4
@@ -18,14 +18,7 @@
 #define BK_LANES 2
 #endif
 #endif
-#if BK_LANES == 8 && defined(__AVX512DQ__)
-#define BK_MM(name) _mm512_##name
-#elif BK_LANES == 4 && defined(__AVX2__)
-#define BK_MM(name) _mm256_##name
-#elif BK_LANES == 2 && defined(__SSE4_1__)
-#define BK_MM(name) _mm_##name
-#endif
-#ifdef BK_MM
+#if defined(__SSE4_1__)
 #include <immintrin.h>
 #endif
 
@@ -33,123 +26,164 @@
 
 namespace bk {
 
-constexpr int LANES = BK_LANES;
-typedef double vec __attribute__((vector_size(8 * BK_LANES)));
-typedef int64_t mask __attribute__((vector_size(8 * BK_LANES)));
+constexpr int WIDEST = BK_LANES;
 
-// A vector as the element of a container: a vector type itself loses its alignment as a template argument.
-struct alignas(8 * BK_LANES) Vec {
-    vec v;
+template <int COUNT>
+struct VectorTypes;
+#define BK_VECTOR_TYPES(COUNT)                                                 \
+    template <>                                                                \
+    struct VectorTypes<COUNT> {                                                \
+        typedef double vec __attribute__((vector_size(8 * COUNT)));            \
+        typedef int64_t mask __attribute__((vector_size(8 * COUNT)));          \
+    };
+BK_VECTOR_TYPES(2)
+BK_VECTOR_TYPES(4)
+BK_VECTOR_TYPES(8)
+
+// Vectors of COUNT doubles.
+template <int COUNT>
+struct Lanes {
+    static constexpr int LANES = COUNT;
+    using vec = typename VectorTypes<COUNT>::vec;
+    using mask = typename VectorTypes<COUNT>::mask;
+
+    static BK_INLINE vec splat(double x) { return x - vec{}; }
+    static BK_INLINE mask all_lanes(bool yes) { return mask{} - int64_t(yes); }
+    // One bit for each lane.
+    static BK_INLINE mask from_bits(int found) {
+        mask where;
+        for (int lane = 0; lane < COUNT; lane++) where[lane] = -int64_t(found >> lane & 1);
+        return where;
+    }
 };
 
-BK_INLINE vec splat(double x) {
-    return x - vec{};
-}
-BK_INLINE mask all_lanes(bool yes) {
-    return mask{} - int64_t(yes);
-}
-BK_INLINE vec select(mask where, vec a, vec b) {
-#if BK_LANES == 4 && defined(BK_MM)
-    return _mm256_blendv_pd(b, a, (vec)where);
-#else
-    return where ? a : b;
+template <class V>
+using Of = Lanes<sizeof(V) / 8>;
+
+template <class V>
+BK_INLINE V select(typename Of<V>::mask where, V a, V b) {
+#if defined(__AVX2__)
+    if constexpr (sizeof(V) == 32) return _mm256_blendv_pd(b, a, (V)where);
 #endif
+    return where ? a : b;
 }
 
-// One bit for each lane.
-BK_INLINE int bits(mask where) {
-#if BK_LANES == 8 && defined(BK_MM)
-    return _mm512_movepi64_mask((__m512i)where);
-#elif defined(BK_MM)
-    return BK_MM(movemask_pd)((vec)where);
-#else
-    int found = 0;
-    for (int lane = 0; lane < LANES; lane++) found |= int(where[lane] & 1) << lane;
-    return found;
+template <class M>
+BK_INLINE int bits(M where) {
+#if defined(__AVX512DQ__) && defined(__AVX512VL__)
+    if constexpr (sizeof(M) == 64) return _mm512_movepi64_mask((__m512i)where);
 #endif
+#if defined(__AVX2__)
+    if constexpr (sizeof(M) == 32) return _mm256_movemask_pd((__m256d)where);
+#endif
+#if defined(__SSE4_1__)
+    if constexpr (sizeof(M) == 16) return _mm_movemask_pd((__m128d)where);
+#endif
+    int found = 0;
+    for (int lane = 0; lane < Of<M>::LANES; lane++) found |= int(where[lane] & 1) << lane;
+    return found;
 }
-BK_INLINE mask from_bits(int found) {
-    mask where;
-    for (int lane = 0; lane < LANES; lane++) where[lane] = -int64_t(found >> lane & 1);
-    return where;
-}
-BK_INLINE bool any(mask where) {
+template <class M>
+BK_INLINE bool any(M where) {
     return bits(where) != 0;
 }
 
-BK_INLINE vec least(vec a, vec b) {
-#ifdef BK_MM
-    return BK_MM(min_pd)(a, b);
+// An operation with an instruction of its own in every width, and what it does.
+#if defined(__AVX512DQ__) && defined(__AVX512VL__)
+#define BK_WIDE(name, ...) \
+    if constexpr (sizeof(V) == 64) return _mm512_##name(__VA_ARGS__)
 #else
+#define BK_WIDE(name, ...)
+#endif
+#if defined(__AVX2__)
+#define BK_MIDDLE(name, ...) \
+    if constexpr (sizeof(V) == 32) return _mm256_##name(__VA_ARGS__)
+#else
+#define BK_MIDDLE(name, ...)
+#endif
+#if defined(__SSE4_1__)
+#define BK_NARROW(name, ...) \
+    if constexpr (sizeof(V) == 16) return _mm_##name(__VA_ARGS__)
+#else
+#define BK_NARROW(name, ...)
+#endif
+#define BK_INSTRUCTION(name, ...)   \
+    BK_WIDE(name, __VA_ARGS__);     \
+    BK_MIDDLE(name, __VA_ARGS__);   \
+    BK_NARROW(name, __VA_ARGS__)
+
+template <class V>
+BK_INLINE V least(V a, V b) {
+    BK_INSTRUCTION(min_pd, a, b);
     return a < b ? a : b;
-#endif
 }
-BK_INLINE vec largest(vec a, vec b) {
-#ifdef BK_MM
-    return BK_MM(max_pd)(a, b);
-#else
+template <class V>
+BK_INLINE V largest(V a, V b) {
+    BK_INSTRUCTION(max_pd, a, b);
     return a > b ? a : b;
-#endif
 }
-BK_INLINE vec root(vec a) {
-#ifdef BK_MM
-    return BK_MM(sqrt_pd)(a);
-#else
-    for (int lane = 0; lane < LANES; lane++) a[lane] = std::sqrt(a[lane]);
+template <class V>
+BK_INLINE V root(V a) {
+    BK_INSTRUCTION(sqrt_pd, a);
+    for (int lane = 0; lane < Of<V>::LANES; lane++) a[lane] = std::sqrt(a[lane]);
     return a;
-#endif
 }
-BK_INLINE vec magnitude(vec a) {
-    return (vec)((mask)a & INT64_MAX);
+template <class V>
+BK_INLINE V magnitude(V a) {
+    return (V)((typename Of<V>::mask)a & INT64_MAX);
 }
-template <class F>
-BK_INLINE vec each(vec a, F function) {
-    for (int lane = 0; lane < LANES; lane++) a[lane] = function(a[lane]);
+// function(x, lane) of every lane.
+template <class V, class F>
+BK_INLINE V each(V a, F function) {
+    for (int lane = 0; lane < Of<V>::LANES; lane++) a[lane] = function(a[lane], lane);
     return a;
 }
 
 // The least and the largest lane; the order of the lanes does not matter.
-BK_INLINE double least_lane(vec a) {
+template <class V>
+BK_INLINE double least_lane(V a) {
     double found = a[0];
-    for (int lane = 1; lane < LANES; lane++) found = a[lane] < found ? a[lane] : found;
+    for (int lane = 1; lane < Of<V>::LANES; lane++) found = a[lane] < found ? a[lane] : found;
     return found;
 }
-BK_INLINE double largest_lane(vec a) {
+template <class V>
+BK_INLINE double largest_lane(V a) {
     double found = a[0];
-    for (int lane = 1; lane < LANES; lane++) found = a[lane] > found ? a[lane] : found;
+    for (int lane = 1; lane < Of<V>::LANES; lane++) found = a[lane] > found ? a[lane] : found;
     return found;
 }
 
 // Lane k of the result is lane k − 1 of a row of lanes that goes from `left` on to `right`; or lane k + 1.
-#if BK_LANES == 8
-#define BK_BEFORE 7, 8, 9, 10, 11, 12, 13, 14
-#define BK_AFTER 1, 2, 3, 4, 5, 6, 7, 8
-#elif BK_LANES == 4
-#define BK_BEFORE 3, 4, 5, 6
-#define BK_AFTER 1, 2, 3, 4
-#else
-#define BK_BEFORE 1, 2
-#define BK_AFTER 1, 2
-#endif
 #if defined(__clang__) || __GNUC__ >= 12
-BK_INLINE vec before(vec left, vec right) {
-    return __builtin_shufflevector(left, right, BK_BEFORE);
-}
-BK_INLINE vec after(vec left, vec right) {
-    return __builtin_shufflevector(left, right, BK_AFTER);
-}
+#define BK_SHUFFLE(...) return __builtin_shufflevector(left, right, __VA_ARGS__)
 #else
-BK_INLINE vec before(vec left, vec right) {
-    return __builtin_shuffle(left, right, mask{BK_BEFORE});
-}
-BK_INLINE vec after(vec left, vec right) {
-    return __builtin_shuffle(left, right, mask{BK_AFTER});
-}
+#define BK_SHUFFLE(...) return __builtin_shuffle(left, right, typename Of<V>::mask{__VA_ARGS__})
 #endif
+template <class V>
+BK_INLINE V before(V left, V right) {
+    if constexpr (sizeof(V) == 64)
+        BK_SHUFFLE(7, 8, 9, 10, 11, 12, 13, 14);
+    else if constexpr (sizeof(V) == 32)
+        BK_SHUFFLE(3, 4, 5, 6);
+    else
+        BK_SHUFFLE(1, 2);
+}
+template <class V>
+BK_INLINE V after(V left, V right) {
+    if constexpr (sizeof(V) == 64)
+        BK_SHUFFLE(1, 2, 3, 4, 5, 6, 7, 8);
+    else if constexpr (sizeof(V) == 32)
+        BK_SHUFFLE(1, 2, 3, 4);
+    else
+        BK_SHUFFLE(1, 2);
+}
 
-// An array of vectors, set to 0.
+// An array of vectors of COUNT lanes, set to 0.
+template <int COUNT>
 class Vectors {
   public:
+    using vec = typename Lanes<COUNT>::vec;
+
     explicit Vectors(size_t count = 0) : storage(count, Vec{vec{}}) {}
     BK_INLINE vec &operator[](size_t k) { return storage[k].v; }
     BK_INLINE const vec &operator[](size_t k) const { return storage[k].v; }
@@ -165,6 +199,10 @@ class Vectors {
     }
 
   private:
+    // A vector type itself loses its alignment as a template argument.
+    struct alignas(8 * COUNT) Vec {
+        vec v;
+    };
     std::vector<Vec> storage;
 };
 

@@ -5,7 +5,7 @@ import sysconfig
 
 #: Neither contraction to fused multiply-add nor reassociation: a compiler must not change a result.
 #: docs/performance.md explains on which machines results agree to the bit.
-COMPILER_FLAGS = ("-std=c++20", "-O3", "-g0", "-ffp-contract=off", "-fno-fast-math", "-fvisibility=hidden")
+COMPILER_FLAGS = ("-std=c++20", "-O3", "-g0", "-ffp-contract=off", "-fno-fast-math", "-fno-tree-vectorize", "-fvisibility=hidden")
 
 #: For nanobind itself, which hands arrays over and computes nothing.
 NANOBIND_FLAGS = ("-std=c++20", "-Os", "-g0", "-fno-strict-aliasing", "-fvisibility=hidden")

@@ -1,0 +1,254 @@
+// The two ways to lay blocks into vectors, with what is constant in their motion.
+#pragma once
+
+#include <algorithm>
+
+#include "law.h"
+#include "springs.h"
+#include "vector.h"
+
+namespace bk {
+
+// Times closer than this, in units of the chain, are one instant: the clock does not resolve them. Blocks whose motion
+// is the same to the bit change together, however far from their threshold rounding leaves them.
+constexpr double COINCIDENCE = 1e-14;
+
+// A block that has slipped for less than this, in units of the chain, keeps the acceleration that was carried along
+// since its start, which began at exactly 0: 1 − s recomputed from positions would be rounding (1e-16), and its sign
+// could stop the block.
+constexpr double YOUNG = 1e-6;
+
+// The springs, the friction and the driver of a chain or network.
+struct Model {
+    Springs springs;
+    Law law;
+    double v;
+    bool symmetric;  // whether a block that is pulled below −θ_i slips backward
+
+    bool drops() const { return law.at_rest < 1.0; }
+    double coincidence() const { return COINCIDENCE * springs.unit; }
+    double young() const { return YOUNG * springs.unit; }
+
+    // Whether trajectories of both may lie in the lanes of the same vectors.
+    bool is_like(const Model &other) const {
+        return springs.blocks == other.springs.blocks && springs.start == other.springs.start &&
+               springs.neighbour == other.springs.neighbour && law.is_like(other.law) &&
+               symmetric == other.symmetric && drops() == other.drops();
+    }
+};
+
+// What both have in common: constants of the blocks, one vector for each column, and of the model.
+//
+// Number : of a constant of the model, one for all lanes or one for each
+template <int COUNT, class Number_>
+struct Layout : Lanes<COUNT> {
+    static constexpr int ORDER = 22;
+    using Number = Number_;
+    using Rows = Vectors<COUNT>;
+    using typename Lanes<COUNT>::mask;
+
+    int columns = 0;
+    Rows diagonal, threshold, sliding_force, inverse_mass;
+    // What stuck neighbours that do not take part add to ds_i/dτ, see Blocks::outside.
+    Rows drift;
+    std::vector<mask> present;
+    bool linear, drops, symmetric;
+    Number v, at_rest, rate, coincidence, young;
+
+    void widen(int count) {
+        columns = count;
+        for (Rows *row : {&diagonal, &threshold, &sliding_force, &inverse_mass, &drift}) row->reserve(count);
+        if (int(present.size()) < count) present.resize(count);
+    }
+
+    // Take what lanes share.
+    void share(const Model &model) {
+        linear = model.law.linear;
+        drops = model.drops();
+        symmetric = model.symmetric;
+    }
+};
+
+// Blocks in the lanes of vectors, LANES to a column: all share one clock. Four lanes at most, since few blocks slip
+// together as a rule and narrow vectors are quicker one by one. Lanes beyond the last block have no springs and a
+// threshold of 1, which nothing reaches.
+struct Blocks : Layout<std::min(WIDEST, 4), double> {
+    static constexpr bool ONE_CLOCK = true;
+    const Model &model;
+    std::vector<int> member;  // the blocks that take part, in the order of the lanes
+    bool row = true, closed = false;
+    Rows driving, left, right;
+    // In a network: springs and lanes of the neighbours, `degree` rows of columns · LANES.
+    int degree = 0;
+    std::vector<int> lane_of_neighbour;
+    std::vector<double> spring;
+
+    explicit Blocks(const Model &model) : model(model) {
+        share(model);
+        v = model.v;
+        at_rest = model.law.at_rest;
+        rate = model.law.rate;
+        coincidence = model.coincidence();
+        young = model.young();
+    }
+
+    const Law &law(int) const { return model.law; }
+
+    // Lay some blocks, all or a connected group with its stuck borders, in ascending order (in a ring: along it).
+    // place(i) : the lane of a block, −1 for one that does not take part
+    template <class Place>
+    void lay(Place &&place) {
+        const Springs &springs = model.springs;
+        const int n = int(member.size());
+        widen((n + LANES - 1) / LANES);
+        driving.reserve(columns);
+        row = springs.row;
+        closed = springs.ring && n == springs.blocks;
+        for (int c = 0; c < columns; c++) {
+            diagonal[c] = driving[c] = sliding_force[c] = drift[c] = vec{};
+            threshold[c] = inverse_mass[c] = splat(1.0);
+            present[c] = from_bits(n >= (c + 1) * LANES ? -1 : (1 << (n - c * LANES)) - 1);
+        }
+        if (row) {
+            left.reserve(columns);
+            right.reserve(columns);
+            for (int c = 0; c < columns; c++) left[c] = right[c] = vec{};
+        } else {
+            degree = springs.degree;
+            lane_of_neighbour.assign(size_t(degree) * columns * LANES, 0);
+            spring.assign(size_t(degree) * columns * LANES, 0.0);
+        }
+        for (int k = 0; k < n; k++) {
+            const int i = member[k];
+            diagonal.lane(k) = springs.diagonal[i];
+            driving.lane(k) = springs.driving[i];
+            threshold.lane(k) = springs.threshold[i];
+            sliding_force.lane(k) = springs.sliding_force[i];
+            inverse_mass.lane(k) = 1.0 / springs.mass[i];
+            int slot = 0;
+            for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) {
+                const int other = place(springs.neighbour[p]);
+                if (other < 0) continue;
+                if (row) {
+                    // Of two blocks in a ring each is before and after the other.
+                    const bool both = springs.blocks == 2 && springs.ring;
+                    const bool is_before =
+                        both ? p == springs.start[i] : other == k - 1 || (closed && k == 0 && other == n - 1);
+                    (is_before ? left : right).lane(k) = springs.strength[p];
+                } else {
+                    lane_of_neighbour[size_t(slot) * columns * LANES + k] = other;
+                    spring[size_t(slot++) * columns * LANES + k] = springs.strength[p];
+                }
+            }
+        }
+    }
+
+    // Let stuck blocks that do not take part pull on those that do; `place` as in `lay`, x their positions. Their pulls
+    // are added first, as in `pull`.
+    template <class Place, class Position>
+    void outside(Place &&place, Position &&x) {
+        const Springs &springs = model.springs;
+        for (int k = 0; k < int(member.size()); k++) {
+            const int i = member[k];
+            double pulls = 0.0;
+            for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) {
+                if (place(springs.neighbour[p]) >= 0) continue;
+                pulls += springs.strength[p] * x(springs.neighbour[p]);
+                drift.lane(k) -= springs.strength[p] * v;
+            }
+            sliding_force.lane(k) += pulls;
+        }
+    }
+
+    // The pulls of the neighbours on the blocks of one column. Both are added first, so that a mirrored state has
+    // mirrored forces to the bit.
+    BK_INLINE vec pull(const vec *x, int c) const {
+        if (__builtin_expect(row, true)) {
+            vec previous = before(c > 0 ? x[c - 1] : x[c], x[c]);
+            vec following = after(x[c], c + 1 < columns ? x[c + 1] : x[c]);
+            if (closed) {
+                const int end = int(member.size()) - 1;
+                if (c == 0) previous[0] = reinterpret_cast<const double *>(x)[end];
+                if (c == end / LANES) following[end % LANES] = x[0][0];
+            }
+            return left[c] * previous + right[c] * following;
+        }
+        vec total{};
+        const double *position = reinterpret_cast<const double *>(x);
+        for (int slot = 0; slot < degree; slot++) {
+            const size_t first = (size_t(slot) * columns + c) * LANES;
+            for (int lane = 0; lane < LANES; lane++)
+                total[lane] += spring[first + lane] * position[lane_of_neighbour[first + lane]];
+        }
+        return total;
+    }
+
+    // The same value in all lanes, of the least or largest of them.
+    static BK_INLINE vec least_of_clock(vec a) { return splat(least_lane(a)); }
+    static BK_INLINE vec largest_of_clock(vec a) { return splat(largest_lane(a)); }
+    static BK_INLINE mask any_of_clock(mask a) { return all_lanes(any(a)); }
+};
+
+// Trajectories in the lanes of vectors, a column for each block: each lane has its own clock and its own model.
+struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
+    static constexpr bool ONE_CLOCK = false;
+    int degree = 0;
+    std::vector<int> neighbour;
+    Rows spring;
+
+    // model : one that is like those of all lanes, which `place` sets
+    explicit Trajectories(const Model &model) {
+        const Springs &springs = model.springs;
+        share(model);
+        widen(springs.blocks);
+        degree = std::max(springs.degree, 2);
+        neighbour.assign(size_t(degree) * columns, 0);
+        spring.reserve(size_t(degree) * columns);
+        for (int i = 0; i < columns; i++) {
+            drift[i] = vec{};
+            present[i] = all_lanes(true);
+            for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
+                neighbour[size_t(i) * degree + p - springs.start[i]] = springs.neighbour[p];
+        }
+        for (int lane = 0; lane < LANES; lane++) place(model, lane);
+    }
+
+    // Give a lane its model.
+    void place(const Model &model, int lane) {
+        const Springs &springs = model.springs;
+        for (int i = 0; i < columns; i++) {
+            const size_t k = size_t(i) * LANES + lane;
+            diagonal.lane(k) = springs.diagonal[i];
+            threshold.lane(k) = springs.threshold[i];
+            sliding_force.lane(k) = springs.sliding_force[i];
+            inverse_mass.lane(k) = 1.0 / springs.mass[i];
+            for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
+                spring.lane((size_t(i) * degree + p - springs.start[i]) * LANES + lane) = springs.strength[p];
+        }
+        laws[lane] = &model.law;
+        v[lane] = model.v;
+        at_rest[lane] = model.law.at_rest;
+        rate[lane] = model.law.rate;
+        coincidence[lane] = model.coincidence();
+        young[lane] = model.young();
+    }
+
+    const Law &law(int lane) const { return *laws[lane]; }
+
+    BK_INLINE vec pull(const vec *x, int i) const {
+        const int *other = &neighbour[size_t(i) * degree];
+        const vec *strength = spring.at(size_t(i) * degree);
+        vec total = strength[0] * x[other[0]] + strength[1] * x[other[1]];
+        for (int slot = 2; slot < degree; slot++) total += strength[slot] * x[other[slot]];
+        return total;
+    }
+
+    static BK_INLINE vec least_of_clock(vec a) { return a; }
+    static BK_INLINE vec largest_of_clock(vec a) { return a; }
+    static BK_INLINE mask any_of_clock(mask a) { return a; }
+
+  private:
+    const Law *laws[LANES];
+};
+
+}  // namespace bk
