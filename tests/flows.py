@@ -36,7 +36,7 @@ def check_events(found, expected, tolerance):
     """Require the same stops and starts in the same order, and at the same times but for less than the tolerance."""
     assert [event[1:] for event in found] == [event[1:] for event in expected]
     error = max((abs(event[0] - other[0]) for event, other in zip(found, expected, strict=True)), default=0.0)
-    assert error < tolerance, float(error)
+    assert error <= tolerance, float(error)
 
 
 def carry(model, start, end, perturbations=None, solver="series"):

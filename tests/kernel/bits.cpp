@@ -3,11 +3,13 @@
 // Rows go in and out as their length and as many doubles. tests/kernel/test_compilers.py gives the cases and has the
 // same found by the kernel that is installed. All is one file here, since compilers then take half the time.
 
+#include <array>
 #include <cstdio>
 #include <memory>
 
 #include "ensemble.cpp"
 #include "groups.cpp"
+#include "lockstep.cpp"
 #include "run.cpp"
 #include "time_stepping.h"
 
@@ -119,6 +121,30 @@ int main() {
             run.begin(x.data(), u.data(), sticks, 0.0);
             finish(run, run.run(), log, observer, catalogue);
             write(exponents.growth);
+        }
+        {
+            // As many as move in lanes for certain.
+            struct Alone {
+                EventLog log;
+                Observer observer;
+                Exponents exponents;
+                std::unique_ptr<Run> run;
+            };
+            std::vector<std::unique_ptr<Alone>> alone;
+            std::vector<Run *> runs;
+            for (int k = 0; k < 4; k++) {
+                alone.emplace_back(new Alone{logged(), observed(), Exponents(n, vectors, 0.0, edge, false), nullptr});
+                Alone &own = *alone.back();
+                own.run = std::make_unique<Run>(model, own.log, own.observer, own.exponents, true, -1, 1LL << 40, 0.0);
+                own.run->begin(x.data(), u.data(), sticks, 0.0);
+                runs.push_back(own.run.get());
+            }
+            const std::vector<int> status = run_in_lockstep(runs);
+            for (int k = 0; k < 4; k++) {
+                Catalogue none(n, 0.0, false, MOST_NUMBERS);
+                finish(*runs[k], status[k], alone[k]->log, alone[k]->observer, none);
+                write(alone[k]->exponents.growth);
+            }
         }
         {
             EventLog log = logged();

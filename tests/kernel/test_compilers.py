@@ -15,7 +15,7 @@ from burridge_knopoff.provenance.kernel_build import KERNEL
 from burridge_knopoff.provenance.processor import compiled_to, lacking
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.kernel_model import kernel_model
-from burridge_knopoff.running.runner import Runner, new_observer
+from burridge_knopoff.running.runner import Runner, new_observer, run_together
 from burridge_knopoff.values import MOST_NUMBERS
 from tests.optional import needs, setting
 
@@ -40,7 +40,8 @@ CASES = [
 RUN = """status, x, U', event times, events, J, positions, velocities, integral of J, crossing times, crossings, speeds,
 forces, times of slip events, moments, energies""".replace("\n", " ").split(", ")
 MANY = "positions", "velocities", "ends"
-NAMES = [*RUN, "growth", *(f"{name} by rk4" for name in RUN), *(f"{name} of many" for name in MANY)]
+LOCKSTEP = [f"{name} in lockstep" for name in (*RUN, "growth")]
+NAMES = [*RUN, "growth", *4 * LOCKSTEP, *(f"{name} by rk4" for name in RUN), *(f"{name} of many" for name in MANY)]
 
 
 def starts(model):
@@ -70,21 +71,37 @@ def case(model, monkeypatch):
 def found_here(model):
     """Return what the installed kernel finds."""
     stuck, (position, velocity), many = starts(model)
-    for solver in ("series", "rk4"):
-        observer = new_observer(model, EDGES, TIMES, TIMES)
-        exponents, catalogue = exponents_of(model), Catalogue(model.blocks, 0.0, False, MOST_NUMBERS)
-        made = {"observer": observer, "exponents": exponents, "catalogue": catalogue}
-        runner = Runner(model, solver, step=STEP, keep_events=True, **made)
-        runner.begin(ChainState(position, np.where(stuck, 0.0, velocity), stuck))
-        yield [int(runner.run())]
+    start = ChainState(position, np.where(stuck, 0.0, velocity), stuck)
+
+    def runner_of(solver, catalogue):
+        made = {"observer": new_observer(model, EDGES, TIMES, TIMES), "exponents": exponents_of(model)}
+        runner = Runner(model, solver, step=STEP, keep_events=True, catalogue=catalogue, **made)
+        runner.begin(start)
+        return runner
+
+    def rows(runner, status, catalogue):
+        yield [int(status)]
         yield from runner.kernel.values()[:2]
         yield from (runner.log.events.times(), runner.log.events.values())
-        found, events = observer.results(), catalogue.take()
+        found, events = runner.observer.results(), catalogue.take()
         measured = "distance position velocity batch_integral crossing_time crossing highest_speed lowest_force"
         yield from (found[name] for name in measured.split())
         yield from (events[name] for name in ("time", "moment", "energy_released"))
-        if solver == "series":
-            yield exponents.results()["growth"]
+        if runner.solver[1] == "series":
+            yield runner.exponents.results()["growth"]
+
+    def new_catalogue():
+        return Catalogue(model.blocks, 0.0, False, MOST_NUMBERS)
+
+    catalogue = new_catalogue()
+    one = runner_of("series", catalogue)
+    yield from rows(one, one.run(), catalogue)
+    several = [runner_of("series", None) for _ in range(4)]
+    for runner, status in zip(several, run_together(several), strict=True):
+        yield from rows(runner, status, new_catalogue())
+    catalogue = new_catalogue()
+    other = runner_of("rk4", catalogue)
+    yield from rows(other, other.run(), catalogue)
     found = new_ensemble(model).run(*many, np.zeros((COUNT, model.blocks), dtype=bool), TIMES.tolist())
     yield from (found[name] for name in ("position", "velocity", "end"))
 

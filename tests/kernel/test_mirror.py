@@ -57,6 +57,11 @@ def chains(draw, ends=("open", "ring")):
     return model, position, velocity, min(100.0, 100.0 / chain.highest_frequency + 5.0 / pulling**0.5)
 
 
+def are_equal(one, other):
+    """Tell whether states are the same to the bit; NaN are those after the end of motion without bound."""
+    return np.array_equal(one, other, equal_nan=True)
+
+
 def own_image(values):
     """Return values that are their own mirror image, half of them as given."""
     return np.where(np.arange(len(values)) < len(values) // 2, values[::-1], values)
@@ -72,18 +77,17 @@ def test_a_state_that_is_its_own_mirror_image_stays_so(drawn, start):
     model, position, velocity, duration = drawn
     for engine in engines_of(model):
         x, u, _ = states_of(engine, model, own_image(position), own_image(velocity), duration, start)
-        assert (np.array([x, u]) == np.array([x, u])[..., ::-1]).all()
+        assert are_equal([x, u], np.array([x, u])[..., ::-1])
 
 
 @settings(max_examples=40)
 @given(chains())
 def test_mirror_images_move_as_mirror_images(drawn):
-    """Not in lanes, where a guess picks one of two blocks whose events rounding cannot tell apart."""
     model, position, velocity, duration = drawn
-    for engine in engines_of(model)[:-1]:
+    for engine in engines_of(model):
         x, u, count = states_of(engine, model, position, velocity, duration)
         other_x, other_u, other_count = states_of(engine, model, position[::-1], velocity[::-1], duration)
-        assert (np.array([x, u]) == np.array([other_x, other_u])[..., ::-1]).all()
+        assert are_equal([x, u], np.array([other_x, other_u])[..., ::-1])
         assert count == other_count
 
 

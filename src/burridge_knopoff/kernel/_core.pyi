@@ -231,6 +231,11 @@ class Run:
     @property
     def slip_clock(self) -> float: ...
 
+def run_in_lockstep(runs: Sequence[Run]) -> list[int]:
+    """
+    Carry out several runs, each to the bit as alone, and return their statuses; those that are alike but for the numbers of their models share the lanes of vectors.
+    """
+
 class StepMark:
     """What repeats the last step of a run that ended."""
 

@@ -13,9 +13,9 @@
 
 #include <algorithm>
 
+#include "layout.h"
 #include "polynomial.h"
 #include "record.h"
-#include "layout.h"
 
 namespace bk {
 

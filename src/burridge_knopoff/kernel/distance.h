@@ -54,6 +54,41 @@ struct GaussLegendre {
 };
 inline const GaussLegendre GAUSS;
 
+// What an estimate of the error of a panel may be, beside ⟨J⟩ in it.
+constexpr double RELATIVE_ERROR = 1e-15, ABSOLUTE_ERROR = 1e-17;
+
+// d and d' at t, from their coefficients, 2n + 2 of each, and J there. Even and odd powers apart, since each sum waits
+// for the last.
+template <class T, class C>
+BK_INLINE void distance_at(const C *position, const C *velocity, int n, T t, T &d, T &rate) {
+    const T square = t * t, zero = t - t;
+    T even = zero + position[2 * n], odd = zero + position[2 * n + 1];
+    T even_rate = zero + velocity[2 * n], odd_rate = zero + velocity[2 * n + 1];
+    for (int k = n - 1; k >= 0; k--) {
+        even = even * square + position[2 * k];
+        odd = odd * square + position[2 * k + 1];
+        even_rate = even_rate * square + velocity[2 * k];
+        odd_rate = odd_rate * square + velocity[2 * k + 1];
+    }
+    d = even + t * odd;
+    rate = even_rate + t * odd_rate;
+}
+
+template <class T>
+BK_INLINE T weigh(const double *weight, const T *value) {
+    T part[8];
+    for (int j = 0; j < 8; j++) part[j] = weight[j] * value[j] + weight[j + 8] * value[j + 8];
+    return ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
+}
+
+// The mean of J over a panel from its values at the nodes, and the square of an estimate of its error.
+template <class T>
+BK_INLINE T mean_of(const T *value, T &error) {
+    const T last = weigh(GAUSS.last, value), previous = weigh(GAUSS.previous, value);
+    error = last * last + previous * previous;
+    return weigh(GAUSS.weight, value);
+}
+
 class Distance {
   public:
     // d and d' on the present piece, lowest power first.
@@ -70,7 +105,7 @@ class Distance {
 
     double value(double t) const {
         double d, rate;
-        at(t, d, rate);
+        distance_at(position, velocity, degree / 2, t, d, rate);
         return std::sqrt(d * d + rate * rate);
     }
 
@@ -86,32 +121,8 @@ class Distance {
 
   private:
     using vec = Lanes<WIDEST>::vec;
-    static constexpr double RELATIVE_ERROR = 1e-15, ABSOLUTE_ERROR = 1e-17;
     static constexpr int DEEPEST = 40;
     bool resting = false;
-
-    // Even and odd powers apart, since each sum waits for the last.
-    template <class T>
-    BK_INLINE void at(T t, T &d, T &rate) const {
-        const int n = degree / 2;
-        const T square = t * t, zero = t - t;
-        T even = zero + position[2 * n], odd = zero + position[2 * n + 1];
-        T even_rate = zero + velocity[2 * n], odd_rate = zero + velocity[2 * n + 1];
-        for (int k = n - 1; k >= 0; k--) {
-            even = even * square + position[2 * k];
-            odd = odd * square + position[2 * k + 1];
-            even_rate = even_rate * square + velocity[2 * k];
-            odd_rate = odd_rate * square + velocity[2 * k + 1];
-        }
-        d = even + t * odd;
-        rate = even_rate + t * odd_rate;
-    }
-
-    static double weigh(const double *weight, const double *value) {
-        double part[8];
-        for (int j = 0; j < 8; j++) part[j] = weight[j] * value[j] + weight[j + 8] * value[j + 8];
-        return ((part[0] + part[1]) + (part[2] + part[3])) + ((part[4] + part[5]) + (part[6] + part[7]));
-    }
 
     double panel(double start, double stop, int depth) const {
         const double middle = 0.5 * (start + stop), half = 0.5 * (stop - start);
@@ -119,13 +130,12 @@ class Distance {
         for (int j = 0; j < NODES; j += WIDEST) {
             vec node, d, rate;
             std::memcpy(&node, GAUSS.node + j, sizeof node);
-            at<vec>(middle + half * node, d, rate);
+            distance_at<vec>(position, velocity, degree / 2, middle + half * node, d, rate);
             const vec made = root(d * d + rate * rate);
             std::memcpy(value + j, &made, sizeof made);
         }
-        const double mean = weigh(GAUSS.weight, value), last = weigh(GAUSS.last, value),
-                     previous = weigh(GAUSS.previous, value);
-        const double error = last * last + previous * previous;
+        double error;
+        const double mean = mean_of(value, error);
         if (error <= (RELATIVE_ERROR * mean + ABSOLUTE_ERROR) * mean || depth >= DEEPEST) return 2.0 * half * mean;
         return panel(start, middle, depth + 1) + panel(middle, stop, depth + 1);
     }

@@ -27,7 +27,7 @@ void Ensemble::run(const double *position, const double *velocity, const bool *s
             accumulating[lane] = 0;
         }
         active |= fresh;
-        if (any(fresh)) settle(fresh);
+        if (any(fresh)) settle_events(fresh);
     };
     for (refill(); any(active); refill()) {
         rounds++;

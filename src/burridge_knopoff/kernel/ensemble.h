@@ -5,7 +5,8 @@
 #pragma once
 
 #include "clouds.h"
-#include "group.h"
+#include "status.h"
+#include "trajectory_lanes.h"
 
 namespace bk {
 
@@ -26,20 +27,13 @@ struct Outcome {
           event_block(size_t(count) * kept), event_kind(size_t(count) * kept) {}
 };
 
-class Ensemble {
+class Ensemble : public TrajectoryLanes {
   public:
-    static constexpr int LANES = Trajectories::LANES;
-    using vec = Trajectories::vec;
-    using mask = Trajectories::mask;
-
     const Model &model;
     long long rounds = 0;
 
     Ensemble(const Model &model, long long rate_limit)
-        : model(model), blocks(model.springs.blocks), rate_limit(double(rate_limit)), layout(model),
-          law(model.law, blocks), state(layout), series(layout, law), search(polynomial), relative(blocks), slipped(blocks) {}
-
-    long long searches() const { return search.searches; }
+        : TrajectoryLanes(model), model(model), rate_limit(double(rate_limit)), slipped(blocks) {}
 
     // Move trajectories from positions x_i, velocities U_i' and stuck blocks, shape (count, blocks), to the last of
     // some ascending times, and keep their states at all of them: a state is that before the events of the same
@@ -51,17 +45,10 @@ class Ensemble {
              Outcome &out, const Clouds *clouds, const std::vector<int> &returns, const std::vector<int> &section);
 
   private:
-    const int blocks;
     const double rate_limit;
-    Trajectories layout;
-    FrictionSeries<Trajectories> law;
-    State<Trajectories> state;
-    Series<Trajectories> series;
-    Polynomial polynomial;
-    EventSearch<Trajectories> search;
-    Trajectories::Rows relative, slipped;
-    vec clock{}, clock_rest{}, target{}, count{}, unit_start{}, unit_count{};
-    mask active{}, accumulating{};
+    Trajectories::Rows slipped;
+    vec target{}, count{}, unit_start{}, unit_count{};
+    mask accumulating{};
     int member[LANES] = {}, next_time[LANES] = {};
     std::vector<int> streak;
     Outcome *out = nullptr;
@@ -76,35 +63,23 @@ class Ensemble {
 
     // Move every lane to its next event, or as far as its series goes, and look at the returns among the events.
     void move(const std::vector<int> &returns, const std::vector<int> &section) {
-        vec fastest{};
-        for (int i = 0; i < blocks; i++) {
-            fastest = largest(fastest, magnitude(state.velocity[i]));
-            slipped[i] = state.slip[i];
-        }
-        const vec reach = series.expand(state, 0);
-        // Towards a pole of the law pieces shrink until the clock stands still.
-        finish(active & ~((clock < clock + reach) & (fastest < ABSURD_SPEED)), DIVERGED);
+        for (int i = 0; i < blocks; i++) slipped[i] = state.slip[i];
+        mask resting;
+        const vec reach = expand(0, resting);
+        finish(active & resting, DIVERGED);
         search.find(series, state, reach, active);
         const vec length = search.time;
         sample(length);
-        const vec left = (times->back() - clock) - clock_rest;
-        const mask ended = active & (left <= length);
+        const mask ended = active & (until(Trajectories::splat(times->back())) <= length);
         if (any(ended)) {
             clock = select(ended, Trajectories::splat(times->back()), clock);
             finish(ended, COMPLETED);
         }
-        series.move(state, length, active);
-        const vec total = clock + (clock_rest + length);
-        clock_rest = (clock - total) + (clock_rest + length);
-        clock = total;
+        advance(length, active);
         const mask event = active & search.found;
         if (!any(event)) return;
-        search.aim(series);
-        for (int i = 0; i < blocks; i++) {
-            const mask due = event & search.due(series, i);
-            if (any(due)) change(i, due);
-        }
-        settle(event);
+        change_due(event, [this](int i, mask where) { change(i, where); });
+        settle_events(event);
         for (size_t k = 0; k < section.size(); k++) {
             const int i = section[k];
             visit(int(k), returns[k], int(section.size()),
@@ -115,7 +90,7 @@ class Ensemble {
     // Keep the states at the times that lie within the coming pieces.
     void sample(vec length) {
         for (;;) {
-            const vec ahead = (target - clock) - clock_rest;
+            const vec ahead = until(target);
             const int due = bits(active & (ahead <= length));
             if (!due) return;
             for (int i = 0; i < blocks; i++) {
@@ -151,22 +126,8 @@ class Ensemble {
         accumulating |= where & (unit_count > rate_limit);
     }
 
-    // Carry out every change that is due at this instant, to the last one, before time moves on.
-    void settle(mask where) {
-        std::vector<int> due(blocks);
-        for (where &= ~accumulating; any(where); where &= ~accumulating) {
-            mask changing{};
-            for (int i = 0; i < blocks; i++) relative[i] = state.velocity[i] - model.v;
-            // Who changes is decided before anyone does: then no order of the blocks is preferred.
-            for (int i = 0; i < blocks; i++) {
-                const mask own = where & state.pending(relative.at(), i);
-                due[i] = bits(own);
-                changing |= own;
-            }
-            for (int i = 0; i < blocks; i++)
-                if (due[i]) change(i, Trajectories::from_bits(due[i]));
-            where = changing;
-        }
+    void settle_events(mask where) {
+        settle(where, [this](int i, mask own) { change(i, own); }, [this] { return ~accumulating; });
     }
 
     // Look at the returns of some lanes to a cloud; a lane is done when enough of them have been near it.

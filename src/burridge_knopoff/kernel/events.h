@@ -68,6 +68,7 @@ class EventSearch {
     static constexpr int ORDER = L::ORDER, LANES = L::LANES;
     using vec = typename L::vec;
     using mask = typename L::mask;
+    using Number = typename L::Number;
     // How often a trajectory had to be searched block by block.
     long long searches = 0;
     vec time;    // of the event, or the reach where there is none
@@ -84,15 +85,11 @@ class EventSearch {
         deflate(series, state);
         time = reach_of_bounds = reach;
         found = mask{};
-        for (double &one : crossing) one = UNCERTAIN;
+        crossing = Number{} + UNCERTAIN;
         mask wanted = bound(series, reach, where, section), doubtful{};
         const mask backward = state.layout.symmetric ? turns_back(state, where) : mask{};
-        bool crosses = false;
-        for (int clock = 0; section >= 0 && clock < CLOCKS; clock++) {
-            const size_t place = of_section(section, clock);
-            if (lowest.lane(place) > SEAM) crossing[clock] = NONE;
-            crosses |= root_at.lane(place) < UNKNOWN;
-        }
+        if (section >= 0) rule_out(lowest[column_of(section)], section);
+        const bool crosses = section >= 0 && some(of_section(root_at[column_of(section)], section) < UNKNOWN);
         if (L::ONE_CLOCK && (any(wanted) || crosses))
             refine_columns(series, reach, where);
         else if (crosses)
@@ -100,8 +97,8 @@ class EventSearch {
         if (any(wanted)) {
             if (!L::ONE_CLOCK) refine_candidate(series, reach, where);
             doubtful = wanted & where & ~backward & ~proved(series, where & ~backward, section);
-            // Another block than the one that was guessed may be the first, by however little.
-            if (!L::ONE_CLOCK) doubtful |= wanted & where & ~backward & contested;
+            // Another block than the one that was guessed may be the first.
+            if (!L::ONE_CLOCK && any(contested & ~doubtful)) doubtful |= earlier(series, reach, contested & ~doubtful);
             if (!L::ONE_CLOCK && any(doubtful)) {
                 const vec before_time = time;
                 const mask before_found = found;
@@ -118,14 +115,19 @@ class EventSearch {
 
     // Take g of the block that was found in each clock, for `due`.
     void aim(const Series<L> &series) {
-        for (int k = 0; k <= ORDER; k++) {
-            const size_t row = size_t(k) * width * LANES;
-            if (L::ONE_CLOCK) {
-                candidate[k] = L::splat(series.gap.lane(row + std::max(block[0], 0)));
-            } else {
-                for (int lane = 0; lane < LANES; lane++)
-                    candidate[k][lane] = series.gap.lane(row + size_t(std::max(block[lane], 0)) * LANES + lane);
-            }
+        if (aimed) return;
+        aimed = true;
+        if (L::ONE_CLOCK) {
+            for (int k = 0; k <= ORDER; k++)
+                candidate[k] = L::splat(series.gap.lane(size_t(k) * width * LANES + std::max(block[0], 0)));
+            return;
+        }
+        for (int k = 0; k <= ORDER; k++) candidate[k] = series.gap[size_t(k) * width];
+        for (int c = 1; c < columns; c++) {
+            const mask own = is_block(c);
+            if (!any(own)) continue;
+            for (int k = 0; k <= ORDER; k++)
+                candidate[k] = select(own, series.gap[size_t(k) * width + c], candidate[k]);
         }
     }
 
@@ -142,13 +144,13 @@ class EventSearch {
     // When W changes its sign in the first `length` of the reach: NONE if it does not, UNCERTAIN if it has to be looked
     // for.
     static constexpr double NONE = -1.0, UNCERTAIN = -2.0;
-    double crossing_within(const Series<L> &series, double length, int section, int clock = 0) const {
-        if (crossing[clock] == NONE) return NONE;
-        const size_t place = of_section(section, clock);
-        const double at = root_at.lane(place);
-        if (series.gap.lane(place) > 0.0 && at < UNKNOWN && fall[clock] * std::fabs(length - at) > SEAM)
-            return at < length ? at : NONE;
-        return UNCERTAIN;
+    Number crossing_within(const Series<L> &series, Number length, int section) const {
+        const int c = column_of(section);
+        const Number at = of_section(root_at[c], section), start = of_section(series.gap[c], section);
+        const Number apart = length < at ? at - length : length - at;
+        const auto certain = (start > 0.0) & (at < UNKNOWN) & (fall * apart > SEAM), within = at < length;
+        const Number none = Number{} + NONE, uncertain = Number{} + UNCERTAIN;
+        return crossing == none ? none : certain ? (within ? at : none) : uncertain;
     }
 
     // Bounds on g in the piece, for the blocks of a column.
@@ -173,17 +175,34 @@ class EventSearch {
     typename L::Rows root_at, lowest, highest, zeros;
     vec power[ORDER + 1], scaled[ORDER + 1], quotient[ORDER + 1], candidate[ORDER + 1];
     int block[LANES];
-    static constexpr int CLOCKS = L::ONE_CLOCK ? 1 : LANES;
-    double crossing[CLOCKS], fall[CLOCKS];
+    bool aimed = false;  // whether the candidate is the block that was found
+    Number crossing, fall;
     vec reach_of_bounds;
     mask contested;
     Polynomial &polynomial;
 
-    // Where W is in g.
-    static size_t of_section(int section, int clock) {
-        return L::ONE_CLOCK ? size_t(section) : size_t(section) * LANES + clock;
+    // Clocks in which a column has the event, where each column is a block.
+    mask is_block(int c) const {
+        mask own;
+        for (int lane = 0; lane < LANES; lane++) own[lane] = -int64_t(block[lane] == c);
+        return own;
     }
+
+    // Where W is in g, and what a row has there for each clock.
     static int column_of(int section) { return L::ONE_CLOCK ? section / LANES : section; }
+    static BK_INLINE Number of_section(vec row, int section) {
+        if constexpr (L::ONE_CLOCK)
+            return row[section % LANES];
+        else
+            return row;
+    }
+    static BK_INLINE bool some(bool where) { return where; }
+    static BK_INLINE bool some(mask where) { return any(where); }
+
+    // Note that W does not change its sign where a bound on it from below says so.
+    BK_INLINE void rule_out(vec low, int section) {
+        crossing = of_section(low, section) > SEAM ? Number{} + NONE : crossing;
+    }
 
     // Divide the known zeros at the start out of g: a block that has just started has U' = 0.
     void deflate(Series<L> &series, const State<L> &state) {
@@ -233,8 +252,7 @@ class EventSearch {
             if (any(own)) {
                 const vec share = bounds.fall();
                 root_at[c] = select(own & (share < UNKNOWN), share * reach, root_at[c]);
-                for (int clock = 0; section >= 0 && c == column_of(section) && clock < CLOCKS; clock++)
-                    steepness(bounds, reach, of_section(section, clock) % LANES, clock);
+                if (section >= 0 && c == column_of(section)) steepness(bounds, reach, section);
             }
             // Lanes without a block have g = 0 or W.
             if (c < columns) wanted |= own & series.layout.present[c];
@@ -243,12 +261,11 @@ class EventSearch {
     }
 
     // Set `fall`: how fast W falls everywhere in the reach, at least, if that is positive.
-    void steepness(const Bounds<L> &bounds, vec reach, int lane, int clock) {
-        double steepest = bounds.corner[1][lane] - bounds.corner[0][lane], rest = 0.0;
-        for (int k = 1; k < LOW; k++)
-            steepest = std::max(steepest, bounds.corner[k + 1][lane] - bounds.corner[k][lane]);
-        for (int k = LOW + 1; k <= ORDER; k++) rest += k * std::fabs(scaled[k][lane]);
-        fall[clock] = -(LOW * steepest + rest) / reach[lane];
+    void steepness(const Bounds<L> &bounds, vec reach, int section) {
+        vec steepest = bounds.corner[1] - bounds.corner[0], rest{};
+        for (int k = 1; k < LOW; k++) steepest = largest(steepest, bounds.corner[k + 1] - bounds.corner[k]);
+        for (int k = LOW + 1; k <= ORDER; k++) rest += double(k) * magnitude(scaled[k]);
+        fall = of_section(-(double(LOW) * steepest + rest) / reach, section);
     }
 
     // Where a stuck block may start backward, which g does not tell.
@@ -267,6 +284,7 @@ class EventSearch {
             refine_column(series, c, reach, where);
             if (c < columns) first = least(first, select(series.layout.present[c], root_at[c], L::splat(UNKNOWN)));
         }
+        aimed = false;
         first = L::least_of_clock(first);
         found = (first <= reach) & where;
         time = select(found, first, reach);
@@ -294,6 +312,7 @@ class EventSearch {
             number = select(earlier, L::splat(double(c)), number);
         }
         for (int lane = 0; lane < LANES; lane++) block[lane] = int(number[lane]);
+        aimed = false;
         aim(series);
         const mask wanted = where & (first < UNKNOWN);
         first = refine(candidate, 1, first, reach, wanted);
@@ -370,10 +389,7 @@ class EventSearch {
             Bounds<L> bounds;
             bounds.take(scaled);
             failed |= own & ~(bounds.low > zero);
-            for (int clock = 0; section >= 0 && c == column_of(section) && clock < CLOCKS; clock++) {
-                const int lane = of_section(section, clock) % LANES;
-                if (!near[lane] && bounds.low[lane] > SEAM) crossing[clock] = NONE;
-            }
+            if (section >= 0 && c == column_of(section)) rule_out(select(near, vec{}, bounds.low), section);
             highest[c] = select(near | ~own, highest[c], least(highest[c], bounds.high));
         }
         return ~L::any_of_clock(failed);
@@ -381,15 +397,36 @@ class EventSearch {
 
     // Note where a block that is near its own event too, and no image of the one that was found, may be first.
     void contest(const vec *g, int c, mask near) {
-        for (int lane = 0; lane < LANES; lane++) near[lane] &= -int64_t(block[lane] != c);
-        near &= root_at[c] < UNKNOWN;
+        near &= (root_at[c] < UNKNOWN) & ~is_block(c);
         mask same = near;
         for (int k = 0; k <= ORDER && any(same); k++) same &= g[size_t(k) * width] == candidate[k];
         contested |= near & ~same;
     }
 
+    // Take the event of the block that is first, by however little; return where the proof fails then.
+    mask earlier(Series<L> &series, vec reach, mask where) {
+        mask changed{};
+        for (int c = 0; c < columns; c++) {
+            const mask wanted = where & (root_at[c] < UNKNOWN);
+            if (!any(wanted)) continue;
+            const vec root = refine(series.gap.at(c), width, root_at[c], reach, wanted);
+            mask first = wanted & (root <= time);
+            for (int lane = 0; lane < LANES; lane++) {
+                if (!first[lane] || (root[lane] == time[lane] && c >= block[lane])) continue;
+                time[lane] = root[lane];
+                block[lane] = c;
+                changed[lane] = -1;
+            }
+        }
+        if (!any(changed)) return changed;
+        aimed = false;
+        aim(series);
+        return changed & ~proved(series, changed, -1);
+    }
+
     // Search all blocks of some clocks, by halving.
     void search(Series<L> &series, const State<L> &state, vec reach, mask where) {
+        aimed = false;
         const int which = bits(where), clocks = L::ONE_CLOCK ? 1 : LANES;
         for (int lane = 0; lane < clocks; lane++) {
             if (!(which >> lane & 1)) continue;

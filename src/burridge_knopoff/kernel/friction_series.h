@@ -206,9 +206,10 @@ class FrictionSeries {
             } else if (n == 0) {
                 if (o.code != EXP) reciprocal = 1.0 / p[0];
                 made = o.code == RECIPROCAL ? reciprocal
-                       : o.code == POWER    ? each(p[0], [&](double x, int lane) { return std::pow(x, of_lane(o.alpha, lane)); })
-                       : o.code == EXP      ? each(p[0], [](double x, int) { return std::exp(x); })
-                                            : each(p[0], [](double x, int) { return std::log(x); });
+                       : o.code == POWER
+                           ? each(p[0], [&](double x, int lane) { return std::pow(x, of_lane(o.alpha, lane)); })
+                       : o.code == EXP ? each(p[0], [](double x, int) { return std::exp(x); })
+                                       : each(p[0], [](double x, int) { return std::log(x); });
             } else if (o.code == RECIPROCAL) {
                 made = -((inner(p, out, n) + p[n] * out[0]) * out[0]);
             } else if (o.code == POWER) {

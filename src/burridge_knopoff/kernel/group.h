@@ -4,14 +4,9 @@
 #include "catalogue.h"
 #include "interrupt.h"
 #include "observe.h"
+#include "status.h"
 
 namespace bk {
-
-// The same as `running.status`.
-enum Status { HALTED = -2, FULL = -1, COMPLETED = 0, STEP_LIMIT = 1, ACCUMULATING_EVENTS = 2, DIVERGED = 3 };
-
-// A speed that no real motion reaches. The linearized law drives blocks that may slip backward without bound.
-constexpr double ABSURD_SPEED = 1e9;
 
 struct Group {
     static constexpr int LANES = Blocks::LANES;
@@ -103,22 +98,7 @@ struct Group {
     }
 
     // Load |U_i'| of the block in a lane, or θ_i − s_i if it sticks.
-    Polynomial &load(Polynomial &polynomial, int lane) {
-        const int c = lane / LANES, width = series.columns * LANES;
-        if (state.slip.lane(lane) != 0.0) {
-            polynomial.load(&series.velocity.lane(lane), width, Blocks::ORDER, state.slip.lane(lane));
-            return polynomial;
-        }
-        polynomial.degree = Blocks::ORDER;
-        for (int k = 0; k <= Blocks::ORDER; k++) {
-            const vec *x = series.x(k);
-            polynomial.coefficient[k] =
-                -(layout.pull(x, c)[lane % LANES] - layout.diagonal[c][lane % LANES] * x[c][lane % LANES]);
-        }
-        polynomial.coefficient[0] += layout.threshold.lane(lane) - layout.sliding_force.lane(lane);
-        polynomial.coefficient[1] -= layout.drift.lane(lane);
-        return polynomial;
-    }
+    Polynomial &load(Polynomial &polynomial, int lane) { return series.load(polynomial, state, lane); }
 
     // Follow extremes of all blocks between two times of the piece.
     void extremes(Observer &observer, Polynomial &polynomial, double from, double to) {

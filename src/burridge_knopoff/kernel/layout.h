@@ -32,8 +32,8 @@ struct Model {
     // Whether trajectories of both may lie in the lanes of the same vectors.
     bool is_like(const Model &other) const {
         return springs.blocks == other.springs.blocks && springs.start == other.springs.start &&
-               springs.neighbour == other.springs.neighbour && law.is_like(other.law) &&
-               symmetric == other.symmetric && drops() == other.drops();
+               springs.neighbour == other.springs.neighbour && law.is_like(other.law) && symmetric == other.symmetric &&
+               drops() == other.drops();
     }
 };
 
@@ -48,7 +48,7 @@ struct Layout : Lanes<COUNT> {
     using typename Lanes<COUNT>::mask;
 
     int columns = 0;
-    Rows diagonal, threshold, sliding_force, inverse_mass;
+    Rows diagonal, threshold, sliding_force, mass, inverse_mass;
     // What stuck neighbours that do not take part add to ds_i/dτ, see Blocks::outside.
     Rows drift;
     std::vector<mask> present;
@@ -57,7 +57,7 @@ struct Layout : Lanes<COUNT> {
 
     void widen(int count) {
         columns = count;
-        for (Rows *row : {&diagonal, &threshold, &sliding_force, &inverse_mass, &drift}) row->reserve(count);
+        for (Rows *row : {&diagonal, &threshold, &sliding_force, &mass, &inverse_mass, &drift}) row->reserve(count);
         if (int(present.size()) < count) present.resize(count);
     }
 
@@ -106,7 +106,7 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
         closed = springs.ring && n == springs.blocks;
         for (int c = 0; c < columns; c++) {
             diagonal[c] = driving[c] = sliding_force[c] = drift[c] = vec{};
-            threshold[c] = inverse_mass[c] = splat(1.0);
+            threshold[c] = mass[c] = inverse_mass[c] = splat(1.0);
             present[c] = from_bits(n >= (c + 1) * LANES ? -1 : (1 << (n - c * LANES)) - 1);
         }
         if (row) {
@@ -124,6 +124,7 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
             driving.lane(k) = springs.driving[i];
             threshold.lane(k) = springs.threshold[i];
             sliding_force.lane(k) = springs.sliding_force[i];
+            mass.lane(k) = springs.mass[i];
             inverse_mass.lane(k) = 1.0 / springs.mass[i];
             int slot = 0;
             for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) {
@@ -193,6 +194,7 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
 struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
     static constexpr bool ONE_CLOCK = false;
     int degree = 0;
+    bool row;  // whether neighbours are the blocks before and after alone
     std::vector<int> neighbour;
     Rows spring;
 
@@ -202,6 +204,7 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
         share(model);
         widen(springs.blocks);
         degree = std::max(springs.degree, 2);
+        row = springs.row && !springs.ring;
         neighbour.assign(size_t(degree) * columns, 0);
         spring.reserve(size_t(degree) * columns);
         for (int i = 0; i < columns; i++) {
@@ -221,6 +224,7 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
             diagonal.lane(k) = springs.diagonal[i];
             threshold.lane(k) = springs.threshold[i];
             sliding_force.lane(k) = springs.sliding_force[i];
+            mass.lane(k) = springs.mass[i];
             inverse_mass.lane(k) = 1.0 / springs.mass[i];
             for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
                 spring.lane((size_t(i) * degree + p - springs.start[i]) * LANES + lane) = springs.strength[p];
@@ -234,6 +238,7 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
     }
 
     const Law &law(int lane) const { return *laws[lane]; }
+    BK_INLINE vec strength(int i, int slot) const { return spring[size_t(i) * degree + slot]; }
 
     BK_INLINE vec pull(const vec *x, int i) const {
         const int *other = &neighbour[size_t(i) * degree];

@@ -8,6 +8,7 @@
 
 #include "archive.h"
 #include "ensemble.h"
+#include "lockstep.h"
 #include "run.h"
 #include "threads.h"
 #include "time_stepping.h"
@@ -291,11 +292,10 @@ NB_MODULE(_core, m) {
         .def(
             "carry",
             [](Exponents &exponents, Table matrix) {
-                Tangent &tangent = exponents.tangent;
-                for (int v = 0; v < tangent.vectors; v++)
-                    for (int i = 0; i < tangent.blocks; i++) {
-                        tangent.x(v)[i] = matrix(i, v);
-                        tangent.u(v)[i] = matrix(tangent.blocks + i, v);
+                for (int v = 0; v < exponents.tangent.vectors; v++)
+                    for (int i = 0; i < exponents.blocks; i++) {
+                        exponents.x(v)[i] = matrix(i, v);
+                        exponents.u(v)[i] = matrix(exponents.blocks + i, v);
                     }
                 exponents.carry();
             },
@@ -304,13 +304,12 @@ NB_MODULE(_core, m) {
         .def(
             "matrix",
             [](Exponents &exponents) {
-                Tangent &tangent = exponents.tangent;
-                const size_t n = tangent.blocks, vectors = tangent.vectors;
+                const size_t n = exponents.blocks, vectors = exponents.tangent.vectors;
                 std::vector<double> made(2 * n * vectors);
                 for (size_t v = 0; v < vectors; v++)
                     for (size_t i = 0; i < n; i++) {
-                        made[i * vectors + v] = tangent.x(int(v))[i];
-                        made[(n + i) * vectors + v] = tangent.u(int(v))[i];
+                        made[i * vectors + v] = exponents.x(int(v))[i];
+                        made[(n + i) * vectors + v] = exponents.u(int(v))[i];
                     }
                 return numbers(made, {2 * n, vectors});
             },
@@ -404,6 +403,11 @@ NB_MODULE(_core, m) {
         .def_ro("local", &Run::local)
         .def_prop_ro("clock", [](const Run &run) { return run.loading_clock(run.now).time; })
         .def_prop_ro("slip_clock", [](const Run &run) { return run.now.time; });
+
+    m.def(
+        "run_in_lockstep", &run_in_lockstep, "runs"_a, nb::call_guard<Unlocked>(),
+        "Carry out several runs, each to the bit as alone, and return their statuses; those that are alike but for the "
+        "numbers of their models share the lanes of vectors.");
 
     nb::class_<StepMark>(m, "StepMark", "What repeats the last step of a run that ended.")
         .def("__getstate__", &packed<StepMark>)

@@ -54,12 +54,7 @@ struct Observer {
             double begins = std::max(from, start.until(edge[batch]));
             while (batch < batch_integral.size()) {
                 const double ends = start.until(edge[batch + 1]), stop = std::min(ends, to);
-                if (stop > begins) {
-                    // Compensated sums.
-                    const double term = distance.integral(begins, stop), total = batch_integral[batch] + term;
-                    batch_rest[batch] += (batch_integral[batch] - total) + term;
-                    batch_integral[batch] = total;
-                }
+                if (stop > begins) add(distance.integral(begins, stop));
                 if (ends > to || batch == batch_integral.size() - 1) break;
                 batch++;
                 begins = std::max(from, ends);
@@ -70,6 +65,13 @@ struct Observer {
             if (t > to) break;
             distance_sample[next_distance] = distance.value(t);
         }
+    }
+
+    // Add a part of the integral of J to the present batch: compensated sums.
+    void add(double term) {
+        const double total = batch_integral[batch] + term;
+        batch_rest[batch] += (batch_integral[batch] - total) + term;
+        batch_integral[batch] = total;
     }
 
     // Keep a state at the next time of the trajectory. value(i, t, x, u) sets those of block i

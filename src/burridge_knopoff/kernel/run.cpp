@@ -184,7 +184,8 @@ bool Run::plan(Group &group) {
 // Let the block in a lane stop or start now, and keep the event.
 void Run::change(Group &group, int lane, const Clock &at) {
     const int i = group.layout.member[lane];
-    if (exponents.tangent.vectors > 0) exponents.tangent.change(group.state, i);
+    if (exponents.tangent.vectors > 0)
+        exponents.tangent.change(group.state, lane / LANES, Blocks::from_bits(1 << lane % LANES));
     const int kind = group.state.slip.lane(lane) == 0.0;
     group.state.transition(lane / LANES, Blocks::from_bits(1 << lane % LANES));
     if (catalogue && kind) catalogue->start(model.springs, i, at, loading_clock(at), group.state.position.lane(lane));
@@ -275,9 +276,9 @@ int Run::run_whole() {
     Group &group = *groups[group_of[0]];
     for (;;) {
         if (const int reason = blocked()) return reason;
-        if (loading > 0.0 && !group.planned && exponents.stuck(group.state) == blocks) {
+        if (loading > 0.0 && !group.planned && exponents.stuck(&group.state.slip.lane(0)) == blocks) {
             if (load_next(group)) continue;
-            if (exponents.running) exponents.follow(group.state, load.time, true);
+            if (exponents.running) exponents.follow(&group.state.slip.lane(0), load.time, true);
             return COMPLETED;
         }
         if (!group.planned && !plan(group)) {
@@ -293,7 +294,7 @@ int Run::run_whole() {
         if (completed) remember();
         if (observing) observe(group, length);
         if (exponents.tangent.vectors > 0) {
-            exponents.begin_within(group.state, loading_clock(group.start).time, length);
+            exponents.begin_within(&group.state.slip.lane(0), loading_clock(group.start).time, length);
             if (exponents.running) follow(group, length);
         }
         now = group.start.after(length);
@@ -309,7 +310,7 @@ int Run::run_whole() {
             halting = halting_block >= 0 && group.state.slip.lane(halting_block) != 0.0;
             advance(group, length);
             find_due(group);
-            exponents.before_start(group.state, now.time);
+            exponents.before_start(&group.state.slip.lane(0), now.time);
             change_due(group, now);
             while (!log.accumulating && settle(group, now)) {}
             since_event = 0.0;
@@ -320,7 +321,7 @@ int Run::run_whole() {
         }
         // At events, so that all solvers look after them at the same times.
         if (exponents.running && (due || since_event >= LONGEST_FOLLOW * model.springs.unit))
-            exponents.follow(group.state, loading_clock(now).time, completed);
+            exponents.follow(&group.state.slip.lane(0), loading_clock(now).time, completed);
         if (completed) return COMPLETED;
         if (halting && group.state.slip.lane(halting_block) == 0.0) return HALTED;
     }
@@ -339,7 +340,7 @@ bool Run::load_next(Group &group) {
     }
     // The state stays where the last slip left it until the next start.
     const Clock from = alone[0].loaded;
-    if (exponents.tangent.vectors > 0) exponents.begin_within(group.state, from.time, least);
+    if (exponents.tangent.vectors > 0) exponents.begin_within(&group.state.slip.lane(0), from.time, least);
     if (from.until(end) < least) {
         load = {end, 0.0};
         remember();
@@ -347,7 +348,7 @@ bool Run::load_next(Group &group) {
     }
     load = from.after(least);
     // A batch of exponents begins before an event.
-    if (exponents.running) exponents.follow(group.state, load.time, false);
+    if (exponents.running) exponents.follow(&group.state.slip.lane(0), load.time, false);
     for (Block &block : alone) block.loaded = load;
     due.assign(layout.columns, 0);
     for (int c = 0; c < layout.columns; c++) {
@@ -357,7 +358,7 @@ bool Run::load_next(Group &group) {
     if (exponents.running) {
         int first = 0;
         while (left.lane(first) != least) first++;
-        exponents.tangent.load_until_start(model.springs, first);
+        exponents.load_until_start(model.springs, first);
     }
     change_due(group, now);
     while (!log.accumulating && settle(group, now)) {}
@@ -414,17 +415,19 @@ void Run::observe(Group &group, double to) {
 
 // Carry the perturbations along a piece, in strides after which they can be kept apart.
 void Run::follow(Group &group, double length) {
-    exponents.tangent.forget_stops();
+    exponents.tangent.forget_stops(Blocks::all_lanes(true));
     // However long a slow driver takes, nothing changes while all blocks stick.
-    if (exponents.stuck(group.state) == blocks) return;
-    const int parts = exponents.tangent.load(group.state, group.series, length);
+    if (exponents.stuck(&group.state.slip.lane(0)) == blocks) return;
+    exponents.tangent.load(group.state, group.series, length, Blocks::all_lanes(true),
+                           [&](int) -> const Model & { return model; });
+    const int parts = exponents.tangent.parts_of(0);
     // The loading clock, on which the batches are, stands while blocks slip under quasi-static loading.
     const double part = loading > 0.0 ? 0.0 : length / parts;
     for (int k = 1; k <= parts; k++) {
         exponents.tangent.follow(group.layout);
         if (k == parts) break;
-        exponents.tangent.move_on();
-        exponents.follow(group.state, loading_clock(group.start).time + k * part, false);
+        exponents.tangent.move_on(k);
+        exponents.follow(&group.state.slip.lane(0), loading_clock(group.start).time + k * part, false);
     }
 }
 

@@ -90,8 +90,8 @@ class Run {
           local(exponents.tangent.vectors == 0 && (local < 0 ? model.springs.blocks >= MANY : local > 0)),
           step_limit(step_limit), loading(loading), end(observer.end()), blocks(model.springs.blocks),
           first(observer.section ? observer.section - 1 : 0),
-          last(observer.section ? observer.section : model.springs.blocks), law(model.law, 1), alone(blocks), group_of(blocks, -1),
-          lane_of(blocks, -1), version(blocks), begins(blocks) {
+          last(observer.section ? observer.section : model.springs.blocks), law(model.law, 1), alone(blocks),
+          group_of(blocks, -1), lane_of(blocks, -1), version(blocks), begins(blocks) {
         log.unit = model.springs.unit;
         exponents.interval = loading > 0.0 ? 0.0 : model.springs.unit;
         exponents.unit = model.springs.unit;
@@ -127,7 +127,14 @@ class Run {
         for (int i = 0; i < blocks; i++) state_of(i, position[i], speed[i], direction[i]);
     }
 
+    // The group of all blocks, settled.
+    Group &whole() {
+        if (!settled) settle_first();
+        return *groups[group_of[0]];
+    }
+
   private:
+    friend class Lockstep;
     const int blocks, first, last;  // W is the sum over the blocks first … last − 1
     bool settled = false;
     Watch watch;
@@ -135,7 +142,7 @@ class Run {
     Mark marked;
     Polynomial polynomial;
     FrictionSeries<Blocks> law;  // of the group whose piece was expanded last
-    std::vector<Block> alone;  // of those in a group, when it began
+    std::vector<Block> alone;    // of those in a group, when it began
     std::vector<int> group_of, lane_of;
     std::vector<uint64_t> version;
     std::vector<std::unique_ptr<Group>> groups;

@@ -119,6 +119,22 @@ struct Series {
         return t * ((even * square + t * odd) + term[0]);
     }
 
+    // Load |U_i'| of the block in a place, of all lanes of the state, or θ_i − s_i if it sticks.
+    Polynomial &load(Polynomial &polynomial, const State<L> &state, size_t place) {
+        const int c = int(place / L::LANES), lane = int(place % L::LANES);
+        const double slip = state.slip.lane(place);
+        if (slip != 0.0) {
+            polynomial.load(&velocity.lane(place), columns * L::LANES, ORDER, slip);
+            return polynomial;
+        }
+        polynomial.degree = ORDER;
+        for (int k = 0; k <= ORDER; k++)
+            polynomial.coefficient[k] = -(layout.pull(x(k), c)[lane] - layout.diagonal[c][lane] * x(k)[c][lane]);
+        polynomial.coefficient[0] += layout.threshold[c][lane] - layout.sliding_force[c][lane];
+        polynomial.coefficient[1] -= layout.drift[c][lane];
+        return polynomial;
+    }
+
     // Move the state on by t where `moved` says so.
     void move(State<L> &state, vec t, mask moved) {
         const vec zero{};
@@ -193,8 +209,8 @@ struct Series {
     // row n is its slope at the start times U'_n, plus what follows from the rows before: that is ready before U'_n is.
     template <Kind KIND>
     void rows(const State<L> &state) {
-        constexpr int FEW = L::ONE_CLOCK ? 1 : 3;
-        columns == FEW ? fill<KIND, FEW>(state) : fill<KIND, 0>(state);
+        constexpr int FEW = L::ONE_CLOCK ? 1 : 3, FEWER = L::ONE_CLOCK ? 1 : 2;
+        columns == FEW ? fill<KIND, FEW>(state) : columns == FEWER ? fill<KIND, FEWER>(state) : fill<KIND, 0>(state);
     }
 
     // COLUMNS : their number, 0 for any; one that is known lets the compiler keep all that a row needs in registers.

@@ -19,117 +19,142 @@
 
 namespace bk {
 
+template <class L>
 class Tangent {
   public:
-    static constexpr int LANES = Blocks::LANES;
-    using vec = Blocks::vec;
-    using Rows = Blocks::Rows;
+    static constexpr int LANES = L::LANES, CLOCKS = L::ONE_CLOCK ? 1 : LANES;
+    using vec = typename L::vec;
+    using mask = typename L::mask;
+    using Rows = typename L::Rows;
+    using Number = typename L::Number;
 
-    const int blocks, vectors, columns;
+    const int vectors, columns;
     // Vector v has the lanes of its blocks in columns v · columns …
     Rows position, velocity;
 
-    Tangent(int blocks, int vectors)
-        : blocks(blocks), vectors(vectors), columns((blocks + LANES - 1) / LANES),
-          position(size_t(vectors + 1) * columns), velocity(size_t(vectors + 1) * columns),
-          lost(size_t(vectors) * blocks), deceleration(blocks), moving(columns), pull_scale(columns),
-          rates(size_t(columns) * LENGTH), speeds(size_t(columns) * LENGTH * TOGETHER),
-          rows(size_t(columns) * TOGETHER) {}
-
-    double *x(int v) { return &position.lane(size_t(v) * columns * LANES); }
-    double *u(int v) { return &velocity.lane(size_t(v) * columns * LANES); }
+    // columns : of a state
+    Tangent(int columns, int vectors)
+        : vectors(vectors), columns(columns), position(size_t(vectors + 1) * columns),
+          velocity(size_t(vectors + 1) * columns), lost(size_t(vectors) * columns), deceleration(columns),
+          moving(columns), pull_scale(columns), relative(columns), rates(size_t(columns) * LENGTH),
+          speeds(size_t(columns) * LENGTH * TOGETHER), rows(size_t(columns) * TOGETHER) {}
 
     // Forget what stops have taken away, as time moves on or begins again.
-    void forget_stops() { std::fill(deceleration.begin(), deceleration.end(), 0.0); }
+    void forget_stops(mask where) {
+        for (int c = 0; c < columns; c++) deceleration[c] = select(where, vec{}, deceleration[c]);
+    }
 
-    // Carry the perturbations through a stop or start that this block is about to make.
-    void change(const State<Blocks> &state, int i) {
-        const int c = i / LANES, lane = i % LANES;
-        const double force = state.force(c)[lane];
-        if (state.slip.lane(i) != 0.0) {
-            deceleration[i] = state.slip_acceleration(c, state.force(c))[lane];
+    // Carry the perturbations through stops or starts that blocks of a column are about to make.
+    void change(const State<L> &state, int c, mask where) {
+        const L &layout = state.layout;
+        const vec zero{}, force = state.force(c);
+        const mask stops = where & (state.slip[c] != zero), starts = where & ~stops;
+        if (any(stops)) {
+            deceleration[c] = select(stops, state.slip_acceleration(c, force), deceleration[c]);
             for (int v = 0; v < vectors; v++) {
-                lost[size_t(v) * blocks + i] = u(v)[i];
-                u(v)[i] = 0.0;
+                vec &u = velocity[size_t(v) * columns + c], &kept = lost[size_t(v) * columns + c];
+                kept = select(stops, u, kept);
+                u = select(stops, zero, u);
             }
-            return;
         }
-        const double sign = force > 0.0 ? 1.0 : -1.0, mass = state.layout.model.springs.mass[i];
-        if (deceleration[i] != 0.0) {
-            const double factor =
-                (force - sign * (state.layout.model.springs.threshold[i] * state.layout.model.law.at_rest)) / mass / deceleration[i];
-            for (int v = 0; v < vectors; v++) u(v)[i] = factor * lost[size_t(v) * blocks + i];
-        } else if (state.layout.drops && state.at_threshold(c, state.force(c))[lane]) {
-            Rows relative(columns);
-            for (int k = 0; k < columns; k++) relative[k] = state.velocity[k] - state.layout.v;
-            const double rate = state.force_rate(relative.at(), c)[lane];
-            // Where the driver stands the perturbed block starts at the same time: the driver has gone less or more
-            // far.
-            if (rate == 0.0) return;
-            const double factor = sign * state.start_acceleration(c)[lane] / rate;
-            for (int v = 0; v < vectors; v++) u(v)[i] = factor * state.layout.model.springs.pull(x(v), i);
+        if (!any(starts)) return;
+        const vec sign = select(force > 0.0, L::splat(1.0), L::splat(-1.0));
+        const mask turns = starts & (deceleration[c] != zero);
+        if (any(turns)) {
+            const vec factor =
+                (force - sign * (layout.threshold[c] * layout.at_rest)) / layout.mass[c] / deceleration[c];
+            for (int v = 0; v < vectors; v++) {
+                vec &u = velocity[size_t(v) * columns + c];
+                u = select(turns, factor * lost[size_t(v) * columns + c], u);
+            }
         }
-    }
-
-    // Carry the perturbations to the start of block i by the driver alone: it goes as far as takes s_i to the
-    // threshold, x_j → x_j + δs_i/D_i for every block.
-    void load_until_start(const Springs &springs, int i) {
-        forget_stops();
+        if (!layout.drops) return;
+        for (int k = 0; k < columns; k++) relative[k] = state.velocity[k] - layout.v;
+        const vec rate = state.force_rate(relative.at(), c);
+        // Where the driver stands the perturbed block starts at the same time: the driver has gone less or more far.
+        const mask jumps = starts & ~turns & state.at_threshold(c, force) & (rate != zero);
+        if (!any(jumps)) return;
+        const vec factor = sign * state.start_acceleration(c) / rate;
         for (int v = 0; v < vectors; v++) {
-            const double less = springs.pull(x(v), i) / springs.driving[i];
-            for (int j = 0; j < blocks; j++) x(v)[j] += less;
+            const vec *x = position.at(size_t(v) * columns);
+            vec &u = velocity[size_t(v) * columns + c];
+            u = select(jumps, factor * (layout.pull(x, c) - layout.diagonal[c] * x[c]), u);
         }
     }
 
-    // Expand −θ dΦ/dU' / m along a piece of the motion; return into how many parts to divide its length. Coefficient k
-    // is multiplied by t^(k + 1), with t the length of a part, and is 0 where a block sticks.
-    int load(const State<Blocks> &state, Series<Blocks> &series, double length) {
-        const Blocks &layout = state.layout;
-        const Model &model = layout.model;
-        const double pace = model.springs.fastest + model.springs.firmest * model.law.steepest;
-        const int parts = 1 + int(pace * length / STRIDE);
-        part = parts > 1 ? length / parts : length;
-        const double x = model.law.linear ? pace * part : SLOWER * pace * part;
-        rate_terms = 1;
-        degree = LENGTH - 1;
-        while (degree > 3 && x <= enough(degree - 2)) degree -= 2;
+    // Expand −θ dΦ/dU' / m along a piece of the motion; set into how many parts to divide its length. Coefficient k is
+    // multiplied by t^(k + 1), with t the length of a part, and is 0 where a block sticks.
+    //
+    // where : clocks whose perturbations are followed; model(clock) : its model
+    template <class Models>
+    void load(const State<L> &state, Series<L> &series, const Number &length, mask where, Models &&model) {
+        const L &layout = state.layout;
+        for (int k = 0; k < CLOCKS; k++) {
+            parts[k] = degree[k] = rate_terms[k] = 0;
+            if (!where[k]) continue;
+            const Model &own = model(k);
+            const double pace = own.springs.fastest + own.springs.firmest * own.law.steepest;
+            const double whole = at(length, k);
+            parts[k] = 1 + int(pace * whole / STRIDE);
+            const double one = parts[k] > 1 ? whole / parts[k] : whole;
+            at(part, k) = one;
+            const double x = layout.linear ? pace * one : SLOWER * pace * one;
+            rate_terms[k] = 1;
+            degree[k] = LENGTH - 1;
+            while (degree[k] > 3 && x <= enough(degree[k] - 2)) degree[k] -= 2;
+            if (layout.linear) continue;
+            // Fewer rates than terms: one that is left out does harm by itself only, but in a term all rates add up.
+            rate_terms[k] = degree[k] - degree[k] / 5;
+            if (parts[k] > 1) {
+                degree[k] = LENGTH - 1;
+                rate_terms[k] = L::ORDER;
+            }
+        }
         for (int c = 0; c < columns; c++) {
             moving[c] = series.slipping[c];
             pull_scale[c] = part * (moving[c] * layout.inverse_mass[c]);
-            if (model.law.linear) rates[size_t(c) * LENGTH] = pull_scale[c] * (layout.threshold[c] * model.law.rate);
+            if (layout.linear) rates[size_t(c) * LENGTH] = pull_scale[c] * (layout.threshold[c] * layout.rate);
         }
-        if (model.law.linear) return parts;
-        // Fewer rates than terms: one that is left out does harm by itself only, but in a term all rates add up.
-        rate_terms = degree - degree / 5;
-        if (parts > 1) {
-            degree = LENGTH - 1;
-            rate_terms = Blocks::ORDER;
-        }
-        for (int first = 0;;) {
-            for (int c = 0; c < columns; c++) expand_rates(state, series, c, first);
-            if (rate_terms == Blocks::ORDER || is_enough()) return parts;
-            first = rate_terms;
-            rate_terms = std::min(first + 2, int(Blocks::ORDER));
-            degree = std::min(degree + 2, LENGTH - 1);
+        for (int first = 0; !layout.linear;) {
+            const int terms = *std::max_element(rate_terms, rate_terms + CLOCKS);
+            last_rate = lanes_of(rate_terms);
+            for (int c = 0; c < columns; c++) expand_rates(state, series, c, first, terms);
+            bool enough = true;
+            for (int k = 0; k < CLOCKS; k++) {
+                if (degree[k] == 0 || rate_terms[k] == L::ORDER || is_enough(k)) continue;
+                rate_terms[k] = std::min(rate_terms[k] + 2, int(L::ORDER));
+                degree[k] = std::min(degree[k] + 2, LENGTH - 1);
+                enough = false;
+            }
+            if (enough) return;
+            first = terms;
         }
     }
 
-    // Take the rates as series about the end of a part (Horner's scheme, repeated).
-    void move_on() {
+    // Of how many parts the piece of a clock consists.
+    int parts_of(int clock) const { return parts[clock]; }
+    int most_parts() const { return *std::max_element(parts, parts + CLOCKS); }
+
+    // Take the rates as series about the end of a part (Horner's scheme, repeated); leave clocks that have followed
+    // `done` parts.
+    void move_on(int done) {
+        for (int k = 0; k < CLOCKS; k++)
+            if (parts[k] <= done) degree[k] = 0;
+        const int terms = *std::max_element(rate_terms, rate_terms + CLOCKS);
         for (int c = 0; c < columns; c++) {
             vec *rate = rates.at(size_t(c) * LENGTH);
-            for (int n = 0; n < rate_terms - 1; n++)
-                for (int j = rate_terms - 2; j >= n; j--) rate[j] += rate[j + 1];
+            for (int n = 0; n < terms - 1; n++)
+                for (int j = terms - 2; j >= n; j--) rate[j] += rate[j + 1];
         }
     }
 
     // Propagate over one part of a piece with what `load` has made ready for it.
-    void follow(const Blocks &layout) {
+    void follow(const L &layout) {
         int v = 0;
         // Several side by side, as each waits for itself.
         for (; v + 3 <= vectors; v += 3) {
             propagate<3>(layout, v);
-            watch.worked(3 * blocks);
+            watch.worked(3 * columns * LANES);
         }
         if (v + 2 <= vectors) {
             propagate<2>(layout, v);
@@ -139,7 +164,7 @@ class Tangent {
     }
 
   private:
-    static constexpr int LENGTH = Blocks::ORDER + 1, TOGETHER = 3;
+    static constexpr int LENGTH = L::ORDER + 1, TOGETHER = 3;
     // What may be left out of a perturbation over one piece of the motion, as a share of it. Rates and perturbations
     // each leave out that much by the bounds below, about 1e-12 at worst together; as a rule it is less than 1e-13.
     static constexpr double NEGLIGIBLE = 5e-13;
@@ -154,11 +179,26 @@ class Tangent {
     // taken larger by this factor.
     static constexpr double SLOWER = 1.25;
 
-    std::vector<double> lost, deceleration;
-    Rows moving, pull_scale, rates, speeds, rows;
-    double part = 0.0;
-    int rate_terms = 0, degree = 0;
+    Rows lost, deceleration, moving, pull_scale, relative, rates, speeds, rows;
+    Number part{};
+    vec last_rate{};
+    int parts[CLOCKS] = {}, rate_terms[CLOCKS] = {}, degree[CLOCKS] = {};
     Watch watch;
+
+    static vec lanes_of(const int *numbers) {
+        vec made{};
+        for (int k = 0; k < CLOCKS; k++) made[k] = numbers[k];
+        return made;
+    }
+    static double &at(double &number, int) { return number; }
+    static double at(const double &number, int) { return number; }
+    struct Lane {
+        vec &of;
+        int lane;
+        void operator=(double x) { of[lane] = x; }
+    };
+    static Lane at(vec &number, int lane) { return {number, lane}; }
+    static double at(const vec &number, int lane) { return number[lane]; }
 
     // The x with x^(n+1)/(n+1)! = NEGLIGIBLE, rounded to fewer digits than C libraries agree on.
     static double enough(int n) {
@@ -174,23 +214,28 @@ class Tangent {
         return table[n];
     }
 
-    void expand_rates(const State<Blocks> &state, Series<Blocks> &series, int c, int first) {
-        const vec *slope = series.law.row(state.layout.model.law.slope, c);
-        vec *rate = rates.at(size_t(c) * LENGTH), factor = -(state.layout.threshold[c] * pull_scale[c]);
-        series.law.complete_slope(c, first, rate_terms);
-        for (int n = 0; n < rate_terms; n++) {
+    void expand_rates(const State<L> &state, Series<L> &series, int c, int first, int terms) {
+        const L &layout = state.layout;
+        const vec *slope = series.law.row(series.law.law.slope, c);
+        vec *rate = rates.at(size_t(c) * LENGTH), factor = -(layout.threshold[c] * pull_scale[c]);
+        series.law.complete_slope(c, first, terms);
+        for (int n = 0; n < terms; n++) {
             rate[n] = factor * slope[n];
             factor *= part;
         }
-        for (int n = rate_terms; n < degree; n++) rate[n] = vec{};
+        if (L::ONE_CLOCK)
+            for (int n = terms; n < LENGTH - 1; n++) rate[n] = vec{};
+        else
+            for (int n = 0; n < LENGTH - 1; n++) rate[n] = select(last_rate > double(n), rate[n], vec{});
     }
 
     // Whether the rates that are left out are negligible, by the last two that are there.
-    bool is_enough() const {
-        const double limit = NEGLIGIBLE * (rate_terms + 1);
+    bool is_enough(int clock) const {
+        const double limit = NEGLIGIBLE * (rate_terms[clock] + 1);
         for (int c = 0; c < columns; c++) {
-            const vec *last = rates.at(size_t(c) * LENGTH + rate_terms - 2);
-            if (any(limit < FALL * largest(magnitude(last[1]), FALL * magnitude(last[0])))) return false;
+            const vec *last = rates.at(size_t(c) * LENGTH + rate_terms[clock] - 2);
+            const mask more = limit < FALL * largest(magnitude(last[1]), FALL * magnitude(last[0]));
+            if (L::ONE_CLOCK ? any(more) : bool(more[clock])) return false;
         }
         return true;
     }
@@ -199,18 +244,21 @@ class Tangent {
     //
     //     u_(n+1) = (t (pulls of x_n)/m + sum of rate_k u_(n−k))/(n + 1),      x_(n+1) = t u_n/(n + 1).
     template <int COUNT>
-    void propagate(const Blocks &layout, int v) {
-        if (columns > 1)
-            propagate_columns<COUNT>(layout, v);
-        else if (layout.row && !layout.closed)
-            propagate_column<COUNT, true>(layout, v);
-        else
-            propagate_column<COUNT, false>(layout, v);
+    void propagate(const L &layout, int v) {
+        if constexpr (L::ONE_CLOCK) {
+            if (columns == 1 && layout.row && !layout.closed) return propagate_column<COUNT, true>(layout, v);
+            if (columns == 1) return propagate_column<COUNT, false>(layout, v);
+        } else {
+            if (columns == 2 && layout.row) return propagate_few<COUNT, 2>(layout, v);
+            if (columns == 3 && layout.row) return propagate_few<COUNT, 3>(layout, v);
+        }
+        propagate_columns<COUNT>(layout, v);
     }
 
     // In one column all that a row needs, but for the speeds before, stays in registers.
     template <int COUNT, bool OPEN>
-    void propagate_column(const Blocks &layout, int v) {
+    void propagate_column(const L &layout, int v) {
+        const int degree = this->degree[0];
         const vec *rate = rates.at(), first_rate = rate[0], scale = pull_scale[0], diagonal = layout.diagonal[0];
         const vec left = OPEN ? layout.left[0] : vec{}, right = OPEN ? layout.right[0] : vec{};
         vec *speed = speeds.at(), x[COUNT], u[COUNT], position[COUNT], velocity[COUNT];
@@ -219,7 +267,7 @@ class Tangent {
             velocity[i] = this->velocity[v + i];
             u[i] = speed[i] = velocity[i] * moving[0];
         }
-        const int before_rates = rate_terms > 1 ? 0 : degree;
+        const int before_rates = rate_terms[0] > 1 ? 0 : degree;
         for (int n = 0; n < degree; n++) {
             const double factor = INVERSE[n + 1];
             vec change[COUNT]{};
@@ -245,10 +293,60 @@ class Tangent {
         }
     }
 
+    // So does it in the columns of a short row of blocks.
+    template <int COUNT, int COLUMNS>
+    void propagate_few(const L &layout, int v) {
+        const int last = *std::max_element(degree, degree + CLOCKS);
+        const int most_rates = *std::max_element(rate_terms, rate_terms + CLOCKS);
+        const vec own_terms = lanes_of(degree);
+        vec *speed = speeds.at(), *position = this->position.at(size_t(v) * COLUMNS);
+        vec *velocity = this->velocity.at(size_t(v) * COLUMNS), x[COLUMNS][COUNT];
+        for (int i = 0; i < COUNT; i++)
+            for (int c = 0; c < COLUMNS; c++) {
+                x[c][i] = position[i * COLUMNS + c];
+                speed[c * COUNT + i] = velocity[i * COLUMNS + c] * moving[c];
+            }
+        for (int n = 0; n < last; n++) {
+            const double factor = INVERSE[n + 1];
+            const mask own = own_terms > double(n);
+            const vec *now = speed + size_t(n) * COLUMNS * COUNT;
+            vec *next = speed + size_t(n + 1) * COLUMNS * COUNT, change[COLUMNS][COUNT]{};
+            for (int j = 0; most_rates > 1 && j < n; j++)
+                for (int c = 0; c < COLUMNS; c++) {
+                    const vec rate = rates[size_t(c) * LENGTH + n - j];
+                    for (int i = 0; i < COUNT; i++) change[c][i] += rate * speed[(j * COLUMNS + c) * COUNT + i];
+                }
+            const vec growth = part * factor;
+            for (int c = 0; c < COLUMNS; c++) {
+                const vec scale = pull_scale[c], diagonal = layout.diagonal[c], rate = rates[size_t(c) * LENGTH];
+                const vec first = layout.strength(c, 0), second = layout.strength(c, 1);
+                for (int i = 0; i < COUNT; i++) {
+                    const vec pull =
+                        first * x[c > 0 ? c - 1 : 1][i] + second * x[0 < c && c < COLUMNS - 1 ? c + 1 : 0][i];
+                    change[c][i] += scale * (pull - diagonal * x[c][i]);
+                    const vec term = (change[c][i] + rate * now[c * COUNT + i]) * factor;
+                    next[c * COUNT + i] = term;
+                    add(velocity[i * COLUMNS + c], term, own);
+                }
+            }
+            for (int c = 0; c < COLUMNS; c++)
+                for (int i = 0; i < COUNT; i++) {
+                    x[c][i] = now[c * COUNT + i] * growth;
+                    add(position[i * COLUMNS + c], x[c][i], own);
+                }
+        }
+    }
+
+    static BK_INLINE void add(vec &sum, vec term, mask own) {
+        sum = L::ONE_CLOCK ? sum + term : select(own, sum + term, sum);
+    }
+
     template <int COUNT>
-    void propagate_columns(const Blocks &layout, int v) {
+    void propagate_columns(const L &layout, int v) {
         // x_n of vector i is row[i · columns + c], u_n is speed[(n · columns + c) · COUNT + i].
-        const int count = columns;
+        const int count = columns, last = *std::max_element(degree, degree + CLOCKS);
+        const int most_rates = *std::max_element(rate_terms, rate_terms + CLOCKS);
+        const vec own_terms = lanes_of(degree);
         vec *row = rows.at(), *speed = speeds.at();
         vec *position = this->position.at(size_t(v) * count), *velocity = this->velocity.at(size_t(v) * count);
         for (int i = 0; i < COUNT; i++)
@@ -256,29 +354,30 @@ class Tangent {
                 speed[c * COUNT + i] = velocity[i * count + c] * moving[c];
                 row[i * count + c] = position[i * count + c];
             }
-        const bool vary = rate_terms > 1;
-        for (int n = 0; n < degree; n++) {
+        for (int n = 0; n < last; n++) {
             const double factor = INVERSE[n + 1];
+            const mask own = own_terms > double(n);
             const vec *now = speed + size_t(n) * count * COUNT;
             vec *next = speed + size_t(n + 1) * count * COUNT;
             for (int c = 0; c < count; c++) {
                 const vec *rate = rates.at(size_t(c) * LENGTH);
                 vec change[COUNT]{};
-                if (vary)
+                if (most_rates > 1)
                     for (int j = 0; j < n; j++)
                         for (int i = 0; i < COUNT; i++)
                             change[i] += rate[n - j] * speed[(size_t(j) * count + c) * COUNT + i];
+                const vec scale = pull_scale[c], diagonal = layout.diagonal[c];
                 for (int i = 0; i < COUNT; i++) {
-                    const vec *own = row + i * count;
-                    change[i] += pull_scale[c] * (layout.pull(own, c) - layout.diagonal[c] * own[c]);
+                    const vec *x = row + i * count;
+                    change[i] += scale * (layout.pull(x, c) - diagonal * x[c]);
                     next[c * COUNT + i] = (change[i] + rate[0] * now[c * COUNT + i]) * factor;
-                    velocity[i * count + c] += next[c * COUNT + i];
+                    add(velocity[i * count + c], next[c * COUNT + i], own);
                 }
             }
             for (int c = 0; c < count; c++)
                 for (int i = 0; i < COUNT; i++) {
                     row[i * count + c] = now[c * COUNT + i] * (part * factor);
-                    position[i * count + c] += row[i * count + c];
+                    add(position[i * count + c], row[i * count + c], own);
                 }
         }
     }

@@ -34,8 +34,8 @@ class TimeStepping {
     Catalogue *catalogue = nullptr;
 
     TimeStepping(const Model &model, EventLog &log, Observer &observer, double step, bool euler)
-        : model(model), log(log), observer(observer), step(step), euler(euler), n(model.springs.blocks),
-          layout(model), state(layout), old_x(n), old_u(n) {
+        : model(model), log(log), observer(observer), step(step), euler(euler), n(model.springs.blocks), layout(model),
+          state(layout), old_x(n), old_u(n) {
         log.unit = model.springs.unit;
         for (auto *table : {&speed, &acceleration}) table->assign(4, std::vector<double>(n));
         for (auto *table : {&x, &u}) table->assign(4, std::vector<double>(n));

@@ -30,11 +30,11 @@ constexpr int WIDEST = BK_LANES;
 
 template <int COUNT>
 struct VectorTypes;
-#define BK_VECTOR_TYPES(COUNT)                                                 \
-    template <>                                                                \
-    struct VectorTypes<COUNT> {                                                \
-        typedef double vec __attribute__((vector_size(8 * COUNT)));            \
-        typedef int64_t mask __attribute__((vector_size(8 * COUNT)));          \
+#define BK_VECTOR_TYPES(COUNT)                                        \
+    template <>                                                       \
+    struct VectorTypes<COUNT> {                                       \
+        typedef double vec __attribute__((vector_size(8 * COUNT)));   \
+        typedef int64_t mask __attribute__((vector_size(8 * COUNT))); \
     };
 BK_VECTOR_TYPES(2)
 BK_VECTOR_TYPES(4)
@@ -107,9 +107,9 @@ BK_INLINE bool any(M where) {
 #else
 #define BK_NARROW(name, ...)
 #endif
-#define BK_INSTRUCTION(name, ...)   \
-    BK_WIDE(name, __VA_ARGS__);     \
-    BK_MIDDLE(name, __VA_ARGS__);   \
+#define BK_INSTRUCTION(name, ...) \
+    BK_WIDE(name, __VA_ARGS__);   \
+    BK_MIDDLE(name, __VA_ARGS__); \
     BK_NARROW(name, __VA_ARGS__)
 
 template <class V>

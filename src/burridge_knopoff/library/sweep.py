@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from itertools import chain as chained
 from itertools import product
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -20,8 +21,9 @@ from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import names_of, value_of
 from burridge_knopoff.model.ranges import Whole
+from burridge_knopoff.running.runner import TOGETHER, run_together
 from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.simulation import prepare
 from burridge_knopoff.running.threads import in_threads
 from burridge_knopoff.values import joined, refusal, shown
 
@@ -84,12 +86,17 @@ def sweep(
         chosen.check_chain(model.chain)
         _named(point if len(axes) > 1 else {}, model.begin, state, chosen.start)
 
-    def one(point: Mapping[str, float], model: Model) -> tuple[dict[str, Any], dict[str, Any]]:
-        found = _named(point, run, model, state, chosen)
-        values = point_values(found)
-        return {name: values[name] for name in _KEPT}, point_attributes(found)
+    def some(first: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
+        part = range(first, min(first + size, len(points)))
+        made = [_named(points[k], prepare, models[k], state, chosen) for k in part]
+        how = run_together([one.runner for one in made])
+        statuses = [_named(points[k], one.runner.ended, end) for k, one, end in zip(part, made, how, strict=True)]
+        runs = [one.result(status) for one, status in zip(made, statuses, strict=True)]
+        return [(_kept_of(point_values(run)), point_attributes(run)) for run in runs]
 
-    found = in_threads(cores or _cores(), one, points, models)
+    cores = cores or _cores()
+    size = min(TOGETHER, -(-len(points) // cores))
+    found = list(chained.from_iterable(in_threads(cores, some, range(0, len(points), size))))
     import xarray
 
     shape = [len(values) for values in axes.values()]
@@ -106,6 +113,10 @@ def sweep(
     first, *others = (attributes for _, attributes in found)
     common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
     return xarray.Dataset(data, attrs=common).set_coords({name for name, item in _KEPT.items() if item.coordinate})
+
+
+def _kept_of(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: values[name] for name in _KEPT}
 
 
 def _grid(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.runner import Runner, new_observer
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.status import Status
 from burridge_knopoff.running.trajectory import Trajectory, collect
 
 
@@ -31,6 +33,34 @@ def run(
 
     Raises ValueError, one line, for anything that the model or the solver does not allow.
     """
+    made = prepare(model, initial, settings, section_only=section_only, stops_only=stops_only)
+    return made.result(made.runner.run())
+
+
+@dataclass(frozen=True, eq=False)
+class Prepared:
+    """A run that has not begun. runner : its solver, at the instant `begun`"""
+
+    model: Model
+    initial: InitialState
+    settings: Settings
+    runner: Runner
+    begun: ChainState
+
+    def result(self, status: Status) -> Trajectory:
+        """Return the trajectory, when the run has ended so."""
+        return collect(self.model, self.initial, self.settings, self.runner, self.begun, status)
+
+
+def prepare(
+    model: Model,
+    initial: InitialState | ChainState,
+    settings: Settings | None = None,
+    *,
+    section_only: bool = False,
+    stops_only: bool = False,
+) -> Prepared:
+    """Return a run that has not begun; parameters and errors are those of `run`."""
     settings = Settings() if settings is None else settings
     settings.check_chain(model.chain)
     if isinstance(initial, ChainState):
@@ -38,12 +68,12 @@ def run(
         initial = InitialState("continued", tuple(begun.position + model.sliding_offset), tuple(begun.velocity))
     else:
         begun = model.begin(initial, settings.start)
-    runner = _prepare(model, settings, begun.time, section_only, stops_only)
+    runner = _runner(model, settings, begun.time, section_only, stops_only)
     runner.begin(begun)
-    return collect(model, initial, settings, runner, begun, runner.run())
+    return Prepared(model, initial, settings, runner, begun)
 
 
-def _prepare(model: Model, settings: Settings, time: float, section_only: bool, stops_only: bool) -> Runner:
+def _runner(model: Model, settings: Settings, time: float, section_only: bool, stops_only: bool) -> Runner:
     """Return a solver for a run that starts at a time, with the observers that the settings ask for."""
     duration = settings.duration
     end = time + duration

@@ -7,9 +7,13 @@ from pathlib import Path
 
 from burridge_knopoff.dataset.about import point_about
 from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.seal import BadFile, check_seal
 from burridge_knopoff.running.command import simulate_command
-from burridge_knopoff.running.simulation import run
+from burridge_knopoff.running.runner import TOGETHER, run_together
+from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.running.simulation import prepare
 from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.study.study import Study
 
@@ -20,20 +24,38 @@ def make_points(study: Study, points: Sequence[Mapping[str, str]], folder: Path)
     points : their wildcards; folder : `points` of the results
     Raises RuntimeError, one line that names the first point that failed and its command, when all others are made.
     """
-    made, failed = 0, []
+    wanted, failed = [], []
     for point in points:
         path = folder / study.point_file.format(**point)
-        model, state, settings = study.run_of(**point)
-        command = simulate_command(model, state, settings)
+        run = study.run_of(**point)
+        command = simulate_command(*run)
         try:
             check_seal(path, point_about(command))
         except BadFile:
-            try:
-                write_point(run(model, state, settings), path)
-                made += 1
-            except (ValueError, MemoryError) as error:
-                failed.append(f"{path}: {error} ({command} --out {path})")
+            wanted.append((path, command, run))
+    for first in range(0, len(wanted), TOGETHER):
+        failed += _make_together(wanted[first : first + TOGETHER])
     if failed:
         more = f"; {counted(len(failed) - 1, 'more point')} of this stretch failed" if len(failed) > 1 else ""
         raise RuntimeError(f"{failed[0]}{more}")
-    return made
+    return len(wanted) - len(failed)
+
+
+def _make_together(wanted: Sequence[tuple[Path, str, tuple[Model, InitialState, Settings]]]) -> list[str]:
+    """Make points, given by their files, commands and runs; return for each that failed a line that says why."""
+    failed, prepared = [], []
+    for path, command, run in wanted:
+        try:
+            prepared.append((path, command, prepare(*run)))
+        except (ValueError, MemoryError) as error:
+            failed.append(_failure(path, error, command))
+    for how, (path, command, one) in zip(run_together([one.runner for *_, one in prepared]), prepared, strict=True):
+        try:
+            write_point(one.result(one.runner.ended(how)), path)
+        except (ValueError, MemoryError) as error:
+            failed.append(_failure(path, error, command))
+    return failed
+
+
+def _failure(path: Path, error: Exception, command: str) -> str:
+    return f"{path}: {error} ({command} --out {path})"

@@ -1,0 +1,372 @@
+#include "lockstep.h"
+
+namespace bk {
+
+std::vector<int> run_in_lockstep(const std::vector<Run *> &runs) {
+    std::vector<std::unique_ptr<Lockstep>> kinds;
+    std::map<Run *, int> status;
+    for (Run *run : runs) {
+        if (!Lockstep::takes(*run)) {
+            status[run] = run->run();
+            continue;
+        }
+        auto kind = std::find_if(kinds.begin(), kinds.end(), [&](auto &one) { return one->is_like(*run); });
+        if (kind == kinds.end()) kind = kinds.insert(kind, std::make_unique<Lockstep>(*run));
+        (*kind)->add(*run);
+    }
+    for (auto &kind : kinds)
+        while (kind->count() > 0) {
+            kind->move(1 << 30);
+            for (auto [run, how] : kind->ended) status[run] = how;
+        }
+    std::vector<int> found;
+    for (Run *run : runs) found.push_back(status[run]);
+    return found;
+}
+
+// Move the runs on, until one has ended or so many rounds are over.
+void Lockstep::move(int rounds) {
+    ended.clear();
+    for (int lane = 0; lane < LANES && !waiting.empty(); lane++) {
+        if (active[lane]) continue;
+        enter(*waiting.front(), lane);
+        waiting.pop_front();
+    }
+    if (waiting.empty() && __builtin_popcount(bits(active)) <= FEW) finish(active);
+    for (; rounds > 0 && ended.empty(); rounds--) round();
+}
+
+// Let a run move in a lane from now on.
+void Lockstep::enter(Run &run, int lane) {
+    Group &group = run.whole();
+    own[lane] = &run;
+    layout.place(run.model, lane);
+    law.place(run.model.law, lane);
+    for (int i = 0; i < blocks; i++) {
+        const size_t k = size_t(i) * LANES + lane;
+        state.position.lane(k) = group.state.position.lane(i);
+        state.velocity.lane(k) = group.state.velocity.lane(i);
+        state.acceleration.lane(k) = group.state.acceleration.lane(i);
+        state.age.lane(k) = group.state.age.lane(i);
+        state.slip.lane(k) = group.state.slip.lane(i);
+        state.touching.lane(k) = group.state.touching.lane(i);
+        in_section[i][lane] = -int64_t(run.first <= i && i < run.last);
+    }
+    clock[lane] = group.start.time;
+    clock_rest[lane] = group.start.rest;
+    end[lane] = run.end;
+    since_event[lane] = run.since_event;
+    longest_follow[lane] = Run::LONGEST_FOLLOW * run.model.springs.unit;
+    observed[lane] = -int64_t(run.observing);
+    averaged[lane] = -int64_t(run.observing && !run.observer.section_only);
+    transient[lane] = run.observer.transient();
+    ends_apart[lane] = run.observer.apart;
+    running[lane] = -int64_t(run.exponents.running);
+    halts[lane] = -int64_t(run.halting_block >= 0);
+    accumulating[lane] = -int64_t(run.log.accumulating);
+    steps[lane] = double(run.steps);
+    most_steps[lane] = double(run.step_limit);
+    active[lane] = changed[lane] = -1;
+    aim(lane);
+    exchange(lane, false);
+}
+
+// Give a run back as it is, at the beginning of a piece.
+void Lockstep::leave(int lane) {
+    Run &run = *own[lane];
+    Group &group = run.whole();
+    for (int i = 0; i < blocks; i++) {
+        const size_t k = size_t(i) * LANES + lane;
+        group.state.position.lane(i) = state.position.lane(k);
+        group.state.velocity.lane(i) = state.velocity.lane(k);
+        group.state.acceleration.lane(i) = state.acceleration.lane(k);
+        group.state.age.lane(i) = state.age.lane(k);
+        group.state.slip.lane(i) = state.slip.lane(k);
+        group.state.touching.lane(i) = state.touching.lane(k);
+        // All blocks of a lane that is free stick: that is over soonest.
+        state.place(k, 0.0, 0.0, true);
+    }
+    layout.place(model, lane);
+    law.place(model.law, lane);
+    group.start = run.now = clock_of(lane);
+    group.planned = false;
+    run.since_event = since_event[lane];
+    run.steps = (long long)steps[lane];
+    exchange(lane, true);
+    active[lane] = running[lane] = observed[lane] = 0;
+    side[lane] = 0.0;
+}
+
+// Let runs end by themselves.
+void Lockstep::finish(mask where) {
+    for (int lane = 0; lane < LANES; lane++) {
+        if (!where[lane]) continue;
+        leave(lane);
+        ended.push_back({own[lane], own[lane]->run()});
+    }
+}
+
+// Take over what an observer wants next.
+void Lockstep::aim(int lane) {
+    const Observer &observer = own[lane]->observer;
+    auto next = [](const std::vector<double> &times, size_t k) { return k < times.size() ? times[k] : NEVER; };
+    batch_begin[lane] = observer.edge[observer.batch];
+    batch_end[lane] = next(observer.edge, observer.batch + 1);
+    distance_time[lane] = next(observer.distance_time, observer.next_distance);
+    trajectory_time[lane] = next(observer.trajectory_time, observer.next_trajectory);
+    side[lane] = observed[lane] ? observer.side : 0.0;
+    highest_speed[lane] = averaged[lane] ? std::min(observer.highest_speed[0], observer.highest_speed[1]) : NEVER;
+    lowest_force[lane] = averaged[lane] ? std::max(observer.lowest_force[0], observer.lowest_force[1]) : -NEVER;
+}
+
+// Move every lane to its next event, or as far as its series goes.
+void Lockstep::round() {
+    watch.worked(blocks * LANES);
+    mask resting;
+    for (int lane = 0; lane < LANES && any(changed); lane++)
+        changed[lane] = -int64_t(changed[lane] && active[lane] && own[lane]->blocked() != COMPLETED);
+    changed |= active & (steps >= most_steps);
+    if (any(changed)) finish(changed);
+    changed = mask{};
+    const bool crosses = any(side != vec{});
+    const vec reach = expand(crosses, resting);
+    if (any(active & resting)) finish(active & resting);
+    if (crosses) load_section();
+    search.find(series, state, reach, active, crosses ? blocks : -1);
+    const vec length = search.time;
+    const mask last = active & (until(end) <= length);
+    if (any(last)) finish(last);
+    steps += 1.0;
+    if (any(active & observed)) observe(length);
+    if (vectors > 0) follow(length);
+    advance(length, active);
+    since_event += length;
+    const mask event = active & search.found;
+    mask halting = event & halts;
+    changed |= event;
+    if (any(event)) {
+        for (int lane = 0; lane < LANES && any(halting); lane++)
+            if (halting[lane]) halting[lane] = -int64_t(state.slip[own[lane]->halting_block][lane] != 0.0);
+        const auto change = [this](int i, mask where) { this->change(i, where); };
+        change_due(event, change);
+        settle(event, change, [this] { return ~accumulating; });
+        since_event = select(event, vec{}, since_event);
+    }
+    // At events, so that all solvers look after them at the same times.
+    const int due = bits(active & running & (event | (since_event >= longest_follow)));
+    for (int lane = 0; due >> lane; lane++)
+        if (due >> lane & 1) orthonormalise(clock[lane], lane);
+    for (int lane = 0; any(halting) && lane < LANES; lane++) {
+        if (!halting[lane] || state.slip[own[lane]->halting_block][lane] != 0.0) continue;
+        leave(lane);
+        ended.push_back({own[lane], HALTED});
+    }
+}
+
+// The coefficients of W = Σ x_i, behind the columns of the blocks.
+void Lockstep::load_section() {
+    for (int k = 0; k <= ORDER; k++) {
+        const vec *x = series.x(k);
+        vec total{};
+        for (int i = 0; i < blocks; i++) total = select(in_section[i], total + x[i], total);
+        series.g(k)[blocks] = side * total;
+    }
+}
+
+// Let a block stop or start now in some lanes, and keep the events.
+void Lockstep::change(int i, mask where) {
+    if (vectors > 0) tangent.change(state, i, where);
+    const int starts = bits(state.slip[i] == vec{}), which = bits(where);
+    state.transition(i, where);
+    for (int lane = 0; which >> lane; lane++) {
+        if (!(which >> lane & 1)) continue;
+        EventLog &log = own[lane]->log;
+        log.add(i, starts >> lane & 1, clock[lane], [&](double *row) {
+            for (int j = 0; j < blocks; j++) {
+                row[j] = state.position[j][lane];
+                row[blocks + j] = state.velocity[j][lane];
+            }
+        });
+        accumulating[lane] = -int64_t(log.accumulating);
+    }
+}
+
+// Take everything from a piece.
+void Lockstep::observe(vec length) {
+    const mask in_window = active & observed & (length > until(transient));
+    const mask wanted = active & observed & ((averaged & in_window) | (until(distance_time) <= length));
+    if (any(wanted)) average(length, wanted);
+    if (any(in_window)) {
+        using Search = EventSearch<Trajectories>;
+        const vec unknown = Trajectories::splat(Search::UNCERTAIN);
+        vec crossing = unknown;
+        if (any(side != vec{}))
+            crossing = select(side != vec{}, search.crossing_within(series, length, blocks), unknown);
+        const int crossed = bits(in_window & (crossing != Search::NONE));
+        for (int lane = 0; crossed >> lane; lane++)
+            if (crossed >> lane & 1) cross(crossing[lane], length[lane], lane);
+    }
+    extremes(length);
+    const int sampled = bits(active & observed & (until(trajectory_time) <= length));
+    for (int lane = 0; sampled >> lane; lane++)
+        if (sampled >> lane & 1) sample(length[lane], lane);
+}
+
+// Average J over the piece, and sample it.
+void Lockstep::average(vec length, mask where) {
+    vec *d = apart.at(), *rate = apart_rate.at();
+    mask resting = series.u(0)[blocks - 1] - series.u(0)[0] == vec{};
+    for (int k = 0; k <= ORDER; k++) {
+        d[k] = series.x(k)[blocks - 1] - series.x(k)[0];
+        rate[k] = series.u(k)[blocks - 1] - series.u(k)[0];
+        if (k > 0) resting &= (d[k] == vec{}) & (rate[k] == vec{});
+    }
+    d[0] += ends_apart;
+    for (int due; (due = bits(where & (until(distance_time) <= length)));) {
+        vec moved, sped;
+        distance_at(d, rate, ORDER / 2, until(distance_time), moved, sped);
+        const vec value = root(moved * moved + sped * sped);
+        for (int lane = 0; due >> lane; lane++) {
+            if (!(due >> lane & 1)) continue;
+            Observer &observer = own[lane]->observer;
+            observer.distance_sample[observer.next_distance++] = value[lane];
+            aim(lane);
+        }
+    }
+    if (!any(where & averaged & (length > until(transient)))) return;
+    const vec ends = until(batch_end), begin = largest(vec{}, until(batch_begin)), stop = least(ends, length);
+    const vec middle = 0.5 * (begin + stop), half = 0.5 * (stop - begin);
+    vec value[NODES], error, moved, sped;
+    for (int j = 0; j < NODES; j++) {
+        distance_at(d, rate, ORDER / 2, middle + half * GAUSS.node[j], moved, sped);
+        value[j] = root(moved * moved + sped * sped);
+    }
+    const vec mean = mean_of(value, error);
+    const mask simple = (error <= (RELATIVE_ERROR * mean + ABSOLUTE_ERROR) * mean) & ~resting & (ends > length);
+    const vec integral = 2.0 * half * mean;
+    for (int lane = 0; lane < LANES; lane++) {
+        if (!where[lane] || !averaged[lane]) continue;
+        Observer &observer = own[lane]->observer;
+        if (simple[lane]) {
+            if (stop[lane] > begin[lane]) observer.add(integral[lane]);
+            continue;
+        }
+        for (int k = 0; k <= ORDER; k++) {
+            observer.distance.position[k] = d[k][lane];
+            observer.distance.velocity[k] = rate[k][lane];
+        }
+        observer.distance.begin(ORDER);
+        observer.average(clock_of(lane), 0.0, length[lane]);
+        aim(lane);
+    }
+}
+
+// Record where W changes its sign.
+void Lockstep::cross(double crossing, double length, int lane) {
+    Run &run = *own[lane];
+    Observer &observer = run.observer;
+    if (crossing == EventSearch<Trajectories>::UNCERTAIN) {
+        polynomial.degree = ORDER;
+        for (int k = 0; k <= ORDER; k++) {
+            double total = 0.0;
+            for (int i = run.first; i < run.last; i++) total += series.x(k)[i][lane];
+            polynomial.coefficient[k] = total;
+        }
+    }
+    observer.cross(polynomial, crossing, clock_of(lane), 0.0, length, length, [&](double t) {
+        double total = 0.0;
+        for (int i = run.first; i < run.last; i++)
+            total += series.value(series.velocity, i, Trajectories::splat(t))[lane] - run.model.v;
+        return total;
+    });
+    side[lane] = observer.side;
+    changed[lane] = -1;
+}
+
+void Lockstep::extremes(vec length) {
+    for (int i = 0; i < blocks; i++) {
+        const mask slips = state.slip[i] != vec{};
+        const vec bound = search.bound_in_piece(i);
+        const int which = bits(active & (bound > select(slips, highest_speed, layout.threshold[i] - lowest_force)));
+        for (int lane = 0; which >> lane; lane++) {
+            if (!(which >> lane & 1)) continue;
+            const size_t place = size_t(i) * LANES + lane;
+            own[lane]->observer.extreme(state.slip.lane(place) != 0.0, layout.threshold.lane(place), bound[lane],
+                                        clock_of(lane), 0.0, length[lane],
+                                        [&]() -> Polynomial & { return series.load(polynomial, state, place); });
+            aim(lane);
+        }
+    }
+}
+
+// Keep the states at times of the trajectory that lie in the piece.
+void Lockstep::sample(double length, int lane) {
+    Observer &observer = own[lane]->observer;
+    while (observer.next_trajectory < observer.trajectory_time.size()) {
+        const vec t = Trajectories::splat(clock_of(lane).until(observer.trajectory_time[observer.next_trajectory]));
+        if (t[0] > length) break;
+        observer.sample([&](int i, double &position, double &speed) {
+            position = series.value(series.position, i, t)[lane];
+            speed = series.value(series.velocity, i, t)[lane];
+        });
+    }
+    aim(lane);
+}
+
+// Carry the perturbations along the piece, in parts after which they can be kept apart.
+void Lockstep::follow(vec length) {
+    mask moving{};
+    for (int i = 0; i < blocks; i++) moving |= state.slip[i] != vec{};
+    const int waiting = bits(active & ~running);
+    for (int lane = 0; waiting >> lane; lane++) {
+        Exponents &exponents = own[lane]->exponents;
+        if (!(waiting >> lane & 1) || clock[lane] + length[lane] <= exponents.start_time) continue;
+        exponents.begin_within(slip_of(lane), clock[lane], length[lane]);
+        running[lane] = -1;
+        exchange(lane, false);
+    }
+    const mask where = active & running & moving;
+    tangent.forget_stops(active & running);
+    if (!any(where)) return;
+    tangent.load(state, series, length, where, [this](int lane) -> const Model & { return own[lane]->model; });
+    for (int done = 1;; done++) {
+        tangent.follow(layout);
+        if (tangent.most_parts() <= done) return;
+        tangent.move_on(done);
+        for (int lane = 0; lane < LANES; lane++) {
+            const int parts = tangent.parts_of(lane);
+            if (parts > done) orthonormalise(clock[lane] + done * (length[lane] / parts), lane);
+        }
+    }
+}
+
+// Keep the perturbations of a lane apart if it is time to.
+void Lockstep::orthonormalise(double clock, int lane) {
+    Exponents &exponents = own[lane]->exponents;
+    const double *directions = slip_of(lane);
+    if (!exponents.is_due(directions, clock)) return;
+    exchange(lane, true);
+    exponents.follow(directions, clock, false);
+    exchange(lane, false);
+}
+
+// Hand the perturbations of a lane out to its run, or take them from there.
+void Lockstep::exchange(int lane, bool out) {
+    Exponents &exponents = own[lane]->exponents;
+    for (int v = 0; v < vectors; v++)
+        for (int i = 0; i < blocks; i++) {
+            const size_t k = (size_t(v) * blocks + i) * LANES + lane;
+            double &x = tangent.position.lane(k), &u = tangent.velocity.lane(k);
+            (out ? exponents.x(v)[i] : x) = out ? x : exponents.x(v)[i];
+            (out ? exponents.u(v)[i] : u) = out ? u : exponents.u(v)[i];
+        }
+}
+
+// The directions in which the blocks of a lane slip.
+const double *Lockstep::slip_of(int lane) {
+    slip.resize(blocks);
+    for (int i = 0; i < blocks; i++) slip[i] = state.slip[i][lane];
+    return slip.data();
+}
+
+}  // namespace bk

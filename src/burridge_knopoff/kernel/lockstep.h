@@ -1,0 +1,85 @@
+// Several runs at once, a lane of vectors each.
+//
+// What a run does in its lane is what it does alone, to the bit: it enters at the beginning of a piece, and leaves at
+// the beginning of the last one, or of one that ends it in any other way, which it then carries out alone. So lanes
+// know nothing of how a run begins and ends. A run has its own law, springs, driver, clock and observables, and no
+// number of it depends on what goes on in other lanes.
+#pragma once
+
+#include <deque>
+#include <map>
+
+#include "run.h"
+#include "trajectory_lanes.h"
+
+namespace bk {
+
+// A model of its own: those of the runs need not last.
+struct Example {
+    const Model model;
+};
+
+class Lockstep : private Example, public TrajectoryLanes {
+  public:
+    // like : one of the runs
+    explicit Lockstep(const Run &like)
+        : Example{like.model}, TrajectoryLanes(Example::model), vectors(like.exponents.tangent.vectors),
+          tangent(blocks, vectors), in_section(blocks), apart(ORDER + 2), apart_rate(ORDER + 2) {}
+
+    // Whether a run may have a lane at all: one that moves as a whole under steady loading, without a catalogue.
+    static bool takes(const Run &run) {
+        return !run.local && run.loading == 0.0 && !run.modes && !run.catalogue && !run.exponents.at_rest;
+    }
+    // Whether a run may move with the others.
+    bool is_like(const Run &run) const { return run.exponents.tangent.vectors == vectors && run.model.is_like(model); }
+
+    // Runs that have ended in the last call of `move`, and how.
+    std::vector<std::pair<Run *, int>> ended;
+
+    // Let a run move with the others from now on: one that is like them.
+    void add(Run &run) { waiting.push_back(&run); }
+    int count() const { return int(waiting.size()) + __builtin_popcount(bits(active)); }
+    void move(int rounds);
+
+  private:
+    static constexpr int ORDER = Trajectories::ORDER;
+    // Runs that remain at the end are as quick alone if they are no more than these.
+    static constexpr int FEW = std::max(1, LANES / 4);
+
+    const int vectors;
+    Tangent<Trajectories> tangent;
+    Run *own[LANES] = {};
+    std::deque<Run *> waiting;
+    Watch watch;
+
+    // What observers ask for next: times, whether J is averaged, and above what an extreme is one.
+    vec end{}, transient{}, batch_begin{}, batch_end{}, distance_time{}, trajectory_time{}, since_event{}, side{},
+        ends_apart{};
+    vec highest_speed{}, lowest_force{}, longest_follow{}, steps{}, most_steps{};
+    mask observed{}, averaged{}, running{}, halts{}, accumulating{}, changed{};
+    std::vector<mask> in_section;
+    Trajectories::Rows apart, apart_rate;  // coefficients of d and d'
+
+    void enter(Run &run, int lane);
+    void leave(int lane);
+    void finish(mask where);
+    void aim(int lane);
+    void round();
+    void load_section();
+    void observe(vec length);
+    void average(vec length, mask where);
+    void cross(double crossing, double length, int lane);
+    void extremes(vec length);
+    void sample(double length, int lane);
+    void follow(vec length);
+    void orthonormalise(double clock, int lane);
+    void exchange(int lane, bool out);
+    void change(int i, mask where);
+    const double *slip_of(int lane);
+    std::vector<double> slip;
+};
+
+// Carry out runs, those that are alike in lockstep, and return how each ended.
+std::vector<int> run_in_lockstep(const std::vector<Run *> &runs);
+
+}  // namespace bk

@@ -1,0 +1,161 @@
+"""Runs in lockstep: each gives, to the bit, what it gives alone."""
+
+import os
+import signal
+import threading
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from burridge_knopoff import Chain, InitialState, Model, Settings, law_of
+from burridge_knopoff.kernel._core import LANES, run_in_lockstep
+from burridge_knopoff.running.runner import Runner, run_together
+from burridge_knopoff.running.section import SUM, Section
+from burridge_knopoff.running.simulation import prepare, run
+from burridge_knopoff.running.status import Status
+from tests.scipy_flow import model_events
+
+LAWS = "linearized", "nonlinear", "carlson_langer", "exponential", "stribeck"
+
+
+@st.composite
+def batches(draw):
+    """Models that differ in numbers alone, with a state and settings of its own each."""
+    generator = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    blocks = draw(st.integers(1, 7))
+    ends = draw(st.sampled_from(["open", "ring"])) if blocks > 2 else "open"
+    law, contact = draw(st.sampled_from(LAWS)), draw(st.sampled_from(["one_sided", "symmetric"]))
+    exponents = draw(st.integers(0, min(2 * blocks, 4)))
+    members = []
+    for _ in range(draw(st.sampled_from([2, LANES - 1, LANES, LANES + 1, 3 * LANES]))):
+        a = float(generator.choice([0.02, 0.08, 0.3]) * generator.uniform(0.8, 1.2))
+        chain = Chain(blocks, generator.uniform(0.3, 3.0), generator.uniform(0.5, 2.0), ends=ends)
+        model = Model(chain, law_of(law, a), float(generator.choice([0.01, 0.1, 0.5])), contact)
+        position, velocity = generator.uniform(-0.5, 0.4, blocks), generator.uniform(0.0, 0.2, blocks)
+        # Blocks that move as one, but for rounding.
+        if generator.random() < 0.4:
+            position, velocity = position + position[::-1], velocity + velocity[::-1]
+        own = Settings(
+            transient=float(generator.choice([0.0, 30.0, 100.0])),
+            window=float(generator.choice([50.0, 150.0])),
+            batches=int(generator.integers(2, 6)),
+            sampling=float(generator.choice([0.1, 1.0, 40.0])),
+            trajectory=float(generator.choice([0.0, 20.0])),
+            events=str(generator.choice(["all", "window", "none"])),
+            section=SUM if generator.random() < 0.5 else Section("block", int(generator.integers(1, blocks + 1))),
+            lyapunov_exponents=exponents,
+        )
+        members.append((model, InitialState("drawn", tuple(position), tuple(velocity)), own))
+    return members
+
+
+def contents(trajectory):
+    """Return all numbers of a trajectory, as bytes, and its status."""
+    numbers = {name: value for name, value in vars(trajectory).items() if isinstance(value, np.ndarray | float | int)}
+    at = trajectory.final
+    final = np.array([at.position, at.velocity, at.stuck])
+    return {name: np.asarray(value).tobytes() for name, value in {**numbers, "final": final}.items()}, trajectory.status
+
+
+@settings(max_examples=60)
+@given(batches())
+def test_each_gives_what_it_gives_alone(members):
+    alone = [run(*member) for member in members]
+    made = [prepare(*member) for member in members]
+    ends = run_together([one.runner for one in made])
+    for first, one, end in zip(alone, made, ends, strict=True):
+        together = one.result(one.runner.ended(end))
+        assert contents(first) == contents(together)
+        # The marks by which both go on are the same as well.
+        longer = Settings(transient=0.0, window=20.0, lyapunov_exponents=0)
+        assert contents(run(one.model, first.final, longer)) == contents(run(one.model, together.final, longer))
+
+
+def test_runs_of_all_kinds_at_once():
+    """Those that no lane takes, long chains in groups, closed forms and steps, are carried out beside the others."""
+    members = []
+    for law in LAWS:
+        for blocks in (2, 3, 24):
+            model = Model(Chain(blocks), law_of(law, 0.1))
+            state = InitialState("drawn", tuple(0.2 * np.cos(np.arange(blocks))), (0.1,) * blocks)
+            for solver in ("series", "map", "rk4"):
+                if solver == "map" and not model.has_closed_form:
+                    continue
+                for exponents in (0, 2) if solver != "rk4" else (0,):
+                    own = Settings(solver=solver, step=0.01, transient=0.0, window=20.0, lyapunov_exponents=exponents)
+                    members += 2 * [(model, state, own)]
+    made = [prepare(*member) for member in members]
+    for member, one, end in zip(members, made, run_together([one.runner for one in made]), strict=True):
+        assert contents(run(*member)) == contents(one.result(one.runner.ended(end)))
+
+
+def test_runs_halt_at_stops_and_go_on():
+    model = Model(Chain(3), law_of("nonlinear", 0.08))
+
+    def runners():
+        for k in range(2 * LANES + 1):
+            one = Runner(model)
+            one.begin(model.begin(InitialState("drawn", (-1.0, -0.9 + 0.01 * k, -1.0), (0.1, 0.12, 0.1))))
+            yield one
+
+    alone, together = list(runners()), list(runners())
+    for _ in range(5):
+        for one in alone:
+            assert one.run(1e3, halting_block=1) == Status.HALTED
+        for one in together:
+            one.kernel.end, one.kernel.halting_block = 1e3, 1
+        assert run_in_lockstep([one.kernel for one in together]) == [Status.HALTED] * len(together)
+        for one, other in zip(alone, together, strict=True):
+            assert one.clock == other.clock
+            assert (one.state().vector() == other.state().vector()).all()
+            assert other.state().stuck[1]
+
+
+def test_runs_end_in_all_ways():
+    """A run without bound, one with too many events and one whose table is full end as alone, and no other."""
+    law, symmetric = law_of("linearized", 3.0), "symmetric"
+    state = InitialState("drawn", (0.3, -0.4), (0.1, 0.0))
+    diverging = Model(Chain(2, 0.1, 0.1), law, 1.0, symmetric), InitialState("drawn", (90.0, -50.0), (0.0, 0.0))
+    ordinary = Model(Chain(2), law_of("linearized", 0.1), 1.0, symmetric), state
+    own = Settings(transient=0.0, window=200.0, lyapunov_exponents=1)
+    members = [(*(diverging if k % 3 == 0 else ordinary), own) for k in range(2 * LANES)]
+    alone = [run(*member) for member in members]
+    assert {one.status for one in alone} == {"completed", "diverged"}
+    made = [prepare(*member) for member in members]
+    for one, other, end in zip(alone, made, run_together([one.runner for one in made]), strict=True):
+        assert contents(one) == contents(other.result(other.runner.ended(end)))
+
+
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+def test_events_against_scipy(law):
+    model, generator = Model(Chain(3), law_of(law, 0.2)), np.random.default_rng(3)
+    runners, starts = [], []
+    for _ in range(LANES + 2):
+        start = model.begin(InitialState("drawn", tuple(generator.uniform(-1.2, -0.4, 3)), (0.1, 0.05, 0.12)))
+        one = Runner(model, keep_events=True)
+        one.begin(start)
+        one.kernel.end = 15.0
+        runners.append(one)
+        starts.append(start)
+    assert run_in_lockstep([one.kernel for one in runners]) == [Status.COMPLETED] * len(runners)
+    for one, start in zip(runners, starts, strict=True):
+        time, block, kind = one.events()
+        expected, _ = model_events(model, start, 15.0)
+        assert len(expected) == len(time) > 5
+        for (when, which, how), *found in zip(expected, time, block + 1, kind, strict=True):
+            assert found[1:] == [which, how]
+            assert abs(found[0] - when) < 1e-8
+
+
+def test_ctrl_c_ends_them():
+    model = Model(Chain(3), law_of("nonlinear", 0.08))
+    runners = [Runner(model) for _ in range(2 * LANES)]
+    for one in runners:
+        one.begin(model.begin(InitialState("drawn", (-1.0, -0.9, -1.0), (0.1, 0.12, 0.1))))
+        one.kernel.end = 1e9
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        run_in_lockstep([one.kernel for one in runners])
