@@ -41,9 +41,13 @@ def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tu
     known : shape (a,); False where no attractor is known to be reached, and the values mean nothing
     values : shape (a, …)
     """
-    found = attractors[[*{name, "branch", "side", "initial_branch", "initial_side"}]].sel(law=law)
-    slots = (found["branch"].values == found["initial_branch"].sel(initial=initial).values[:, None]) & (
-        found["side"].values == found["initial_side"].sel(initial=initial).values[:, None]
-    )
-    slots &= found["branch"].values >= 0
-    return slots.any(axis=1), found[name].values[np.arange(len(slots)), slots.argmax(axis=1)]
+    # Of variables, not of Datasets: claims ask for it a thousand times.
+    place = {name: attractors[name].values.tolist().index(one) for name, one in (("law", law), ("initial", initial))}
+
+    def of(variable: str) -> np.ndarray:
+        found = attractors.variables[variable]
+        return found.isel({name: k for name, k in place.items() if name in found.dims}).values
+
+    branch = of("branch")
+    slots = (branch == of("initial_branch")[:, None]) & (of("side") == of("initial_side")[:, None]) & (branch >= 0)
+    return slots.any(axis=1), of(name)[np.arange(len(slots)), slots.argmax(axis=1)]

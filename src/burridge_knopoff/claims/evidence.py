@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
@@ -18,6 +18,8 @@ from burridge_knopoff.study.paper import PAPER_A, PAPER_LAWS, PAPER_TRANSIENT, P
 
 if TYPE_CHECKING:
     import xarray
+
+_T = TypeVar("_T")
 
 # A statement on a range of a is judged only with at least this many values of a.
 LEAST_VALUES = 10
@@ -33,11 +35,21 @@ class Evidence:
     summaries : Datasets by name, of those that claims depend on; without those that the study does not make
     config : the study's config: laws, chain, v, contact, start, transient, window, initial, and the section `motion`
     verdicts : on the claims judged before, by name
+    selected : what has been selected from summaries, with what it was selected from, which keeps its id: the judges ask
+        for the same hundreds of times
     """
 
     summaries: Mapping[str, xarray.Dataset]
     config: Mapping[str, Any]
     verdicts: Mapping[str, Verdict] = field(default_factory=dict)
+    selected: dict[Hashable, tuple[Any, object]] = field(default_factory=dict, repr=False, compare=False)
+
+    def _once(self, key: Hashable, select: Callable[[], _T], source: object = None) -> _T:
+        """Return what a function selects from a Dataset, `source`, the first time that it is asked for."""
+        own = id(source), key
+        if own not in self.selected:
+            self.selected[own] = select(), source
+        return self.selected[own][0]
 
     @cached_property
     def halves(self) -> list[Evidence]:
@@ -65,7 +77,10 @@ class Evidence:
         for law in laws:
             if law not in self.config["laws"]:
                 raise NotTestableError(f"the study has no {law} law")
-            if law_of(law, PAPER_A, self.config["laws"][law]) != law_of(law, PAPER_A):
+            own = self.config["laws"][law]
+            if not self._once(
+                (law, str(own)), lambda law=law, own=own: law_of(law, PAPER_A, own) == law_of(law, PAPER_A)
+            ):
                 raise NotTestableError(f"the study's {law} law is not the paper's")
 
     def check_runs(self) -> None:
@@ -93,7 +108,8 @@ class Evidence:
         dataset = self.summaries[name]
         if "law" not in dataset.dims or set(dataset["law"].values) <= {*PAPER_LAWS}:
             return dataset
-        return dataset.sel(law=[law for law in dataset["law"].values if law in PAPER_LAWS])
+        laws = [law for law in dataset["law"].values if law in PAPER_LAWS]
+        return self._once("laws", lambda: dataset.sel(law=laws), dataset)
 
     def compared(self, dataset: xarray.Dataset) -> xarray.Dataset:
         """Return the comparison of the paper's two laws from a summary that compares laws with the first one.
@@ -113,10 +129,13 @@ class Evidence:
         """
         self.check_runs()
         self.check_state(initial)
-        dataset = self.summary(name).sel(initial=initial)
-        if "status" in dataset:
-            dataset = dataset.where(dataset["status"] == Status.COMPLETED)
-        return dataset
+        dataset = self.summary(name)
+
+        def select() -> xarray.Dataset:
+            found = dataset.sel(initial=initial)
+            return found.where(found["status"] == Status.COMPLETED) if "status" in found else found
+
+        return self._once(("initial", initial), select, dataset)
 
     def check_state(self, initial: str) -> None:
         """Raise NotTestableError if the study has no initial state of that name, or it is not the paper's."""
@@ -134,13 +153,19 @@ class Evidence:
         if chosen.sum() < least:
             there = f"what was computed has {chosen.sum()} there"
             raise NotTestableError(f"a statement on all {a} needs {least} values of a; {there}")
-        return dataset.isel(a=chosen)
+        return self._once(("a", chosen.tobytes()), lambda: dataset.isel(a=chosen), dataset)
 
     def at(self, dataset: xarray.Dataset, a: float) -> xarray.Dataset:
         """Return a summary at one value of a; raises NotTestableError if it is not in the grid."""
         if a not in dataset["a"].values:
             raise NotTestableError(f"a = {a:g} is not in the grid")
-        return dataset.sel(a=a)
+        return self._once(("a", a), lambda: dataset.sel(a=a), dataset)
+
+    def weakening(self, law: str, a: np.ndarray) -> np.ndarray:
+        """Return −F'(v), how fast friction falls with velocity at that of the driver, at values of a."""
+        v = self.config["v"]
+        key = law, v, a.tobytes()
+        return self._once(key, lambda: np.array([-float(law_of(law, value).slope(v)) for value in a]))
 
     @property
     def own_convention(self) -> str:
@@ -159,12 +184,16 @@ class Evidence:
         for contact in attractors["contact"].values:
             for start in attractors["start"].values:
                 if (name := f"{contact}, {start}") != self.own_convention:
-                    yield name, attractors.sel(contact=contact, start=start)
+                    yield name, self._of_convention(contact, start)
 
     def own_attractors(self) -> xarray.Dataset:
         """Return the attractors with the branches that initial states reach under the study's convention."""
         self.check_blocks()
-        return self.summary("attractors").sel(contact=self.config["contact"], start=self.config["start"])
+        return self._of_convention(self.config["contact"], self.config["start"])
+
+    def _of_convention(self, contact: str, start: str) -> xarray.Dataset:
+        attractors = self.summary("attractors")
+        return self._once((contact, start), lambda: attractors.sel(contact=contact, start=start), attractors)
 
     def critical_a(self, law: str) -> tuple[float, float]:
         """Return a_c, at which synchrony loses stability, and its error; NaN if the study has no orbits."""

@@ -21,7 +21,6 @@ from burridge_knopoff.claims.verdict import (
     told_where,
     worst,
 )
-from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -77,8 +76,7 @@ def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, 
     evidence.check_blocks()
     found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
     values = found["a"].values
-    slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in values])
-    ratio = found["growth_rate"].values / slope
+    ratio = found["growth_rate"].values / evidence.weakening(law, values)
     measured = extremes("growth rate over −F'(v), in simulations", ratio)
     verdict = worst(by_value(item.value, claimed, tolerance, loose) for item in measured)
     rate = with_error(float(ratio.mean()), float(np.ptp(ratio)))

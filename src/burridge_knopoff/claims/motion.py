@@ -31,7 +31,6 @@ from burridge_knopoff.claims.verdict import (
     verdict_of,
     worst,
 )
-from burridge_knopoff.laws import law_of
 from burridge_knopoff.study.formatting import span, with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
 
@@ -94,7 +93,7 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
     measured = []
     for law in PAPER_LAWS:
         real = equilibrium["eigenvalue"].sel(law=law, part="real").values
-        slope = np.array([-float(law_of(law, value).slope(evidence.config["v"])) for value in equilibrium["a"].values])
+        slope = evidence.weakening(law, equilibrium["a"].values)
         shares[f"values of a, {law}"] = share_of(np.all(real > 0.0, axis=-1))
         measured += extremes("real part of an eigenvalue over −F'(v)", real / slope[:, None], law)
         found = attractors.sel(law=law)

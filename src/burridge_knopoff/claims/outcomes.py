@@ -55,6 +55,6 @@ def reached_at(attractors: xarray.Dataset, at: float, initial: str, law: str, *n
 
     attractors : under one convention
     """
-    there = attractors.sel(a=[at])
-    found = [reached(there, initial, law, name) for name in names]
-    return tuple(values[0] for _, values in found) if found[0][0][0] else None
+    (there,) = np.flatnonzero(attractors["a"].values == at)
+    found = [reached(attractors, initial, law, name) for name in names]
+    return tuple(values[there] for _, values in found) if found[0][0][there] else None
