@@ -78,9 +78,7 @@ class Evidence:
             if law not in self.config["laws"]:
                 raise NotTestableError(f"the study has no {law} law")
             own = self.config["laws"][law]
-            if not self._once(
-                (law, str(own)), lambda law=law, own=own: law_of(law, PAPER_A, own) == law_of(law, PAPER_A)
-            ):
+            if self._once((law, str(own)), partial(law_of, law, PAPER_A, own)) != law_of(law, PAPER_A):
                 raise NotTestableError(f"the study's {law} law is not the paper's")
 
     def check_runs(self) -> None:

@@ -62,6 +62,13 @@ struct Bounds {
     }
 };
 
+// What a search needs only while it goes on: several can share it.
+template <class L>
+struct EventScratch {
+    typename L::vec power[L::ORDER + 1], scaled[L::ORDER + 1], quotient[L::ORDER + 1], candidate[L::ORDER + 1];
+    Polynomial polynomial;
+};
+
 template <class L>
 class EventSearch {
   public:
@@ -74,7 +81,9 @@ class EventSearch {
     vec time;    // of the event, or the reach where there is none
     mask found;  // whether there is one
 
-    explicit EventSearch(Polynomial &polynomial) : polynomial(polynomial) {}
+    explicit EventSearch(EventScratch<L> &scratch)
+        : power(scratch.power), scaled(scratch.scaled), quotient(scratch.quotient), candidate(scratch.candidate),
+          polynomial(scratch.polynomial) {}
 
     // Find the first events within the reach. section : the lane of W in g, or its column where each lane has a clock,
     // −1 if it is not looked for
@@ -115,13 +124,8 @@ class EventSearch {
 
     // Take g of the block that was found in each clock, for `due`.
     void aim(const Series<L> &series) {
-        if (aimed) return;
+        if (aimed || L::ONE_CLOCK) return;
         aimed = true;
-        if (L::ONE_CLOCK) {
-            for (int k = 0; k <= ORDER; k++)
-                candidate[k] = L::splat(series.gap.lane(size_t(k) * width * LANES + std::max(block[0], 0)));
-            return;
-        }
         for (int k = 0; k <= ORDER; k++) candidate[k] = series.gap[size_t(k) * width];
         for (int c = 1; c < columns; c++) {
             const mask own = is_block(c);
@@ -137,7 +141,11 @@ class EventSearch {
         mask same = found & series.layout.present[c];
         // The block itself is the same for certain.
         const int own = L::ONE_CLOCK && block[0] / LANES == c ? 1 << block[0] % LANES : 0;
-        for (int k = 0; k <= ORDER && bits(same) != own; k++) same &= series.gap[size_t(k) * width + c] == candidate[k];
+        for (int k = 0; k <= ORDER && bits(same) != own; k++) {
+            const size_t row = size_t(k) * width;
+            const vec of_block = L::ONE_CLOCK ? L::splat(series.gap.lane(row * LANES + block[0])) : candidate[k];
+            same &= series.gap[row + c] == of_block;
+        }
         return same;
     }
 
@@ -173,7 +181,7 @@ class EventSearch {
 
     int columns, width;
     typename L::Rows root_at, lowest, highest, zeros;
-    vec power[ORDER + 1], scaled[ORDER + 1], quotient[ORDER + 1], candidate[ORDER + 1];
+    vec *const power, *const scaled, *const quotient, *const candidate;
     int block[LANES];
     bool aimed = false;  // whether the candidate is the block that was found
     Number crossing, fall;

@@ -28,8 +28,8 @@ struct Group {
     int number = 0, first = 0;  // its own number, and that of its first block
     bool alive = false;         // whether it has blocks
 
-    Group(const Model &model, FrictionSeries<Blocks> &law, Polynomial &polynomial)
-        : layout(model), state(layout), series(layout, law), search(polynomial) {}
+    Group(const Model &model, FrictionSeries<Blocks> &law, EventScratch<Blocks> &scratch)
+        : layout(model), state(layout), series(layout, law), search(scratch) {}
 
     int size() const { return int(layout.member.size()); }
     // For how many blocks there is memory.
@@ -56,7 +56,6 @@ struct Group {
         search.find(series, state, reach, Blocks::all_lanes(true), section);
         length = search.time[0];
         event = search.found[0];
-        if (event) search.aim(series);
         observed = 0.0;
         planned = true;
         return true;

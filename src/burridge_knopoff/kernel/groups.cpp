@@ -19,7 +19,7 @@ void Run::wait(int i) {
 // Plan a group's next piece and put its end into the queue; false where there is no motion.
 bool Run::schedule(Group &group) {
     if (!plan(group)) return false;
-    group.version++;
+    group.version = ++versions;
     queue.push({group.start.after(group.length), group.number, true, group.version});
     if (observing) section_change += section_range(group);
     return true;
@@ -50,7 +50,7 @@ int Run::run_groups() {
             remember();
             observe_all({end, 0.0}, at.time < NEVER ? at : Clock{end, 0.0});
             for (auto &group : groups) {
-                if (!group->alive || !group->planned) continue;
+                if (!group || !group->alive || !group->planned) continue;
                 const double to = group->start.until(end);
                 if (catalogue) group->record(*catalogue, polynomial, group->observed, to, false);
                 group->observed = to;
@@ -70,7 +70,8 @@ int Run::run_groups() {
 void Run::drop_void(Queue &queue) {
     while (!queue.empty()) {
         const Next &next = queue.top();
-        const uint64_t valid = next.is_group ? groups[next.number]->version : version[next.number];
+        const Group *group = next.is_group ? groups[next.number].get() : nullptr;
+        const uint64_t valid = !next.is_group ? version[next.number] : group ? group->version : 0;
         if (next.version == valid && (next.is_group || group_of[next.number] < 0)) return;
         queue.pop();
     }
@@ -120,7 +121,7 @@ bool Run::process() {
         moves = part(*group);
     }
     for (int number : ending)
-        if (groups[number]->alive && !groups[number]->planned) moves &= schedule(*groups[number]);
+        if (groups[number] && groups[number]->alive && !groups[number]->planned) moves &= schedule(*groups[number]);
     return moves;
 }
 
@@ -129,7 +130,7 @@ void Run::regroup() {
     std::vector<int> all(blocks);
     for (int i = 0; i < blocks; i++) all[i] = i;
     for (auto &group : groups) {
-        if (!group->alive) continue;
+        if (!group || !group->alive) continue;
         const double length = group->start.until(now);
         blind |= !group->plan(0, 0, 0);
         group->advance(length);
@@ -313,7 +314,7 @@ void Run::observe_all(const Clock &at, const Clock &reach) {
     }
     if (at.until(end) <= 0.0) {
         for (auto &group : groups)
-            if (group->alive && group->planned && !observer.section_only) {
+            if (group && group->alive && group->planned && !observer.section_only) {
                 const double to = group->start.until(at);
                 group->extremes(observer, polynomial, group->observed, to);
             }
@@ -376,7 +377,7 @@ void Run::observe_section(const Clock &at, const Clock &reach) {
     section_change = 0.0;
     // From now on pieces count that end later, also those that have begun.
     for (auto &group : groups) {
-        if (!group->alive || !group->planned) continue;
+        if (!group || !group->alive || !group->planned) continue;
         section_change += section_range(*group);
     }
     if (observer.side != 0 && std::fabs(section_at) > section_change + drift * length) return;
@@ -386,7 +387,7 @@ void Run::observe_section(const Clock &at, const Clock &reach) {
     // In the order of their blocks: numbers of groups depend on where a run began.
     std::vector<Group *> parts;
     for (auto &group : groups)
-        if (group->alive && group->planned) parts.push_back(group.get());
+        if (group && group->alive && group->planned) parts.push_back(group.get());
     std::sort(parts.begin(), parts.end(), [](const Group *a, const Group *b) { return a->first < b->first; });
     for (Group *group : parts) {
         int begin, stop;

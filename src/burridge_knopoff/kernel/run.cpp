@@ -12,8 +12,8 @@ void Run::restart(double time) {
     queue = waiting = {};
     spare.clear();
     for (int k = 0; k < int(groups.size()); k++) {
-        groups[k]->version++;
-        groups[k]->alive = false;
+        if (groups[k]) groups[k]->version = ++versions;
+        if (groups[k]) groups[k]->alive = false;
         spare.push_back(k);
     }
     std::fill(group_of.begin(), group_of.end(), -1);
@@ -105,16 +105,13 @@ double Run::stuck_position(int i, const Clock &at) const {
 Group &Run::build(std::vector<int> members, const Clock &at) {
     if (spare.empty()) {
         spare.push_back(int(groups.size()));
-        groups.push_back(std::make_unique<Group>(model, law, polynomial));
+        groups.push_back(nullptr);
     }
     const int number = spare.back(), n = int(members.size());
     spare.pop_back();
     // Memory that a group of many blocks has left behind is given back.
-    if (groups[number]->capacity() > 16 * size_t(n) + 1024) {
-        const uint64_t version = groups[number]->version;
-        groups[number] = std::make_unique<Group>(model, law, polynomial);
-        groups[number]->version = version;
-    }
+    if (!groups[number] || groups[number]->capacity() > 4 * size_t(n) + 64)
+        groups[number] = std::make_unique<Group>(model, law, scratch);
     Group &group = *groups[number];
     // Along a ring, past its last block.
     if (model.springs.ring && n < blocks && members[0] == 0 && members[n - 1] == blocks - 1) {
@@ -169,9 +166,11 @@ void Run::retire(Group &group) {
         alone[i] = block_in(group, k, load);
         group_of[i] = -1;
     }
-    group.version++;
+    group.version = ++versions;
     group.alive = group.planned = false;
     spare.push_back(group.number);
+    // Of groups that many are spare, as after the whole chain has slipped, the memory is given back.
+    if (2 * spare.size() > groups.size() + SPARE) groups[group.number] = nullptr;
 }
 
 bool Run::plan(Group &group) {

@@ -61,6 +61,8 @@ class Run {
     // have to be kept apart.
     static constexpr double LONGEST_FOLLOW = 4.0;
     static constexpr int LANES = Blocks::LANES;
+    // Groups that are kept for others to come, besides as many as there are.
+    static constexpr size_t SPARE = 64;
     using vec = Blocks::vec;
     using mask = Blocks::mask;
 
@@ -141,11 +143,13 @@ class Run {
     double since_event = 0.0;
     Mark marked;
     Polynomial polynomial;
+    EventScratch<Blocks> scratch;
     FrictionSeries<Blocks> law;  // of the group whose piece was expanded last
     std::vector<Block> alone;    // of those in a group, when it began
     std::vector<int> group_of, lane_of;
     std::vector<uint64_t> version;
-    std::vector<std::unique_ptr<Group>> groups;
+    uint64_t versions = 0;                       // of groups, no two alike
+    std::vector<std::unique_ptr<Group>> groups;  // none where its memory was given back
     std::vector<int> spare, due;
     // What comes next at one instant: groups whose pieces end, and blocks without a group that start.
     std::vector<int> ending, starting;

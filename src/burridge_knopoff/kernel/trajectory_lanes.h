@@ -23,6 +23,7 @@ class TrajectoryLanes {
     State<Trajectories> state;
     Series<Trajectories> series;
     Polynomial polynomial;
+    EventScratch<Trajectories> scratch;
     EventSearch<Trajectories> search;
     vec clock{}, clock_rest{};
     mask active{};
@@ -30,7 +31,7 @@ class TrajectoryLanes {
     // model : one that is like those of all lanes
     explicit TrajectoryLanes(const Model &model)
         : blocks(model.springs.blocks), layout(model), law(model.law, blocks), state(layout), series(layout, law),
-          search(polynomial), relative(blocks) {}
+          search(scratch), relative(blocks) {}
     TrajectoryLanes(const TrajectoryLanes &) = delete;
 
     // Expand the motion of all lanes, with columns of g beyond those of the blocks; return for which time the series

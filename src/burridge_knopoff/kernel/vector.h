@@ -195,7 +195,7 @@ class Vectors {
     size_t size() const { return storage.size(); }
     // Make room for as many; what was there is lost.
     void reserve(size_t count) {
-        if (storage.size() < count) storage.assign(count + count / 2, Vec{vec{}});
+        if (storage.size() < count) storage.assign(count + count / 8, Vec{vec{}});
     }
 
   private:
