@@ -30,6 +30,34 @@ def test_results_come_in_order(processes, caplog):
     assert caplog.messages[0].startswith("sums: 30, 0.0 s, the longest 0.0 s")
 
 
+def halves(width):
+    return width / 2, os.getpid()
+
+
+@pytest.mark.parametrize("processes", [1, 3])
+def test_what_results_lead_to_is_carried_out_as_well(processes, caplog):
+    found = []
+
+    def more(name, width, result):
+        half, process = result
+        found.append((name, width, half, process))
+        return [(name + side, half) for side in "lr" if half > 1.0]
+
+    with shared_out(processes) as each, caplog.at_level(logging.INFO):
+        each.and_on("halved", halves, [("a", 8.0), ("b", 2.0)], more)
+        each.log()
+    assert sorted(name for name, *_ in found) == ["a", "al", "all", "alr", "ar", "arl", "arr", "b"]
+    assert all(half == width / 2 for _, width, half, _ in found)
+    assert ({process for *_, process in found} == {os.getpid()}) == (processes == 1)
+    assert caplog.messages[0].startswith("halved: 8, ")
+
+
+@pytest.mark.parametrize("processes", [1, 3])
+def test_an_error_on_the_way_ends_all(processes):
+    with shared_out(processes) as each, pytest.raises(ValueError, match="1: not allowed"):
+        each.and_on("refused", refused, [("a", 1)], lambda *_: [])
+
+
 def test_where_the_system_forbids_fork_this_process_does_all_the_work(monkeypatch):
     monkeypatch.setattr("sys.platform", "darwin")
     with shared_out(3) as each:

@@ -6,10 +6,9 @@ in the order of the states. Where a fraction is small few are enough.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from burridge_knopoff.attractors.labels import UNDETERMINED, label_together
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.model.sampling import half_width, most_states, sample_states, seed_at
+from burridge_knopoff.running.processes import Shared
 
 #: States that one process labels at a time; no label depends on it.
 PART = 250
@@ -30,9 +30,7 @@ PATIENCE_MARGIN = 3.0
 STEP = 50
 
 
-def fraction_labels(
-    searches: Sequence[Search], start: str, each: Callable[..., list[Any]]
-) -> tuple[list[Search], list[np.ndarray]]:
+def fraction_labels(searches: Sequence[Search], start: str, each: Shared) -> tuple[list[Search], list[np.ndarray]]:
     """Return, for each model, the index of the attractor that each drawn state reaches, and the searches as they are.
 
     start : see `Model.begin`; each : as `running.processes.shared_out` gives it

@@ -10,12 +10,11 @@ Chaos 33 (2023) 073151: the search at each parameter begins from the attractors 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -33,7 +32,7 @@ from burridge_knopoff.continuation.settings import REFINE, Refine
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import Shared, shared_out
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,9 +143,7 @@ def _knows_more(search: Search, before: Search) -> bool:
     return len(search.attractors) > len(before.attractors)
 
 
-def _hand_on(
-    searches: Sequence[Search], each: Callable[..., list[Any]], matcher: Matcher, new: Sequence[bool]
-) -> list[Search]:
+def _hand_on(searches: Sequence[Search], each: Shared, matcher: Matcher, new: Sequence[bool]) -> list[Search]:
     """Follow attractors, down and up, to the neighbouring a at which they are not known, or not as they are.
 
     new : which of the searches may know what its neighbours have not been asked for

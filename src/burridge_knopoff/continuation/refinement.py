@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import count, pairwise
-from typing import Any
+from itertools import pairwise
 
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.capture_radius import PUSH_GROUP
@@ -14,6 +13,7 @@ from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher, Outline, outlines
 from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.processes import Shared
 
 #: Numbers of the attractors on both sides of a gap that differ.
 Differing = tuple[list[int], list[int]]
@@ -41,9 +41,7 @@ class Gap:
         return bool(self.before or self.after) and not near
 
 
-def refined(
-    searches: Sequence[Search], refine: Refine, matcher: Matcher, each: Callable[..., list[Any]]
-) -> list[list[Search]]:
+def refined(searches: Sequence[Search], refine: Refine, matcher: Matcher, each: Shared) -> list[list[Search]]:
     """Return searches at values of a between each two neighbours of the grid, ascending; none where nothing changes.
 
     refine : how near to each other the values have to be at which something differs
@@ -56,20 +54,20 @@ def refined(
     found: list[list[Search]] = [[] for _ in searches[1:]]
     differ = each("compared with the next", partial(_between, matcher=matcher), searches[:-1], searches[1:])
     gaps = [(k, _gap(*pair, *differ[k])) for k, pair in enumerate(pairwise(searches))]
-    for step in count(1):
-        gaps = [(k, gap) for k, gap in gaps if gap.is_open(refine)]
-        if not gaps:
-            break
-        halved = each(f"refined, step {step}", partial(_halved, matcher=matcher), [gap for _, gap in gaps])
-        halves = []
-        for (k, gap), (middle, low, high) in zip(gaps, halved, strict=True):
-            found[k].append(middle)
-            here = middle.attractors
-            lower = _chosen(gap.before, low[0]), _chosen(here, low[1])
-            upper = _chosen(here, high[0]), _chosen(gap.after, high[1])
-            halves.append((k, replace(gap, last=middle.model, before=lower[0], after=lower[1])))
-            halves.append((k, replace(gap, first=middle.model, before=upper[0], after=upper[1])))
-        gaps = halves
+
+    def halves(k: int, gap: Gap, halved: tuple[Search, Differing, Differing]) -> list[tuple[int, Gap]]:
+        middle, low, high = halved
+        found[k].append(middle)
+        here = middle.attractors
+        lower = _chosen(gap.before, low[0]), _chosen(here, low[1])
+        upper = _chosen(here, high[0]), _chosen(gap.after, high[1])
+        both = (
+            replace(gap, last=middle.model, before=lower[0], after=lower[1]),
+            replace(gap, first=middle.model, before=upper[0], after=upper[1]),
+        )
+        return [(k, half) for half in both if half.is_open(refine)]
+
+    each.and_on("refined", partial(_halved, matcher=matcher), [one for one in gaps if one[1].is_open(refine)], halves)
     return [sorted(inner, key=lambda search: search.model.a) for inner in found]
 
 

@@ -8,64 +8,121 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, ProcessPoolExecutor
+from concurrent.futures import wait as wait_for
 from contextlib import contextmanager
 from functools import partial
 from multiprocessing import get_context, parent_process
 from multiprocessing.connection import Connection, wait
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from burridge_knopoff.running.cache import forget, kept
 
 _LOG = logging.getLogger(__name__)
 
+_K = TypeVar("_K")
+_T = TypeVar("_T")
+_R = TypeVar("_R")
+
+
+class Shared:
+    """Carries functions out for many items, in several processes at once if there is a pool of them.
+
+    pool : None if this process does all the work; folder : see `shared_out`
+    Function, items and results have to be picklable. A call must not rely on what another call has changed.
+    """
+
+    def __init__(self, pool: Executor | None, folder: str | Path | None) -> None:
+        self._pool, self._folder = pool, folder
+        self.asked: set[Path] = set()
+        self._taken: list[tuple[float, bool]] = []
+        self._last = ""
+
+    def __call__(self, what: str, function: Callable[..., Any], *items: Sequence[Any]) -> list[Any]:
+        """Return the results of a function for each item of one or several sequences, in their order.
+
+        Logs how long the calls took, in seconds; calls in a row with the same `what` are logged together.
+        """
+        call = partial(_timed, self._begin(what), function)
+        return list(map(self._ended, self._pool.map(call, *items) if self._pool else map(call, *items)))
+
+    def and_on(
+        self,
+        what: str,
+        function: Callable[[_T], _R],
+        items: Iterable[tuple[_K, _T]],
+        more: Callable[[_K, _T, _R], Iterable[tuple[_K, _T]]],
+    ) -> None:
+        """Carry a function out for some items, and on for those that its results lead to, each as soon as it is known.
+
+        items : with a name each; more : takes name, item and result and returns what comes of them, in any order
+        """
+        call = partial(_timed, self._begin(what), function)
+        if self._pool is None:
+            todo = deque(items)
+            while todo:
+                name, item = todo.popleft()
+                todo.extend(more(name, item, self._ended(call(item))))
+            return
+        running = {self._pool.submit(call, item): (name, item) for name, item in items}
+        try:
+            while running:
+                for future in wait_for(running, return_when=FIRST_COMPLETED).done:
+                    known = running.pop(future)
+                    for name, item in more(*known, self._ended(future.result())):
+                        running[self._pool.submit(call, item)] = name, item
+        finally:
+            for future in running:
+                future.cancel()
+
+    def log(self, what: str = "") -> None:
+        """Log the calls that were last carried out, unless they are the same as those to come."""
+        if what != self._last:
+            _log(self._last, self._taken)
+            self._taken.clear()
+            self._last = what
+
+    def _begin(self, what: str) -> Path | None:
+        self.log(what)
+        return Path(self._folder, what) if self._folder else None
+
+    def _ended(self, call: tuple[Any, float, Path | None, bool]) -> Any:
+        result, seconds, path, was_read = call
+        if path:
+            self.asked.add(path)
+        self._taken.append((seconds, was_read))
+        return result
+
 
 @contextmanager
-def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Callable[..., list[Any]]]:
-    """Yield a function `each` that maps a function over one or several sequences, in several processes at once.
+def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Shared]:
+    """Yield what carries functions out for many items in several processes at once.
 
     On macOS this process does all the work.
 
     folder : cache of the results for later runs, see `running.cache`; None for no cache. Cached results that no call
         has asked for are deleted at the end
-
-    `each(what, function, *sequences)` returns the list of results and logs how long the calls took, in seconds; calls
-    in a row with the same `what` are logged together. Function, items and results have to be picklable. A call must not
-    rely on what another call has changed.
     """
-    asked: set[Path] = set()
-    taken: list[tuple[float, bool]] = []
-    last = ""
-
-    def each(call: Callable[..., Any], what: str, function: Callable[..., Any], *items: Any) -> list[Any]:
-        nonlocal last
-        if what != last:
-            _log(last, taken)
-            taken.clear()
-            last = what
-        done = list(call(partial(_timed, Path(folder, what) if folder else None, function), *items))
-        asked.update(path for *_, path, _ in done if path)
-        taken.extend((seconds, was_read) for _, seconds, _, was_read in done)
-        return [result for result, *_ in done]
-
     # macOS forbids fork once libraries have threads, and a fresh interpreter would run the caller's script again.
     if processes == 1 or sys.platform == "darwin":
-        yield partial(each, map)
+        yield (each := Shared(None, folder))
     else:
         context = get_context("fork")
         told, tell = context.Pipe(duplex=False)
         with told, tell, ProcessPoolExecutor(processes, context, _end_with_parent, (told,)) as pool:
+            each = Shared(pool, folder)
             try:
-                yield partial(each, pool.map)
+                yield each
             except KeyboardInterrupt:
                 # Nobody reads it: all of them see it.
                 tell.send_bytes(b"end")
                 raise
-    _log(last, taken)
+    each.log()
     if folder:
-        forget(Path(folder), asked)
+        forget(Path(folder), each.asked)
 
 
 def _log(what: str, taken: Sequence[tuple[float, bool]]) -> None:
