@@ -156,7 +156,8 @@ class EventSearch {
         const int c = column_of(section);
         const Number at = of_section(root_at[c], section), start = of_section(series.gap[c], section);
         const Number apart = length < at ? at - length : length - at;
-        const auto certain = (start > 0.0) & (at < UNKNOWN) & (fall * apart > SEAM), within = at < length;
+        const auto certain = (start > 0.0) & (at < UNKNOWN) & (fall * apart > SEAM);
+        const auto within = at < length;
         const Number none = Number{} + NONE, uncertain = Number{} + UNCERTAIN;
         return crossing == none ? none : certain ? (within ? at : none) : uncertain;
     }
