@@ -106,6 +106,7 @@ durations: .venv/kernel
 benchmark: .venv/kernel .venv-benchmark/ready
 	.venv-benchmark/bin/python benchmarks/floor.py
 	.venv-benchmark/bin/python benchmarks/peers.py
+	.venv-benchmark/bin/python benchmarks/lockstep.py
 	.venv-benchmark/bin/python benchmarks/chains.py
 	.venv-benchmark/bin/python benchmarks/lyapunov.py
 	.venv-benchmark/bin/python benchmarks/maps.py
