@@ -17,7 +17,7 @@ from burridge_knopoff import Chain, ChainState, Model, law_of
 from burridge_knopoff.kernel._core import Catalogue, Clouds, Exponents
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.ensemble import new_ensemble
-from burridge_knopoff.running.runner import STEPPING, Runner, new_observer
+from burridge_knopoff.running.runner import STEPPING, Runner, new_observer, run_together
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.values import MOST_NUMBERS
 
@@ -94,6 +94,28 @@ def move_many(model: Model, random: np.random.Generator) -> str:
     return "labels"
 
 
+def move_together(model: Model, random: np.random.Generator) -> str:
+    """Carry out several runs in lockstep, of which some have ended before others begin."""
+    blocks, runners = model.blocks, []
+    vectors = int(random.integers(0, 4)) if blocks < 12 else 0
+    for _ in range(random.integers(1, 30)):
+        edges = np.cumsum(random.uniform(0.1, 10.0, 3))
+        runner = Runner(
+            model,
+            events_from=float(edges[0]),
+            keep_events=True,
+            observer=new_observer(model, edges, edges, edges[:2], bool(random.random() < 0.3)),
+            exponents=Exponents(blocks, vectors, 0.0, edges),
+        )
+        runner.begin(random_state(model, random))
+        runners.append(runner)
+    for runner, end in zip(runners, run_together(runners), strict=True):
+        runner.ended(end)
+        runner.observer.results()
+        runner.exponents.results()
+    return "in lockstep"
+
+
 def main() -> None:
     """Make random runs for some seconds and tell how many there were."""
     seconds, seed = (int(word) for word in [*sys.argv[1:], "120", "0"][:2])
@@ -111,6 +133,10 @@ def main() -> None:
                 way = "refused"
             done[way] += 1
         done[move_many(model, random)] += 1
+        try:
+            done[move_together(model, random)] += 1
+        except ValueError:
+            done["refused"] += 1
         seed += 1
     print(f"\r{seed} models, {done.total()} runs:", ", ".join(f"{count} {way}" for way, count in done.most_common()))
 
