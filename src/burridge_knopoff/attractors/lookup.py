@@ -42,11 +42,12 @@ def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tu
     values : shape (a, …)
     """
     # Of variables, not of Datasets: claims ask for it a thousand times.
-    place = {name: attractors[name].values.tolist().index(one) for name, one in (("law", law), ("initial", initial))}
+    chosen = {"law": law, "initial": initial}
+    place = {dimension: attractors[dimension].values.tolist().index(one) for dimension, one in chosen.items()}
 
     def of(variable: str) -> np.ndarray:
         found = attractors.variables[variable]
-        return found.isel({name: k for name, k in place.items() if name in found.dims}).values
+        return found.isel({dimension: k for dimension, k in place.items() if dimension in found.dims}).values
 
     branch = of("branch")
     slots = (branch == of("initial_branch")[:, None]) & (of("side") == of("initial_side")[:, None]) & (branch >= 0)

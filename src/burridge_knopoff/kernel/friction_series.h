@@ -91,15 +91,9 @@ class FrictionSeries {
             to.code = from.code;
             to.first = from.first;
             to.second = from.second;
-            if constexpr (L::ONE_CLOCK) {
-                to.alpha = from.alpha;
-                to.beta = from.beta;
-                to.gamma = from.gamma;
-            } else {
-                to.alpha[lane] = from.alpha;
-                to.beta[lane] = from.beta;
-                to.gamma[lane] = from.gamma;
-            }
+            L::set_lane(to.alpha, lane, from.alpha);
+            L::set_lane(to.beta, lane, from.beta);
+            L::set_lane(to.gamma, lane, from.gamma);
         }
     }
 
@@ -207,7 +201,7 @@ class FrictionSeries {
                 if (o.code != EXP) reciprocal = 1.0 / p[0];
                 made = o.code == RECIPROCAL ? reciprocal
                        : o.code == POWER
-                           ? each(p[0], [&](double x, int lane) { return std::pow(x, of_lane(o.alpha, lane)); })
+                           ? each(p[0], [&](double x, int lane) { return std::pow(x, L::of_lane(o.alpha, lane)); })
                        : o.code == EXP ? each(p[0], [](double x, int) { return std::exp(x); })
                                        : each(p[0], [](double x, int) { return std::log(x); });
             } else if (o.code == RECIPROCAL) {
@@ -231,9 +225,6 @@ class FrictionSeries {
     const Law &law;
 
   private:
-    static double of_lane(double number, int) { return number; }
-    static double of_lane(vec number, int lane) { return number[lane]; }
-
     int columns = 0;
     const int length;
     Rows coefficients, inverse, derivatives;

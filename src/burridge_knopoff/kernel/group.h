@@ -31,6 +31,8 @@ struct Group {
     Group(const Model &model, FrictionSeries<Blocks> &law, EventScratch<Blocks> &scratch)
         : layout(model), state(layout), series(layout, law), search(scratch) {}
 
+    // The directions in which the blocks slip.
+    const double *slip() const { return &state.slip.lane(0); }
     int size() const { return int(layout.member.size()); }
     // For how many blocks there is memory.
     size_t capacity() const { return layout.diagonal.size() * LANES; }

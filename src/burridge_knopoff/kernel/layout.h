@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <type_traits>
 
 #include "law.h"
 #include "springs.h"
@@ -55,6 +56,20 @@ struct Layout : Lanes<COUNT> {
     bool linear, drops, symmetric;
     Number v, at_rest, rate, coincidence, young;
 
+    // A number of one lane, or of all.
+    static double of_lane(const Number &number, int lane) {
+        if constexpr (std::is_same_v<Number, double>)
+            return number;
+        else
+            return number[lane];
+    }
+    static void set_lane(Number &number, int lane, double value) {
+        if constexpr (std::is_same_v<Number, double>)
+            number = value;
+        else
+            number[lane] = value;
+    }
+
     void widen(int count) {
         columns = count;
         for (Rows *row : {&diagonal, &threshold, &sliding_force, &mass, &inverse_mass, &drift}) row->reserve(count);
@@ -66,6 +81,15 @@ struct Layout : Lanes<COUNT> {
         linear = model.law.linear;
         drops = model.drops();
         symmetric = model.symmetric;
+    }
+
+    // Take the numbers of the model of one lane, or of all.
+    void take(const Model &model, int lane) {
+        set_lane(v, lane, model.v);
+        set_lane(at_rest, lane, model.law.at_rest);
+        set_lane(rate, lane, model.law.rate);
+        set_lane(coincidence, lane, model.coincidence());
+        set_lane(young, lane, model.young());
     }
 };
 
@@ -85,11 +109,7 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
 
     explicit Blocks(const Model &model) : model(model) {
         share(model);
-        v = model.v;
-        at_rest = model.law.at_rest;
-        rate = model.law.rate;
-        coincidence = model.coincidence();
-        young = model.young();
+        take(model, 0);
     }
 
     const Law &law(int) const { return model.law; }
@@ -184,9 +204,8 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
         return total;
     }
 
-    // The same value in all lanes, of the least or largest of them.
+    // The same value in all lanes, of the least of them or whether one of them is set.
     static BK_INLINE vec least_of_clock(vec a) { return splat(least_lane(a)); }
-    static BK_INLINE vec largest_of_clock(vec a) { return splat(largest_lane(a)); }
     static BK_INLINE mask any_of_clock(mask a) { return all_lanes(any(a)); }
 };
 
@@ -230,15 +249,10 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
                 spring.lane((size_t(i) * degree + p - springs.start[i]) * LANES + lane) = springs.strength[p];
         }
         laws[lane] = &model.law;
-        v[lane] = model.v;
-        at_rest[lane] = model.law.at_rest;
-        rate[lane] = model.law.rate;
-        coincidence[lane] = model.coincidence();
-        young[lane] = model.young();
+        take(model, lane);
     }
 
     const Law &law(int lane) const { return *laws[lane]; }
-    BK_INLINE vec strength(int i, int slot) const { return spring[size_t(i) * degree + slot]; }
 
     BK_INLINE vec pull(const vec *x, int i) const {
         const int *other = &neighbour[size_t(i) * degree];
@@ -247,9 +261,14 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
         for (int slot = 2; slot < degree; slot++) total += strength[slot] * x[other[slot]];
         return total;
     }
+    // The same in a row of so many blocks, whose neighbours the compiler knows.
+    template <int COUNT>
+    BK_INLINE vec pull_in_row(const vec *x, int i) const {
+        const vec *strength = spring.at(2 * size_t(i));
+        return strength[0] * x[i > 0 ? i - 1 : 1] + strength[1] * x[0 < i && i < COUNT - 1 ? i + 1 : 0];
+    }
 
     static BK_INLINE vec least_of_clock(vec a) { return a; }
-    static BK_INLINE vec largest_of_clock(vec a) { return a; }
     static BK_INLINE mask any_of_clock(mask a) { return a; }
 
   private:

@@ -14,26 +14,23 @@ std::vector<int> run_in_lockstep(const std::vector<Run *> &runs) {
         if (kind == kinds.end()) kind = kinds.insert(kind, std::make_unique<Lockstep>(*run));
         (*kind)->add(*run);
     }
-    for (auto &kind : kinds)
-        while (kind->count() > 0) {
-            kind->move(1 << 30);
-            for (auto [run, how] : kind->ended) status[run] = how;
-        }
+    for (auto &kind : kinds) kind->run(status);
     std::vector<int> found;
     for (Run *run : runs) found.push_back(status[run]);
     return found;
 }
 
-// Move the runs on, until one has ended or so many rounds are over.
-void Lockstep::move(int rounds) {
-    ended.clear();
-    for (int lane = 0; lane < LANES && !waiting.empty(); lane++) {
-        if (active[lane]) continue;
-        enter(*waiting.front(), lane);
-        waiting.pop_front();
+void Lockstep::run(std::map<Run *, int> &status) {
+    this->status = &status;
+    for (;;) {
+        for (int lane = 0; lane < LANES && !waiting.empty(); lane++) {
+            if (active[lane]) continue;
+            enter(*waiting.front(), lane);
+            waiting.pop_front();
+        }
+        if (waiting.empty() && __builtin_popcount(bits(active)) <= FEW) return finish(active);
+        round();
     }
-    if (waiting.empty() && __builtin_popcount(bits(active)) <= FEW) finish(active);
-    for (; rounds > 0 && ended.empty(); rounds--) round();
 }
 
 // Let a run move in a lane from now on.
@@ -44,12 +41,7 @@ void Lockstep::enter(Run &run, int lane) {
     law.place(run.model.law, lane);
     for (int i = 0; i < blocks; i++) {
         const size_t k = size_t(i) * LANES + lane;
-        state.position.lane(k) = group.state.position.lane(i);
-        state.velocity.lane(k) = group.state.velocity.lane(i);
-        state.acceleration.lane(k) = group.state.acceleration.lane(i);
-        state.age.lane(k) = group.state.age.lane(i);
-        state.slip.lane(k) = group.state.slip.lane(i);
-        state.touching.lane(k) = group.state.touching.lane(i);
+        state.copy(k, group.state, i);
         in_section[i][lane] = -int64_t(run.first <= i && i < run.last);
     }
     clock[lane] = group.start.time;
@@ -77,12 +69,7 @@ void Lockstep::leave(int lane) {
     Group &group = run.whole();
     for (int i = 0; i < blocks; i++) {
         const size_t k = size_t(i) * LANES + lane;
-        group.state.position.lane(i) = state.position.lane(k);
-        group.state.velocity.lane(i) = state.velocity.lane(k);
-        group.state.acceleration.lane(i) = state.acceleration.lane(k);
-        group.state.age.lane(i) = state.age.lane(k);
-        group.state.slip.lane(i) = state.slip.lane(k);
-        group.state.touching.lane(i) = state.touching.lane(k);
+        group.state.copy(i, state, k);
         // All blocks of a lane that is free stick: that is over soonest.
         state.place(k, 0.0, 0.0, true);
     }
@@ -102,7 +89,7 @@ void Lockstep::finish(mask where) {
     for (int lane = 0; lane < LANES; lane++) {
         if (!where[lane]) continue;
         leave(lane);
-        ended.push_back({own[lane], own[lane]->run()});
+        (*status)[own[lane]] = own[lane]->run();
     }
 }
 
@@ -159,7 +146,7 @@ void Lockstep::round() {
     for (int lane = 0; any(halting) && lane < LANES; lane++) {
         if (!halting[lane] || state.slip[own[lane]->halting_block][lane] != 0.0) continue;
         leave(lane);
-        ended.push_back({own[lane], HALTED});
+        (*status)[own[lane]] = HALTED;
     }
 }
 

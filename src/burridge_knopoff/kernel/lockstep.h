@@ -33,13 +33,11 @@ class Lockstep : private Example, public TrajectoryLanes {
     // Whether a run may move with the others.
     bool is_like(const Run &run) const { return run.exponents.tangent.vectors == vectors && run.model.is_like(model); }
 
-    // Runs that have ended in the last call of `move`, and how.
-    std::vector<std::pair<Run *, int>> ended;
-
-    // Let a run move with the others from now on: one that is like them.
+    // Let a run move with the others: one that is like them.
     void add(Run &run) { waiting.push_back(&run); }
-    int count() const { return int(waiting.size()) + __builtin_popcount(bits(active)); }
-    void move(int rounds);
+
+    // Carry out all of them, and tell how each ended.
+    void run(std::map<Run *, int> &status);
 
   private:
     static constexpr int ORDER = Trajectories::ORDER;
@@ -50,6 +48,7 @@ class Lockstep : private Example, public TrajectoryLanes {
     Tangent<Trajectories> tangent;
     Run *own[LANES] = {};
     std::deque<Run *> waiting;
+    std::map<Run *, int> *status = nullptr;
     Watch watch;
 
     // What observers ask for next: times, whether J is averaged, and above what an extreme is one.

@@ -275,9 +275,9 @@ int Run::run_whole() {
     Group &group = *groups[group_of[0]];
     for (;;) {
         if (const int reason = blocked()) return reason;
-        if (loading > 0.0 && !group.planned && exponents.stuck(&group.state.slip.lane(0)) == blocks) {
+        if (loading > 0.0 && !group.planned && exponents.stuck(group.slip()) == blocks) {
             if (load_next(group)) continue;
-            if (exponents.running) exponents.follow(&group.state.slip.lane(0), load.time, true);
+            if (exponents.running) exponents.follow(group.slip(), load.time, true);
             return COMPLETED;
         }
         if (!group.planned && !plan(group)) {
@@ -293,7 +293,7 @@ int Run::run_whole() {
         if (completed) remember();
         if (observing) observe(group, length);
         if (exponents.tangent.vectors > 0) {
-            exponents.begin_within(&group.state.slip.lane(0), loading_clock(group.start).time, length);
+            exponents.begin_within(group.slip(), loading_clock(group.start).time, length);
             if (exponents.running) follow(group, length);
         }
         now = group.start.after(length);
@@ -309,7 +309,7 @@ int Run::run_whole() {
             halting = halting_block >= 0 && group.state.slip.lane(halting_block) != 0.0;
             advance(group, length);
             find_due(group);
-            exponents.before_start(&group.state.slip.lane(0), now.time);
+            exponents.before_start(group.slip(), now.time);
             change_due(group, now);
             while (!log.accumulating && settle(group, now)) {}
             since_event = 0.0;
@@ -320,7 +320,7 @@ int Run::run_whole() {
         }
         // At events, so that all solvers look after them at the same times.
         if (exponents.running && (due || since_event >= LONGEST_FOLLOW * model.springs.unit))
-            exponents.follow(&group.state.slip.lane(0), loading_clock(now).time, completed);
+            exponents.follow(group.slip(), loading_clock(now).time, completed);
         if (completed) return COMPLETED;
         if (halting && group.state.slip.lane(halting_block) == 0.0) return HALTED;
     }
@@ -339,7 +339,7 @@ bool Run::load_next(Group &group) {
     }
     // The state stays where the last slip left it until the next start.
     const Clock from = alone[0].loaded;
-    if (exponents.tangent.vectors > 0) exponents.begin_within(&group.state.slip.lane(0), from.time, least);
+    if (exponents.tangent.vectors > 0) exponents.begin_within(group.slip(), from.time, least);
     if (from.until(end) < least) {
         load = {end, 0.0};
         remember();
@@ -347,7 +347,7 @@ bool Run::load_next(Group &group) {
     }
     load = from.after(least);
     // A batch of exponents begins before an event.
-    if (exponents.running) exponents.follow(&group.state.slip.lane(0), load.time, false);
+    if (exponents.running) exponents.follow(group.slip(), load.time, false);
     for (Block &block : alone) block.loaded = load;
     due.assign(layout.columns, 0);
     for (int c = 0; c < layout.columns; c++) {
@@ -416,7 +416,7 @@ void Run::observe(Group &group, double to) {
 void Run::follow(Group &group, double length) {
     exponents.tangent.forget_stops(Blocks::all_lanes(true));
     // However long a slow driver takes, nothing changes while all blocks stick.
-    if (exponents.stuck(&group.state.slip.lane(0)) == blocks) return;
+    if (exponents.stuck(group.slip()) == blocks) return;
     exponents.tangent.load(group.state, group.series, length, Blocks::all_lanes(true),
                            [&](int) -> const Model & { return model; });
     const int parts = exponents.tangent.parts_of(0);
@@ -426,7 +426,7 @@ void Run::follow(Group &group, double length) {
         exponents.tangent.follow(group.layout);
         if (k == parts) break;
         exponents.tangent.move_on(k);
-        exponents.follow(&group.state.slip.lane(0), loading_clock(group.start).time + k * part, false);
+        exponents.follow(group.slip(), loading_clock(group.start).time + k * part, false);
     }
 }
 

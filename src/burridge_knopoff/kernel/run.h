@@ -142,8 +142,8 @@ class Run {
     Watch watch;
     double since_event = 0.0;
     Mark marked;
-    Polynomial polynomial;
     EventScratch<Blocks> scratch;
+    Polynomial &polynomial = scratch.polynomial;
     FrictionSeries<Blocks> law;  // of the group whose piece was expanded last
     std::vector<Block> alone;    // of those in a group, when it began
     std::vector<int> group_of, lane_of;

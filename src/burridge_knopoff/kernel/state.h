@@ -42,6 +42,17 @@ struct State {
         touching.lane(k) = 0.0;
     }
 
+    // Set one block, in lane k of all lanes, to that in a lane of another state.
+    template <class Other>
+    void copy(size_t k, const State<Other> &from, size_t other) {
+        position.lane(k) = from.position.lane(other);
+        velocity.lane(k) = from.velocity.lane(other);
+        acceleration.lane(k) = from.acceleration.lane(other);
+        age.lane(k) = from.age.lane(other);
+        slip.lane(k) = from.slip.lane(other);
+        touching.lane(k) = from.touching.lane(other);
+    }
+
     // The spring force s_i, and its rate.
     BK_INLINE vec force(int c) const {
         return layout.sliding_force[c] + (layout.pull(position.at(), c) - layout.diagonal[c] * position[c]);

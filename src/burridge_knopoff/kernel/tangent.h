@@ -94,10 +94,10 @@ class Tangent {
             if (!where[k]) continue;
             const Model &own = model(k);
             const double pace = own.springs.fastest + own.springs.firmest * own.law.steepest;
-            const double whole = at(length, k);
+            const double whole = L::of_lane(length, k);
             parts[k] = 1 + int(pace * whole / STRIDE);
             const double one = parts[k] > 1 ? whole / parts[k] : whole;
-            at(part, k) = one;
+            L::set_lane(part, k, one);
             const double x = layout.linear ? pace * one : SLOWER * pace * one;
             rate_terms[k] = 1;
             degree[k] = LENGTH - 1;
@@ -190,15 +190,6 @@ class Tangent {
         for (int k = 0; k < CLOCKS; k++) made[k] = numbers[k];
         return made;
     }
-    static double &at(double &number, int) { return number; }
-    static double at(const double &number, int) { return number; }
-    struct Lane {
-        vec &of;
-        int lane;
-        void operator=(double x) { of[lane] = x; }
-    };
-    static Lane at(vec &number, int lane) { return {number, lane}; }
-    static double at(const vec &number, int lane) { return number[lane]; }
 
     // The x with x^(n+1)/(n+1)! = NEGLIGIBLE, rounded to fewer digits than C libraries agree on.
     static double enough(int n) {
@@ -249,10 +240,10 @@ class Tangent {
             if (columns == 1 && layout.row && !layout.closed) return propagate_column<COUNT, true>(layout, v);
             if (columns == 1) return propagate_column<COUNT, false>(layout, v);
         } else {
-            if (columns == 2 && layout.row) return propagate_few<COUNT, 2>(layout, v);
-            if (columns == 3 && layout.row) return propagate_few<COUNT, 3>(layout, v);
+            if (columns == 2 && layout.row) return propagate_columns<COUNT, 2>(layout, v);
+            if (columns == 3 && layout.row) return propagate_columns<COUNT, 3>(layout, v);
         }
-        propagate_columns<COUNT>(layout, v);
+        propagate_columns<COUNT, 0>(layout, v);
     }
 
     // In one column all that a row needs, but for the speeds before, stays in registers.
@@ -293,61 +284,18 @@ class Tangent {
         }
     }
 
-    // So does it in the columns of a short row of blocks.
-    template <int COUNT, int COLUMNS>
-    void propagate_few(const L &layout, int v) {
-        const int last = *std::max_element(degree, degree + CLOCKS);
-        const int most_rates = *std::max_element(rate_terms, rate_terms + CLOCKS);
-        const vec own_terms = lanes_of(degree);
-        vec *speed = speeds.at(), *position = this->position.at(size_t(v) * COLUMNS);
-        vec *velocity = this->velocity.at(size_t(v) * COLUMNS), x[COLUMNS][COUNT];
-        for (int i = 0; i < COUNT; i++)
-            for (int c = 0; c < COLUMNS; c++) {
-                x[c][i] = position[i * COLUMNS + c];
-                speed[c * COUNT + i] = velocity[i * COLUMNS + c] * moving[c];
-            }
-        for (int n = 0; n < last; n++) {
-            const double factor = INVERSE[n + 1];
-            const mask own = own_terms > double(n);
-            const vec *now = speed + size_t(n) * COLUMNS * COUNT;
-            vec *next = speed + size_t(n + 1) * COLUMNS * COUNT, change[COLUMNS][COUNT]{};
-            for (int j = 0; most_rates > 1 && j < n; j++)
-                for (int c = 0; c < COLUMNS; c++) {
-                    const vec rate = rates[size_t(c) * LENGTH + n - j];
-                    for (int i = 0; i < COUNT; i++) change[c][i] += rate * speed[(j * COLUMNS + c) * COUNT + i];
-                }
-            const vec growth = part * factor;
-            for (int c = 0; c < COLUMNS; c++) {
-                const vec scale = pull_scale[c], diagonal = layout.diagonal[c], rate = rates[size_t(c) * LENGTH];
-                const vec first = layout.strength(c, 0), second = layout.strength(c, 1);
-                for (int i = 0; i < COUNT; i++) {
-                    const vec pull =
-                        first * x[c > 0 ? c - 1 : 1][i] + second * x[0 < c && c < COLUMNS - 1 ? c + 1 : 0][i];
-                    change[c][i] += scale * (pull - diagonal * x[c][i]);
-                    const vec term = (change[c][i] + rate * now[c * COUNT + i]) * factor;
-                    next[c * COUNT + i] = term;
-                    add(velocity[i * COLUMNS + c], term, own);
-                }
-            }
-            for (int c = 0; c < COLUMNS; c++)
-                for (int i = 0; i < COUNT; i++) {
-                    x[c][i] = now[c * COUNT + i] * growth;
-                    add(position[i * COLUMNS + c], x[c][i], own);
-                }
-        }
-    }
-
     static BK_INLINE void add(vec &sum, vec term, mask own) {
         sum = L::ONE_CLOCK ? sum + term : select(own, sum + term, sum);
     }
 
-    template <int COUNT>
+    // COLUMNS : their number in a short row of blocks, 0 for any; see Series::fill
+    template <int COUNT, int COLUMNS>
     void propagate_columns(const L &layout, int v) {
         // x_n of vector i is row[i · columns + c], u_n is speed[(n · columns + c) · COUNT + i].
-        const int count = columns, last = *std::max_element(degree, degree + CLOCKS);
+        const int count = COLUMNS ? COLUMNS : columns, last = *std::max_element(degree, degree + CLOCKS);
         const int most_rates = *std::max_element(rate_terms, rate_terms + CLOCKS);
         const vec own_terms = lanes_of(degree);
-        vec *row = rows.at(), *speed = speeds.at();
+        vec known[COLUMNS ? COLUMNS * COUNT : 1], *row = COLUMNS ? known : rows.at(), *speed = speeds.at();
         vec *position = this->position.at(size_t(v) * count), *velocity = this->velocity.at(size_t(v) * count);
         for (int i = 0; i < COUNT; i++)
             for (int c = 0; c < count; c++) {
@@ -369,7 +317,12 @@ class Tangent {
                 const vec scale = pull_scale[c], diagonal = layout.diagonal[c];
                 for (int i = 0; i < COUNT; i++) {
                     const vec *x = row + i * count;
-                    change[i] += scale * (layout.pull(x, c) - diagonal * x[c]);
+                    vec pull;
+                    if constexpr (COLUMNS)
+                        pull = layout.template pull_in_row<COLUMNS>(x, c);
+                    else
+                        pull = layout.pull(x, c);
+                    change[i] += scale * (pull - diagonal * x[c]);
                     next[c * COUNT + i] = (change[i] + rate[0] * now[c * COUNT + i]) * factor;
                     add(velocity[i * count + c], next[c * COUNT + i], own);
                 }

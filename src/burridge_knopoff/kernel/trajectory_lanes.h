@@ -22,8 +22,8 @@ class TrajectoryLanes {
     FrictionSeries<Trajectories> law;
     State<Trajectories> state;
     Series<Trajectories> series;
-    Polynomial polynomial;
     EventScratch<Trajectories> scratch;
+    Polynomial &polynomial = scratch.polynomial;
     EventSearch<Trajectories> search;
     vec clock{}, clock_rest{};
     mask active{};

@@ -204,15 +204,12 @@ def run_together(runners: Sequence[Runner]) -> list[int]:
 
     Each gives what it gives alone, to the bit; those of models that differ only in numbers take less time together.
     """
-    found = [0] * len(runners)
-    series = {k: runner.kernel for k, runner in enumerate(runners) if isinstance(runner.kernel, Run)}
-    for k, kernel in series.items():
-        kernel.end = runners[k].observer.end
-    for k, how in zip(series, run_in_lockstep(list(series.values())), strict=True):
-        found[k] = how
-    for k in set(range(len(runners))) - set(series):
-        found[k] = runners[k].kernel.run()
-    return found
+    kernels = [runner.kernel for runner in runners]
+    for runner, kernel in zip(runners, kernels, strict=True):
+        if isinstance(kernel, Run):
+            kernel.end = runner.observer.end
+    together = iter(run_in_lockstep([kernel for kernel in kernels if isinstance(kernel, Run)]))
+    return [next(together) if isinstance(kernel, Run) else kernel.run() for kernel in kernels]
 
 
 def check_state(model: Model, at: ChainState) -> None:
