@@ -1,8 +1,8 @@
 """An independent method in double precision: SciPy's DOP853 from event to event, for any chain, law and contact.
 
-Positions are relative to the driver, y_i = U_i − vt, which makes the paper's Eq. 2 y' = U' − v, U'' = −Ky − dθΦ(dU')
-with d = ±1, the direction of slip; masses divide U''. Stiffness K, static friction θ and Φ are given: nothing is shared
-with the package.
+Positions are relative to the driver, y_i = U_i − vt, which makes the paper's Eq. 2 y' = U' − v, U'' = F − dθΦ(dU') with
+d = ±1, the direction of slip, and the force F = −Ky − Cy' of springs and dashpots; masses divide U''. Stiffness K,
+damping C, static friction θ and Φ are given: nothing is shared with the package.
 Event times are good to about 1e-9 over a short horizon; a dip shorter than SPACING is not seen.
 """
 
@@ -17,7 +17,9 @@ FRESH = 2e-3
 ROUNDING = 1e-13
 
 
-def scipy_events(stiffness, threshold, friction, v, position, velocity, slip, end, *, contact="one_sided", mass=1.0):
+def scipy_events(
+    stiffness, threshold, friction, v, position, velocity, slip, end, *, contact="one_sided", mass=1.0, damping=0.0
+):
     """Return all events up to `end`, (time, block from 1, 0 stop | 1 start), and position and velocity there.
 
     friction : Φ of the speed; slip : of each block, 0 stuck, ±1 the direction of its slip
@@ -28,15 +30,20 @@ def scipy_events(stiffness, threshold, friction, v, position, velocity, slip, en
     started = np.full(blocks, -1.0)
     signs = (1.0, -1.0) if contact == "symmetric" else (1.0,)
     clock, found = 0.0, []
+    damping = damping * np.ones((blocks, blocks))
+
+    def force_at(y):
+        return -stiffness @ y[:blocks] - damping @ (y[blocks:] - v)
+
+    def acceleration_at(y):
+        return (slip != 0) * (force_at(y) - slip * threshold * friction(np.maximum(slip * y[blocks:], 0.0))) / mass
 
     def rate(_, y):
-        speed = y[blocks:]
-        acceleration = (-stiffness @ y[:blocks] - drag * friction(np.maximum(slip * speed, 0.0))) / mass
-        return np.concatenate([speed - v, slips * acceleration])
+        return np.concatenate([y[blocks:] - v, acceleration_at(y)])
 
     def gaps(time, y):
         """What is positive until the next event: the speed of a block that slips, (signs, blocks, times) else."""
-        stuck = np.array([threshold[:, None] - sign * (-stiffness @ y[:blocks]) for sign in signs])
+        stuck = np.array([threshold[:, None] - sign * force_at(y) for sign in signs])
         speed = np.where(time - started[:, None] < FRESH, np.inf, slip[:, None] * y[blocks:])
         return np.where(slip[:, None] == 0, stuck, speed)
 
@@ -54,7 +61,7 @@ def scipy_events(stiffness, threshold, friction, v, position, velocity, slip, en
         changed = True
         while changed:
             changed = False
-            force, growth = -stiffness @ state[:blocks], -stiffness @ (state[blocks:] - v)
+            force, growth = force_at(state), -stiffness @ (state[blocks:] - v) - damping @ acceleration_at(state)
             for i in range(blocks):
                 speed = slip[i] * state[blocks + i]
                 if slip[i] and started[i] != clock and speed <= ROUNDING:
@@ -72,7 +79,6 @@ def scipy_events(stiffness, threshold, friction, v, position, velocity, slip, en
         settle()
         if clock >= end:
             return found, state[:blocks], state[blocks:]
-        slips, drag = slip != 0, slip * threshold
         solver = DOP853(rate, clock, state, end, rtol=1e-12, atol=1e-14, max_step=LONGEST_STEP)
         while solver.status == "running":
             solver.step()
@@ -92,8 +98,7 @@ def scipy_events(stiffness, threshold, friction, v, position, velocity, slip, en
                 break
         state = run(clock)
         if which >= 0:
-            force = -stiffness[which] @ state[:blocks]
-            change(which, 0 if slip[which] else int(np.sign(force)))
+            change(which, 0 if slip[which] else int(np.sign(force_at(state)[which])))
 
 
 def model_events(model, start, end):
@@ -101,6 +106,6 @@ def model_events(model, start, end):
     offset = model.sliding_offset
     slip = np.where(start.stuck, 0, np.where(start.velocity < 0.0, -1, 1))
     matter = model.chain.stiffness, model.chain.thresholds, model.law, model.v
-    kind = {"contact": model.contact, "mass": model.chain.masses}
+    kind = {"contact": model.contact, "mass": model.chain.masses, "damping": model.chain.damping_matrix}
     events, position, velocity = scipy_events(*matter, start.position + offset, start.velocity, slip, end, **kind)
     return events, np.concatenate([position - offset, velocity])

@@ -138,7 +138,7 @@ def label_states(
     OneOf(STARTS).form(start, "start")
     time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
     threads = Whole(1, 1024).form(threads, "threads")
-    stuck = model.starts_stuck(position, start)
+    stuck = model.starts_stuck(position, velocity, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
     times = np.zeros(len(position))
     if not attractors:

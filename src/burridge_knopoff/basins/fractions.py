@@ -85,7 +85,7 @@ def _drawn(search: Search, start: str, first: int, count: int) -> tuple[np.ndarr
     seed = seed_at(settings.seed, model.a)
     box = settings.position, settings.velocity
     position, velocity = (part[first:] for part in sample_states(model.blocks, first + count, *box, seed))
-    stuck = model.starts_stuck(position, start)
+    stuck = model.starts_stuck(position, velocity, start)
     return position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
 
 

@@ -38,7 +38,8 @@ class SlipEvents:
     blocks : how many blocks slip; moment : sum of their slips; largest_slip : largest slip of a block
     peak_velocity : highest slip speed of a block
     stress_drop : by how much the slips lower the spring force, mean over the blocks
-    energy_released : work of the springs on the blocks, which friction dissipates
+    energy_released : work of the springs on the blocks, which friction and dashpots dissipate
+    energy_damped : what the dashpots at slipping blocks dissipate, ∫ Σ c_ij (U_j' − U_i')² + Σ c_i (v − U_i')² dτ
     interval : τ since the event began in which the epicentre slipped last; NaN for the first
     slip_block, slip : with profiles, the blocks of all events and how far each slipped; slip_end : where those of an
         event end
@@ -66,6 +67,7 @@ class SlipEvents:
     peak_velocity: np.ndarray = field(repr=False)
     stress_drop: np.ndarray = field(repr=False)
     energy_released: np.ndarray = field(repr=False)
+    energy_damped: np.ndarray = field(repr=False)
     interval: np.ndarray = field(repr=False)
     slip_end: np.ndarray = field(repr=False)
     slip_block: np.ndarray = field(repr=False)

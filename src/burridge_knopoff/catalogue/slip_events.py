@@ -37,7 +37,8 @@ CATALOGUE_VARIABLES = {
     "largest_slip": _V(_EVENT, "f8", "largest slip of a block"),
     "peak_velocity": _V(_EVENT, "f8", "highest slip speed of a block"),
     "stress_drop": _V(_EVENT, "f8", "decrease of the spring force, mean over the slipping blocks"),
-    "energy_released": _V(_EVENT, "f8", "work of the springs on the blocks, which friction dissipates"),
+    "energy_released": _V(_EVENT, "f8", "work of the springs on the blocks, which friction and dashpots dissipate"),
+    "energy_damped": _V(_EVENT, "f8", "what the dashpots at slipping blocks dissipate"),
     "interval": _V(
         _EVENT, "f8", "time tau since the event began in which the epicentre slipped last, NaN for the first"
     ),

@@ -77,6 +77,8 @@ _METAVARS = {
     "pulling": "D1,D2,...",
     "threshold": "F1,F2,...",
     "mass": "M1,M2,...",
+    "damping": "C1,C2,...",
+    "pulling_damping": "C1,C2,...",
     "grid": "NX,NY",
     "springs": "FILE",
     "position": "U1,U2,...",

@@ -4,11 +4,13 @@
 // all that is connected in turn: that is one event, from the first start to the last stop. Under a finite velocity of
 // the driver there may be no moment at which all blocks rest, so connection decides, not rest.
 //
-// The energy that an event releases is the work of all springs on its blocks, ∫ Σ s_i U_i' dτ, which friction
-// dissipates: the blocks rest before and after. Over a piece in which the same blocks slip this is exactly, with
+// The energy that an event releases is the work of all springs on its blocks, ∫ Σ s_i U_i' dτ, which friction and
+// dashpots dissipate: the blocks rest before and after. Over a piece in which the same blocks slip this is exactly, with
 // y = U − U(0),
 //
 //     Σ ½ (s_i(0) + s_i(T) − D_i v T) y_i(T) + D_i v (T y_i(T) − ∫ y_i dτ).
+//
+// Dashpots dissipate ∫ Σ c_ij (U_j' − U_i')² + Σ c_i (v − U_i')² dτ, over those at the slipping blocks.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +26,7 @@ class Catalogue {
     struct Event {
         Clock start, load;  // slip clock and loading clock of the first start: one clock under steady loading
         int epicentre = 0, slipping = 0;
-        double interval = 0.0, peak_velocity = 0.0, energy = 0.0;
+        double interval = 0.0, peak_velocity = 0.0, energy = 0.0, damped = 0.0;
         std::vector<std::pair<int, double>> slips;  // block, and how far it slipped
         // The event that goes on with this one, −1 for none; the events that this one goes on with.
         int merged = -1;
@@ -35,15 +37,15 @@ class Catalogue {
 
         template <class A>
         void archive(A &values) {
-            values(start, load, epicentre, slipping, interval, peak_velocity, energy, slips, merged, absorbed, bound,
-                   length, speed);
+            values(start, load, epicentre, slipping, interval, peak_velocity, energy, damped, slips, merged, absorbed,
+                   bound, length, speed);
         }
     };
 
     // Columns, with an entry for each event, in the order in which events end. Blocks count from 1.
     struct Table {
         std::vector<double> time, slip_time, duration, moment, largest_slip, peak_velocity, stress_drop,
-            energy_released, interval;
+            energy_released, energy_damped, interval;
         std::vector<int> epicentre, first_block, last_block, blocks;
         // With profiles, blocks and slips of the events one after the other: event k has those before slip_end[k].
         std::vector<int64_t> slip_end;
@@ -152,7 +154,7 @@ class Catalogue {
             // The last event of this block may go on elsewhere.
             event.interval =
                 load.time - (block.last_event < 0 ? block.last_start : events[find(block.last_event)].load.time);
-            event.peak_velocity = event.energy = event.bound = 0.0;
+            event.peak_velocity = event.energy = event.damped = event.bound = 0.0;
         }
         events[number].slipping++;
         block.event = number;
@@ -226,6 +228,7 @@ class Catalogue {
         }
         event.slipping += other.slipping;
         event.energy += other.energy;
+        event.damped += other.damped;
         find_peak(event);
         find_peak(other);
         event.peak_velocity = std::max(event.peak_velocity, other.peak_velocity);
@@ -283,6 +286,7 @@ class Catalogue {
             table.peak_velocity.push_back(event.peak_velocity);
             table.stress_drop.push_back(drop / double(blocks.size()));
             table.energy_released.push_back(event.energy);
+            table.energy_damped.push_back(event.damped);
             table.interval.push_back(event.interval);
             for (int i : blocks) {
                 if (!profiles) break;

@@ -37,12 +37,6 @@ struct Group {
     // For how many blocks there is memory.
     size_t capacity() const { return layout.diagonal.size() * LANES; }
 
-    // Make room for the members of the layout.
-    void widen() {
-        state.widen();
-        relative.reserve(layout.columns);
-    }
-
     // Expand the motion from the state and find the next event; false where there is no motion. side : that of W, if
     // its crossings are looked for as well, else 0; begin, end : the blocks whose sum is W
     bool plan(int wanted_side, int begin, int end) {
@@ -69,12 +63,6 @@ struct Group {
         for (int c = 0; c < layout.columns; c++) layout.sliding_force[c] += layout.drift[c] * t;
         start = start.after(t);
         planned = false;
-    }
-
-    // Where blocks of a column change at this instant, once `measure` has been called.
-    mask pending(int c) const { return state.pending(relative.at(), c); }
-    void measure() {
-        for (int c = 0; c < layout.columns; c++) relative[c] = state.velocity[c] - layout.v;
     }
 
     // The coefficients of W = Σ x_i over some lanes.
@@ -130,6 +118,7 @@ struct Group {
                 ended[c] = series.value(series.position, c, Blocks::splat(to));
             }
         }
+        if (layout.damped) dissipate(from, to);
         const vec *first = from > 0.0 || !advanced ? begun.at() : series.x(0);
         const vec *last = advanced ? state.position.at() : ended.at();
         const double drifted = advanced ? 0.0 : to;
@@ -151,6 +140,7 @@ struct Group {
                 Catalogue::Event *event = slips >> lane & 1 ? catalogue.of(layout.member[place]) : nullptr;
                 if (!event) continue;
                 event->energy += energy[lane];
+                if (layout.damped) event->damped += damped[c][lane];
                 event->peak_velocity = std::max(event->peak_velocity, speed[lane]);
                 if (bound[lane] <= event->peak_velocity) continue;
                 load_speed(polynomial, place, from);
@@ -160,7 +150,22 @@ struct Group {
     }
 
   private:
-    Rows begun, ended;
+    Rows begun, ended, speeds, damped;
+
+    // What dashpots dissipate between two times of the piece, by block: the sum over slipping blocks is that over
+    // dashpots.
+    void dissipate(double from, double to) {
+        for (Rows *row : {&speeds, &damped}) row->reserve(layout.columns);
+        for (int c = 0; c < layout.columns; c++) damped[c] = vec{};
+        for (int j = 0; j < NODES; j++) {
+            const vec at = Blocks::splat(0.5 * ((from + to) + (to - from) * GAUSS.node[j]));
+            const double weight = GAUSS.weight[j] * (to - from);
+            for (int c = 0; c < layout.columns; c++) speeds[c] = series.value(series.velocity, c, at);
+            for (int c = 0; c < layout.columns; c++)
+                damped[c] += weight * (layout.damping_load[c] * (layout.v - 2.0 * speeds[c]) -
+                                       speeds[c] * state.damping(speeds.at(), c));
+        }
+    }
 
     // The spring forces on a column of blocks at positions x, at a time of the piece.
     vec force(const vec *x, int c, double t) const {
@@ -171,8 +176,6 @@ struct Group {
         load(polynomial, lane);
         if (from > 0.0) polynomial.shift(from);
     }
-
-    Rows relative;
 
     void load_section(int begin, int end, int extra) {
         const int n = size();

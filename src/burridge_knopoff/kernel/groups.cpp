@@ -324,13 +324,13 @@ void Run::observe_all(const Clock &at, const Clock &reach) {
     observed = at;
 }
 
-// The spring force on a block that waits, at a time.
+// The force on a block that waits, at a time: no neighbour moves.
 double Run::waiting_force(int i, const Clock &at) const {
     const Springs &springs = model.springs;
     double pull = 0.0;
     for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
         pull += springs.strength[p] * stuck_position(springs.neighbour[p], at);
-    return springs.sliding_force[i] + (pull - springs.diagonal[i] * stuck_position(i, at));
+    return (springs.sliding_force[i] + springs.damping_load[i]) + (pull - springs.diagonal[i] * stuck_position(i, at));
 }
 
 // W at a time at which nothing has changed since the last one.

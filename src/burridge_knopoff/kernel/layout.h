@@ -33,8 +33,8 @@ struct Model {
     // Whether trajectories of both may lie in the lanes of the same vectors.
     bool is_like(const Model &other) const {
         return springs.blocks == other.springs.blocks && springs.start == other.springs.start &&
-               springs.neighbour == other.springs.neighbour && law.is_like(other.law) && symmetric == other.symmetric &&
-               drops() == other.drops();
+               springs.neighbour == other.springs.neighbour && springs.damped == other.springs.damped &&
+               law.is_like(other.law) && symmetric == other.symmetric && drops() == other.drops();
     }
 };
 
@@ -49,11 +49,11 @@ struct Layout : Lanes<COUNT> {
     using typename Lanes<COUNT>::mask;
 
     int columns = 0;
-    Rows diagonal, threshold, sliding_force, mass, inverse_mass;
+    Rows diagonal, threshold, sliding_force, mass, inverse_mass, damping_diagonal, damping_load;
     // What stuck neighbours that do not take part add to ds_i/dτ, see Blocks::outside.
     Rows drift;
     std::vector<mask> present;
-    bool linear, drops, symmetric;
+    bool linear, drops, symmetric, damped;
     Number v, at_rest, rate, coincidence, young;
 
     // A number of one lane, or of all.
@@ -73,6 +73,8 @@ struct Layout : Lanes<COUNT> {
     void widen(int count) {
         columns = count;
         for (Rows *row : {&diagonal, &threshold, &sliding_force, &mass, &inverse_mass, &drift}) row->reserve(count);
+        if (damped)
+            for (Rows *row : {&damping_diagonal, &damping_load}) row->reserve(count);
         if (int(present.size()) < count) present.resize(count);
     }
 
@@ -81,6 +83,7 @@ struct Layout : Lanes<COUNT> {
         linear = model.law.linear;
         drops = model.drops();
         symmetric = model.symmetric;
+        damped = model.springs.damped;
     }
 
     // Take the numbers of the model of one lane, or of all.
@@ -101,11 +104,16 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
     const Model &model;
     std::vector<int> member;  // the blocks that take part, in the order of the lanes
     bool row = true, closed = false;
-    Rows driving, left, right;
-    // In a network: springs and lanes of the neighbours, `degree` rows of columns · LANES.
+    Rows driving;
+    // What joins blocks to their neighbours: those before and after in a row, and in a network `degree` rows of
+    // columns · LANES, with the lanes of the neighbours.
+    struct Links {
+        Rows left, right;
+        std::vector<double> of;
+    };
+    Links springs, dashpots;
     int degree = 0;
     std::vector<int> lane_of_neighbour;
-    std::vector<double> spring;
 
     explicit Blocks(const Model &model) : model(model) {
         share(model);
@@ -118,48 +126,49 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
     // place(i) : the lane of a block, −1 for one that does not take part
     template <class Place>
     void lay(Place &&place) {
-        const Springs &springs = model.springs;
+        const Springs &chain = model.springs;
         const int n = int(member.size());
         widen((n + LANES - 1) / LANES);
         driving.reserve(columns);
-        row = springs.row;
-        closed = springs.ring && n == springs.blocks;
+        row = chain.row;
+        closed = chain.ring && n == chain.blocks;
         for (int c = 0; c < columns; c++) {
             diagonal[c] = driving[c] = sliding_force[c] = drift[c] = vec{};
+            if (damped) damping_diagonal[c] = damping_load[c] = vec{};
             threshold[c] = mass[c] = inverse_mass[c] = splat(1.0);
             present[c] = from_bits(n >= (c + 1) * LANES ? -1 : (1 << (n - c * LANES)) - 1);
         }
-        if (row) {
-            left.reserve(columns);
-            right.reserve(columns);
-            for (int c = 0; c < columns; c++) left[c] = right[c] = vec{};
-        } else {
-            degree = springs.degree;
-            lane_of_neighbour.assign(size_t(degree) * columns * LANES, 0);
-            spring.assign(size_t(degree) * columns * LANES, 0.0);
-        }
+        degree = row ? 0 : chain.degree;
+        lane_of_neighbour.assign(size_t(degree) * columns * LANES, 0);
+        clear(springs);
+        if (damped) clear(dashpots);
         for (int k = 0; k < n; k++) {
             const int i = member[k];
-            diagonal.lane(k) = springs.diagonal[i];
-            driving.lane(k) = springs.driving[i];
-            threshold.lane(k) = springs.threshold[i];
-            sliding_force.lane(k) = springs.sliding_force[i];
-            mass.lane(k) = springs.mass[i];
-            inverse_mass.lane(k) = 1.0 / springs.mass[i];
-            int slot = 0;
-            for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++) {
-                const int other = place(springs.neighbour[p]);
+            diagonal.lane(k) = chain.diagonal[i];
+            driving.lane(k) = chain.driving[i];
+            threshold.lane(k) = chain.threshold[i];
+            sliding_force.lane(k) = chain.sliding_force[i];
+            mass.lane(k) = chain.mass[i];
+            inverse_mass.lane(k) = 1.0 / chain.mass[i];
+            if (damped) {
+                damping_diagonal.lane(k) = chain.damping_diagonal[i];
+                damping_load.lane(k) = chain.damping_load[i];
+            }
+            size_t slot = 0;
+            for (int64_t p = chain.start[i]; p < chain.start[i + 1]; p++) {
+                const int other = place(chain.neighbour[p]);
                 if (other < 0) continue;
-                if (row) {
-                    // Of two blocks in a ring each is before and after the other.
-                    const bool both = springs.blocks == 2 && springs.ring;
-                    const bool is_before =
-                        both ? p == springs.start[i] : other == k - 1 || (closed && k == 0 && other == n - 1);
-                    (is_before ? left : right).lane(k) = springs.strength[p];
-                } else {
-                    lane_of_neighbour[size_t(slot) * columns * LANES + k] = other;
-                    spring[size_t(slot++) * columns * LANES + k] = springs.strength[p];
-                }
+                // Of two blocks in a ring each is before and after the other.
+                const bool both = chain.blocks == 2 && chain.ring;
+                const bool is_before =
+                    both ? p == chain.start[i] : other == k - 1 || (closed && k == 0 && other == n - 1);
+                const size_t at = slot++ * columns * LANES + k;
+                auto join = [&](Links &links, double strength) {
+                    (row ? (is_before ? links.left : links.right).lane(k) : links.of[at]) = strength;
+                };
+                join(springs, chain.strength[p]);
+                if (damped) join(dashpots, chain.damping[p]);
+                if (!row) lane_of_neighbour[at] = other;
             }
         }
     }
@@ -181,9 +190,12 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
         }
     }
 
-    // The pulls of the neighbours on the blocks of one column. Both are added first, so that a mirrored state has
-    // mirrored forces to the bit.
-    BK_INLINE vec pull(const vec *x, int c) const {
+    // The pulls of the neighbours on the blocks of one column, by springs or by dashpots.
+    BK_INLINE vec pull(const vec *x, int c) const { return pull(springs, x, c); }
+    BK_INLINE vec drag(const vec *u, int c) const { return pull(dashpots, u, c); }
+
+    // Both neighbours are added first, so that a mirrored state has mirrored forces to the bit.
+    BK_INLINE vec pull(const Links &links, const vec *x, int c) const {
         if (__builtin_expect(row, true)) {
             vec previous = before(c > 0 ? x[c - 1] : x[c], x[c]);
             vec following = after(x[c], c + 1 < columns ? x[c + 1] : x[c]);
@@ -192,14 +204,14 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
                 if (c == 0) previous[0] = reinterpret_cast<const double *>(x)[end];
                 if (c == end / LANES) following[end % LANES] = x[0][0];
             }
-            return left[c] * previous + right[c] * following;
+            return links.left[c] * previous + links.right[c] * following;
         }
         vec total{};
         const double *position = reinterpret_cast<const double *>(x);
         for (int slot = 0; slot < degree; slot++) {
             const size_t first = (size_t(slot) * columns + c) * LANES;
             for (int lane = 0; lane < LANES; lane++)
-                total[lane] += spring[first + lane] * position[lane_of_neighbour[first + lane]];
+                total[lane] += links.of[first + lane] * position[lane_of_neighbour[first + lane]];
         }
         return total;
     }
@@ -207,6 +219,15 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
     // The same value in all lanes, of the least of them or whether one of them is set.
     static BK_INLINE vec least_of_clock(vec a) { return splat(least_lane(a)); }
     static BK_INLINE mask any_of_clock(mask a) { return all_lanes(any(a)); }
+
+  private:
+    void clear(Links &links) {
+        links.of.assign(size_t(degree) * columns * LANES, 0.0);
+        for (Rows *side : {&links.left, &links.right}) {
+            side->reserve(row ? columns : 0);
+            for (int c = 0; row && c < columns; c++) (*side)[c] = vec{};
+        }
+    }
 };
 
 // Trajectories in the lanes of vectors, a column for each block: each lane has its own clock and its own model.
@@ -215,7 +236,7 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
     int degree = 0;
     bool row;  // whether neighbours are the blocks before and after alone
     std::vector<int> neighbour;
-    Rows spring;
+    Rows spring, dashpot;
 
     // model : one that is like those of all lanes, which `place` sets
     explicit Trajectories(const Model &model) {
@@ -226,6 +247,7 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
         row = springs.row && !springs.ring;
         neighbour.assign(size_t(degree) * columns, 0);
         spring.reserve(size_t(degree) * columns);
+        if (damped) dashpot.reserve(size_t(degree) * columns);
         for (int i = 0; i < columns; i++) {
             drift[i] = vec{};
             present[i] = all_lanes(true);
@@ -247,6 +269,11 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
             inverse_mass.lane(k) = 1.0 / springs.mass[i];
             for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
                 spring.lane((size_t(i) * degree + p - springs.start[i]) * LANES + lane) = springs.strength[p];
+            if (!damped) continue;
+            damping_diagonal.lane(k) = springs.damping_diagonal[i];
+            damping_load.lane(k) = springs.damping_load[i];
+            for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
+                dashpot.lane((size_t(i) * degree + p - springs.start[i]) * LANES + lane) = springs.damping[p];
         }
         laws[lane] = &model.law;
         take(model, lane);
@@ -254,9 +281,11 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
 
     const Law &law(int lane) const { return *laws[lane]; }
 
-    BK_INLINE vec pull(const vec *x, int i) const {
+    BK_INLINE vec pull(const vec *x, int i) const { return pull(spring, x, i); }
+    BK_INLINE vec drag(const vec *u, int i) const { return pull(dashpot, u, i); }
+    BK_INLINE vec pull(const Rows &links, const vec *x, int i) const {
         const int *other = &neighbour[size_t(i) * degree];
-        const vec *strength = spring.at(size_t(i) * degree);
+        const vec *strength = links.at(size_t(i) * degree);
         vec total = strength[0] * x[other[0]] + strength[1] * x[other[1]];
         for (int slot = 2; slot < degree; slot++) total += strength[slot] * x[other[slot]];
         return total;

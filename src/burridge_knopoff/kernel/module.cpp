@@ -57,7 +57,8 @@ nb::ndarray<nb::numpy, T> taken(std::vector<T> &values) {
 }
 
 Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers sliding_force, Numbers mass,
-                 Array1<int64_t> start, Array1<int64_t> neighbour, Numbers strength, Array2<int64_t> operations,
+                 Array1<int64_t> start, Array1<int64_t> neighbour, Numbers strength, Numbers damping,
+                 Numbers damping_diagonal, Numbers damping_load, Array2<int64_t> operations,
                  Table constants, int value, int slope, bool linear, double rate, double steepest, double v,
                  bool symmetric) {
     auto model = std::make_unique<Model>();
@@ -71,6 +72,9 @@ Model *new_model(Numbers diagonal, Numbers driving, Numbers threshold, Numbers s
     springs.start = copied(start);
     springs.neighbour.assign(neighbour.data(), neighbour.data() + neighbour.size());
     springs.strength = copied(strength);
+    springs.damping = copied(damping);
+    springs.damping_diagonal = copied(damping_diagonal);
+    springs.damping_load = copied(damping_load);
     springs.complete();
     for (size_t k = 0; k < operations.shape(0); k++)
         model->law.tape.push_back({int(operations(k, 0)), int(operations(k, 1)), int(operations(k, 2)), constants(k, 0),
@@ -195,7 +199,7 @@ NB_MODULE(_core, m) {
     nb::class_<Model>(m, "KernelModel",
                       "A chain or network of blocks with its friction law and driver, as the kernel reads it.")
         .def(nb::new_(&new_model), "diagonal"_a, "driving"_a, "threshold"_a, "sliding_force"_a, "mass"_a, "start"_a,
-             "neighbour"_a, "strength"_a, "operations"_a, "constants"_a, "value"_a, "slope"_a, "linear"_a, "rate"_a,
+             "neighbour"_a, "strength"_a, "damping"_a, "damping_diagonal"_a, "damping_load"_a, "operations"_a, "constants"_a, "value"_a, "slope"_a, "linear"_a, "rate"_a,
              "steepest"_a, "v"_a, "symmetric"_a)
         .def_prop_ro(
             "fastest", [](const Model &model) { return model.springs.fastest; },
@@ -350,6 +354,7 @@ NB_MODULE(_core, m) {
                 made["peak_velocity"] = taken(table.peak_velocity);
                 made["stress_drop"] = taken(table.stress_drop);
                 made["energy_released"] = taken(table.energy_released);
+                made["energy_damped"] = taken(table.energy_damped);
                 made["interval"] = taken(table.interval);
                 made["slip_end"] = taken(table.slip_end);
                 made["slip_block"] = taken(table.slip_block);

@@ -132,7 +132,7 @@ Group &Run::build(std::vector<int> members, const Clock &at) {
     auto place = [&](int i) { return group_of[i] == number ? lane_of[i] : -1; };
     group.layout.lay(place);
     if (n < blocks) group.layout.outside(place, [&](int i) { return stuck_position(i, at); });
-    group.widen();
+    group.state.widen();
     for (size_t k = n; k < size_t(group.layout.columns) * LANES; k++) group.state.place(k, 0.0, 0.0, true);
     for (int k = 0; k < n; k++) {
         const Block &block = alone[members[k]];
@@ -211,9 +211,9 @@ bool Run::settle(Group &group, const Clock &at) {
     due.assign(group.layout.columns, 0);
     bool changing = false;
     watch.worked(group.size());
-    group.measure();
+    group.state.measure();
     // Who changes is decided before anyone does: then no order of the blocks is preferred.
-    for (int c = 0; c < group.layout.columns; c++) changing |= (due[c] = bits(group.pending(c))) != 0;
+    for (int c = 0; c < group.layout.columns; c++) changing |= (due[c] = bits(group.state.pending(c))) != 0;
     if (changing) change_due(group, at);
     return changing;
 }

@@ -1,6 +1,6 @@
 // Taylor series of the motion between two events, with a step that leaves no remainder.
 //
-// Coefficients follow from x' = U' − v and m U'' = s − θ Φ by recursion, those of Φ from the operations of the law. The
+// Coefficients follow from x' = U' − v and m U'' = F − θ Φ by recursion, F the force of springs and dashpots, those of Φ from the operations of the law. The
 // step comes from the last two coefficients (Jorba and Zou): the last terms that are kept stay below TRUNCATION, and
 // those that are left out are smaller still. For the linearized law that is safe by a bound: all derivatives of the
 // motion obey the same linear equation, whose energy, with pairs of successive derivatives of all blocks in it, grows
@@ -54,7 +54,7 @@ inline double step_length(double coefficient, int power) {
 // One piece of the motion: positions x_i, velocities U_i' and what decides about events, g_i, as polynomials of the
 // time since its start.
 //
-// Coefficient k of column c is in row k · width + c. g_i is the speed |U_i'| of a slipping block and θ_i − s_i of a
+// Coefficient k of column c is in row k · width + c. g_i is the speed |U_i'| of a slipping block and θ_i − F_i of a
 // stuck one: where it falls below 0 the block changes. Rows of g may have a column more than the others, for the
 // section.
 template <class L>
@@ -119,7 +119,7 @@ struct Series {
         return t * ((even * square + t * odd) + term[0]);
     }
 
-    // Load |U_i'| of the block in a place, of all lanes of the state, or θ_i − s_i if it sticks.
+    // Load |U_i'| of the block in a place, of all lanes of the state, or θ_i − F_i if it sticks.
     Polynomial &load(Polynomial &polynomial, const State<L> &state, size_t place) {
         const int c = int(place / L::LANES), lane = int(place % L::LANES);
         const double slip = state.slip.lane(place);
@@ -128,9 +128,12 @@ struct Series {
             return polynomial;
         }
         polynomial.degree = ORDER;
-        for (int k = 0; k <= ORDER; k++)
+        for (int k = 0; k <= ORDER; k++) {
             polynomial.coefficient[k] = -(layout.pull(x(k), c)[lane] - layout.diagonal[c][lane] * x(k)[c][lane]);
+            if (layout.damped) polynomial.coefficient[k] -= state.damping(u(k), c)[lane];
+        }
         polynomial.coefficient[0] += layout.threshold[c][lane] - layout.sliding_force[c][lane];
+        if (layout.damped) polynomial.coefficient[0] -= layout.damping_load[c][lane];
         polynomial.coefficient[1] -= layout.drift[c][lane];
         return polynomial;
     }
@@ -153,10 +156,10 @@ struct Series {
 
   private:
     enum Kind { LINEAR_LAW, HYPERBOLIC_LAW, ANY_LAW };
-    Rows signed_threshold, damping, pressed, force;
+    Rows signed_threshold, weakening, pressed, force;
     // What the rows of a column need, and the last of them.
     struct Column {
-        vec slip, stuck, moving, damping, pressed, diagonal, line_slope, inverse_slope, start, force, speed;
+        vec slip, stuck, moving, weakening, pressed, diagonal, line_slope, inverse_slope, start, force, speed;
         vec *line, *inverse;
     };
     std::vector<Column> column;
@@ -169,7 +172,7 @@ struct Series {
         position.reserve(rows * columns);
         velocity.reserve(rows * columns);
         gap.reserve(rows * width);
-        for (Rows *row : {&slipping, &stuck, &signed_threshold, &damping, &pressed, &force}) row->reserve(columns);
+        for (Rows *row : {&slipping, &stuck, &signed_threshold, &weakening, &pressed, &force}) row->reserve(columns);
         law.widen(columns);
         for (int c = 0; c < columns; c++) {
             x(0)[c] = state.position[c];
@@ -191,7 +194,7 @@ struct Series {
                 friction = law.friction(c, 0);
                 slope = law.slopes(c)[law.law.value];
             }
-            damping[c] = signed_threshold[c] * (slope * slip);
+            weakening[c] = signed_threshold[c] * (slope * slip);
             if (law.law.hyperbolic) {
                 const Number scale = law.law.value == 3 ? law.tape[2].alpha : Number{} + 1.0;
                 pressed[c] = -(signed_threshold[c] * (scale * law.row(2, c)[0]));
@@ -201,8 +204,8 @@ struct Series {
             if (any(young)) acceleration = select(young, state.slip_acceleration(c, s), acceleration);
             u(1)[c] = acceleration;
             g(0)[c] = slip * u(0)[c] + stuck[c] * (layout.threshold[c] - s);
-            force[c] = state.force_rate(x(1), c);
         }
+        for (int c = 0; c < columns; c++) force[c] = state.force_rate(x(1), u(1), c);
     }
 
     // Fill row n of g, and row n + 1 of positions and velocities, from the rows before: n = 1 … ORDER − 1. Friction in
@@ -210,11 +213,12 @@ struct Series {
     template <Kind KIND>
     void rows(const State<L> &state) {
         constexpr int FEW = L::ONE_CLOCK ? 1 : 3, FEWER = L::ONE_CLOCK ? 1 : 2;
+        if (layout.damped) return fill<KIND, 0, true>(state);
         columns == FEW ? fill<KIND, FEW>(state) : columns == FEWER ? fill<KIND, FEWER>(state) : fill<KIND, 0>(state);
     }
 
     // COLUMNS : their number, 0 for any; one that is known lets the compiler keep all that a row needs in registers.
-    template <Kind KIND, int COLUMNS>
+    template <Kind KIND, int COLUMNS, bool DAMPED = false>
     void fill(const State<L> &state) {
         const int count = COLUMNS ? COLUMNS : columns;
         Column known[COLUMNS ? COLUMNS : 1];
@@ -225,7 +229,7 @@ struct Series {
             at.slip = state.slip[c];
             at.stuck = stuck[c];
             at.moving = slipping[c] * layout.inverse_mass[c];
-            at.damping = damping[c];
+            at.weakening = weakening[c];
             at.diagonal = layout.diagonal[c];
             at.force = force[c];
             at.speed = u(1)[c];
@@ -256,10 +260,13 @@ struct Series {
                     next -= (at.pressed * factor) * law.prepare(c, n);
                     law.settle(c, n, at.slip * speed);
                 }
-                at.speed = velocity[c] = next - (at.damping * factor) * speed;
+                at.speed = velocity[c] = next - (at.weakening * factor) * speed;
                 position[c] = speed * factor;
             }
-            for (int c = 0; c < count; c++) own[c].force = layout.pull(position, c) - own[c].diagonal * position[c];
+            for (int c = 0; c < count; c++) {
+                own[c].force = layout.pull(position, c) - own[c].diagonal * position[c];
+                if constexpr (DAMPED) own[c].force += state.damping(velocity, c);
+            }
             position += step;
             velocity += step;
             g += gap_step;

@@ -1,12 +1,17 @@
-// The springs of a chain or network and the static friction of its blocks: the forces on blocks at given positions.
+// The springs and dashpots of a chain or network and the static friction of its blocks: the forces on blocks at given
+// positions and velocities.
 //
 // In co-moving coordinates x_i = U_i − vτ − e_i, with e the positions of uniform sliding, the spring force on block i
 // is
 //
 //     s_i = f_i − (K x)_i,    f_i = θ_i Φ(v),
 //
-// with K_ii the sum of all springs at block i and, off the diagonal, minus the springs to its neighbours. It has mass
-// m_i, sticks while s_i is below its threshold θ_i, and slips against friction θ_i Φ.
+// with K_ii the sum of all springs at block i and, off the diagonal, minus the springs to its neighbours. Dashpots beside
+// the springs add
+//
+//     Σ_j c_ij (U_j' − U_i') + c_i (v − U_i') = c_i v − (C U')_i.
+//
+// The block has mass m_i, sticks while the force on it is below its threshold θ_i, and slips against friction θ_i Φ.
 #pragma once
 
 #include <algorithm>
@@ -23,11 +28,16 @@ struct Springs {
     std::vector<int64_t> start;
     std::vector<int> neighbour;
     std::vector<double> strength;
+    // Dashpots: c_ij beside each spring, C_ii = Σ_j c_ij + c_i, and c_i v.
+    std::vector<double> damping, damping_diagonal, damping_load;
+    bool damped;
     // Neighbours are the blocks before and after, in this order; in a ring the first and the last are neighbours too.
     bool row, ring;
     // Bound on the angular frequencies of slipping blocks: the root of that of Collatz and Wielandt on the eigenvalues
     // of M⁻¹K. Any positive vector gives one, and a few steps of the power method tighten it.
     double fastest;
+    // Bound on the rates at which dashpots damp velocities: Gershgorin's, on the eigenvalues of M⁻¹C.
+    double damping_rate;
     // The chain's own unit of time: 1 where it is as slow as the paper's, else shorter as the chain is faster. A power
     // of 2, so that a chain in other units moves the same to the bit.
     double unit;
@@ -69,8 +79,14 @@ struct Springs {
         }
         fastest = std::sqrt(largest);
         unit = std::ldexp(1.0, 1 - std::max(1, std::ilogb(fastest)));
-        firmest = 0.0;
-        for (int i = 0; i < blocks; i++) firmest = std::max(firmest, threshold[i] / mass[i]);
+        firmest = damping_rate = 0.0;
+        for (int i = 0; i < blocks; i++) {
+            firmest = std::max(firmest, threshold[i] / mass[i]);
+            double total = damping_diagonal[i];
+            for (int64_t k = start[i]; k < start[i + 1]; k++) total += damping[k];
+            damping_rate = std::max(damping_rate, total / mass[i]);
+        }
+        damped = damping_rate > 0.0;
     }
 
     // −(K x)_i for displacements x, or their rates. The neighbours are added first, as in Blocks and Trajectories.
@@ -78,6 +94,12 @@ struct Springs {
         double total = 0.0;
         for (int64_t k = start[i]; k < start[i + 1]; k++) total += strength[k] * x[neighbour[k]];
         return total - diagonal[i] * x[i];
+    }
+    // −(C u)_i for velocities u, or their rates.
+    double drag(const double *u, int i) const {
+        double total = 0.0;
+        for (int64_t k = start[i]; k < start[i + 1]; k++) total += damping[k] * u[neighbour[k]];
+        return total - damping_diagonal[i] * u[i];
     }
 };
 

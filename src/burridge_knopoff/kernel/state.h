@@ -2,7 +2,7 @@
 //
 // Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −θ Φ(v), velocity is U_i' itself, so that a
 // stuck block has velocity exactly 0. Nothing in the system depends on τ. A block slips against friction θ_i Φ, and
-// starts where the spring force on it passes θ_i.
+// starts where the force of its springs and dashpots passes θ_i.
 #pragma once
 
 #include "layout.h"
@@ -16,7 +16,7 @@ constexpr double AT_THRESHOLD = 1e-13;
 
 // Positions x_i, velocities U_i', slip directions (0 stuck, 1 forward, −1 backward) and what the next event depends on.
 //
-// `touching` marks a block whose spring force is at its threshold exactly, because it has started (or started and
+// `touching` marks a block on which the force is at its threshold exactly, because it has started (or started and
 // stopped again) at this very instant. `age` is the time since the start of the present slip.
 template <class L>
 struct State {
@@ -25,11 +25,15 @@ struct State {
 
     L &layout;
     typename L::Rows position, velocity, acceleration, age, slip, touching;
+    // As `measure` finds them: U_i' − v and, with dashpots, U_i''.
+    typename L::Rows relative, slope;
 
     explicit State(L &layout) : layout(layout) { widen(); }
 
     void widen() {
-        for (auto *row : {&position, &velocity, &acceleration, &age, &slip, &touching}) row->reserve(layout.columns);
+        for (auto *row : {&position, &velocity, &acceleration, &age, &slip, &touching, &relative})
+            row->reserve(layout.columns);
+        if (layout.damped) slope.reserve(layout.columns);
     }
 
     // Set one block, in lane k of all lanes: a stuck one has velocity 0.
@@ -53,12 +57,29 @@ struct State {
         touching.lane(k) = from.touching.lane(other);
     }
 
-    // The spring force s_i, and its rate.
+    // The force of springs and dashpots on slipping and stuck blocks, and its rate. relative, slope : U_i' − v and U_i''
     BK_INLINE vec force(int c) const {
-        return layout.sliding_force[c] + (layout.pull(position.at(), c) - layout.diagonal[c] * position[c]);
+        vec made = layout.sliding_force[c] + (layout.pull(position.at(), c) - layout.diagonal[c] * position[c]);
+        if (layout.damped) made += layout.damping_load[c] + damping(velocity.at(), c);
+        return made;
     }
-    BK_INLINE vec force_rate(const vec *relative, int c) const {
-        return layout.drift[c] + (layout.pull(relative, c) - layout.diagonal[c] * relative[c]);
+    BK_INLINE vec force_rate(const vec *relative, const vec *slope, int c) const {
+        vec made = layout.drift[c] + (layout.pull(relative, c) - layout.diagonal[c] * relative[c]);
+        if (layout.damped) made += damping(slope, c);
+        return made;
+    }
+    vec force_rate(int c) const { return force_rate(relative.at(), slope.at(), c); }
+    // −(C u)_i for velocities u, or their rates.
+    BK_INLINE vec damping(const vec *u, int c) const {
+        return layout.drag(u, c) - layout.damping_diagonal[c] * u[c];
+    }
+
+    // Take what the rates of forces depend on.
+    void measure() {
+        const vec zero{};
+        for (int c = 0; c < layout.columns; c++) relative[c] = velocity[c] - layout.v;
+        for (int c = 0; layout.damped && c < layout.columns; c++)
+            slope[c] = select(slip[c] != zero, slip_acceleration(c, force(c)), zero);
     }
 
     // Friction at a speed |U_i'|, one by one where it matters little how long that takes.
@@ -80,12 +101,13 @@ struct State {
         return select((touching[c] > 0.0), slip[c] * start_acceleration(c), made);
     }
 
-    // Where blocks change at this very instant: they are past their threshold, or within COINCIDENCE of it.
-    mask pending(const vec *relative, int c) const {
+    // Where blocks change at this very instant: they are past their threshold, or within COINCIDENCE of it. To be called
+    // after `measure`.
+    mask pending(int c) const {
         const auto coincidence = layout.coincidence;
         const vec zero{}, s = force(c);
         const mask touches = touching[c] > 0.0, stuck = slip[c] == zero;
-        const vec rate = force_rate(relative, c);
+        const vec rate = force_rate(c);
         vec gap = slip[c] * velocity[c];
         mask stopping = gap < zero;
         const mask close = (gap <= coincidence) & ~stuck & ~stopping & ~touches & layout.present[c];
@@ -93,7 +115,8 @@ struct State {
         // At a start with Φ(0) < 1 the block has an acceleration, whatever the rate of the force.
         stopping &= ~touches;
         if (!layout.drops) stopping |= touches & (slip[c] * rate < zero);
-        const vec near = coincidence * layout.diagonal[c];
+        vec near = coincidence * layout.diagonal[c];
+        if (layout.damped) near += coincidence * layout.damping_diagonal[c];
         gap = layout.threshold[c] - s;
         mask starting = (gap < zero) | ((gap <= near) & (gap < coincidence * rate));
         if (layout.symmetric) {
@@ -103,10 +126,17 @@ struct State {
         return ((stopping & ~stuck) | (starting & stuck & ~touches)) & layout.present[c];
     }
 
-    // Whether spring forces that start blocks are their thresholds, within rounding.
+    // Whether forces that start blocks are their thresholds, within rounding.
     BK_INLINE mask at_threshold(int c, vec s) const {
-        const vec size = largest(layout.threshold[c], layout.diagonal[c] * magnitude(position[c]));
+        vec size = largest(layout.threshold[c], layout.diagonal[c] * magnitude(position[c]));
+        if (layout.damped) size = largest(size, layout.damping_diagonal[c] * fastest());
         return magnitude(s) - layout.threshold[c] <= AT_THRESHOLD * size;
+    }
+    // The largest |U_i'| of all blocks.
+    vec fastest() const {
+        vec found{};
+        for (int c = 0; c < layout.columns; c++) found = largest(found, magnitude(velocity[c]));
+        return L::ONE_CLOCK ? L::splat(largest_lane(found)) : found;
     }
 
     // Let blocks stop if they slip and start if they are stuck.

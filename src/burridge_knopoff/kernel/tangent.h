@@ -2,11 +2,11 @@
 //
 // Between events a perturbation obeys the linearized equations of the slipping blocks,
 //
-//     δx' = δU',    m_i δU_i'' = −(K δx)_i − θ_i (dΦ/dU') δU_i',    stuck blocks: δU_i' = 0.
+//     δx' = δU',    m_i δU_i'' = −(K δx)_i − (C δU')_i − θ_i (dΦ/dU') δU_i',    stuck blocks: δU_i' = 0.
 //
 // At a stop of block i, whose acceleration is A before and 0 after it, the saltation matrix 1 + (f⁺ − f⁻)nᵀ/(nᵀf⁻) with
-// n along U_i' sets δU_i' to 0 and leaves all else. At a start n is along the spring force s_i and f⁺ − f⁻ is the
-// acceleration A⁺ of a block that starts: δU_i' becomes A⁺ δs_i/s_i'. Where friction does not drop at the start, A⁺ = 0
+// n along U_i' sets δU_i' to 0 and leaves all else. At a start n is along the force F_i and f⁺ − f⁻ is the acceleration
+// A⁺ of a block that starts: δU_i' becomes A⁺ δF_i/F_i'. Where friction does not drop at the start, A⁺ = 0
 // and the matrix is the identity. A block that turns round at once, beyond the threshold of a symmetric contact, has A⁺
 // after the stop and its perturbation is multiplied by A⁺/A.
 //
@@ -36,8 +36,8 @@ class Tangent {
     Tangent(int columns, int vectors)
         : vectors(vectors), columns(columns), position(size_t(vectors + 1) * columns),
           velocity(size_t(vectors + 1) * columns), lost(size_t(vectors) * columns), deceleration(columns),
-          moving(columns), pull_scale(columns), relative(columns), rates(size_t(columns) * LENGTH),
-          speeds(size_t(columns) * LENGTH * TOGETHER), rows(size_t(columns) * TOGETHER) {}
+          moving(columns), pull_scale(columns), rates(size_t(columns) * LENGTH),
+          speeds(size_t(columns) * LENGTH * TOGETHER), rows(size_t(columns) * TOGETHER), speed_rows(rows.size()) {}
 
     // Forget what stops have taken away, as time moves on or begins again.
     void forget_stops(mask where) {
@@ -45,7 +45,7 @@ class Tangent {
     }
 
     // Carry the perturbations through stops or starts that blocks of a column are about to make.
-    void change(const State<L> &state, int c, mask where) {
+    void change(State<L> &state, int c, mask where) {
         const L &layout = state.layout;
         const vec zero{}, force = state.force(c);
         const mask stops = where & (state.slip[c] != zero), starts = where & ~stops;
@@ -69,16 +69,17 @@ class Tangent {
             }
         }
         if (!layout.drops) return;
-        for (int k = 0; k < columns; k++) relative[k] = state.velocity[k] - layout.v;
-        const vec rate = state.force_rate(relative.at(), c);
+        state.measure();
+        const vec rate = state.force_rate(c);
         // Where the driver stands the perturbed block starts at the same time: the driver has gone less or more far.
         const mask jumps = starts & ~turns & state.at_threshold(c, force) & (rate != zero);
         if (!any(jumps)) return;
         const vec factor = sign * state.start_acceleration(c) / rate;
         for (int v = 0; v < vectors; v++) {
-            const vec *x = position.at(size_t(v) * columns);
-            vec &u = velocity[size_t(v) * columns + c];
-            u = select(jumps, factor * (layout.pull(x, c) - layout.diagonal[c] * x[c]), u);
+            const vec *x = position.at(size_t(v) * columns), *speed = velocity.at(size_t(v) * columns);
+            vec &u = velocity[size_t(v) * columns + c], change = layout.pull(x, c) - layout.diagonal[c] * x[c];
+            if (layout.damped) change += state.damping(speed, c);
+            u = select(jumps, factor * change, u);
         }
     }
 
@@ -93,7 +94,7 @@ class Tangent {
             parts[k] = degree[k] = rate_terms[k] = 0;
             if (!where[k]) continue;
             const Model &own = model(k);
-            const double pace = own.springs.fastest + own.springs.firmest * own.law.steepest;
+            const double pace = own.springs.fastest + own.springs.firmest * own.law.steepest + own.springs.damping_rate;
             const double whole = L::of_lane(length, k);
             parts[k] = 1 + int(pace * whole / STRIDE);
             const double one = parts[k] > 1 ? whole / parts[k] : whole;
@@ -179,7 +180,7 @@ class Tangent {
     // taken larger by this factor.
     static constexpr double SLOWER = 1.25;
 
-    Rows lost, deceleration, moving, pull_scale, relative, rates, speeds, rows;
+    Rows lost, deceleration, moving, pull_scale, rates, speeds, rows, speed_rows;
     Number part{};
     vec last_rate{};
     int parts[CLOCKS] = {}, rate_terms[CLOCKS] = {}, degree[CLOCKS] = {};
@@ -236,6 +237,7 @@ class Tangent {
     //     u_(n+1) = (t (pulls of x_n)/m + sum of rate_k u_(n−k))/(n + 1),      x_(n+1) = t u_n/(n + 1).
     template <int COUNT>
     void propagate(const L &layout, int v) {
+        if (layout.damped) return propagate_columns<COUNT, 0, true>(layout, v);
         if constexpr (L::ONE_CLOCK) {
             if (columns == 1 && layout.row && !layout.closed) return propagate_column<COUNT, true>(layout, v);
             if (columns == 1) return propagate_column<COUNT, false>(layout, v);
@@ -251,7 +253,7 @@ class Tangent {
     void propagate_column(const L &layout, int v) {
         const int degree = this->degree[0];
         const vec *rate = rates.at(), first_rate = rate[0], scale = pull_scale[0], diagonal = layout.diagonal[0];
-        const vec left = OPEN ? layout.left[0] : vec{}, right = OPEN ? layout.right[0] : vec{};
+        const vec left = OPEN ? layout.springs.left[0] : vec{}, right = OPEN ? layout.springs.right[0] : vec{};
         vec *speed = speeds.at(), x[COUNT], u[COUNT], position[COUNT], velocity[COUNT];
         for (int i = 0; i < COUNT; i++) {
             x[i] = position[i] = this->position[v + i];
@@ -289,7 +291,7 @@ class Tangent {
     }
 
     // COLUMNS : their number in a short row of blocks, 0 for any; see Series::fill
-    template <int COUNT, int COLUMNS>
+    template <int COUNT, int COLUMNS, bool DAMPED = false>
     void propagate_columns(const L &layout, int v) {
         // x_n of vector i is row[i · columns + c], u_n is speed[(n · columns + c) · COUNT + i].
         const int count = COLUMNS ? COLUMNS : columns, last = *std::max_element(degree, degree + CLOCKS);
@@ -307,6 +309,8 @@ class Tangent {
             const mask own = own_terms > double(n);
             const vec *now = speed + size_t(n) * count * COUNT;
             vec *next = speed + size_t(n + 1) * count * COUNT;
+            for (int c = 0; DAMPED && c < count; c++)
+                for (int i = 0; i < COUNT; i++) speed_rows[i * count + c] = now[c * COUNT + i];
             for (int c = 0; c < count; c++) {
                 const vec *rate = rates.at(size_t(c) * LENGTH);
                 vec change[COUNT]{};
@@ -322,7 +326,12 @@ class Tangent {
                         pull = layout.template pull_in_row<COLUMNS>(x, c);
                     else
                         pull = layout.pull(x, c);
-                    change[i] += scale * (pull - diagonal * x[c]);
+                    vec force = pull - diagonal * x[c];
+                    if constexpr (DAMPED) {
+                        const vec *u = speed_rows.at(size_t(i) * count);
+                        force += layout.drag(u, c) - layout.damping_diagonal[c] * u[c];
+                    }
+                    change[i] += scale * force;
                     next[c * COUNT + i] = (change[i] + rate[0] * now[c * COUNT + i]) * factor;
                     add(velocity[i * count + c], next[c * COUNT + i], own);
                 }

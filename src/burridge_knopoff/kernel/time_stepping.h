@@ -42,7 +42,6 @@ class TimeStepping {
         for (int i = 0; i < n; i++) layout.member.push_back(i);
         layout.lay([](int i) { return i; });
         state.widen();
-        relative.reserve(layout.columns);
         for (int k = n; k < layout.columns * LANES; k++) state.place(k, 0.0, 0.0, true);
     }
 
@@ -121,7 +120,6 @@ class TimeStepping {
     const int n;
     Blocks layout;
     State<Blocks> state;
-    Blocks::Rows relative;
     Polynomial polynomial;
     long long earlier_steps = 0;
     bool settled = false;
@@ -132,15 +130,16 @@ class TimeStepping {
 
     // Write x' and U'' at the present state into row `stage`.
     void slope(int stage) {
-        const double *position = &state.position.lane(0);
+        const double *position = &state.position.lane(0), *velocities = &state.velocity.lane(0);
         for (int i = 0; i < n; i++) {
-            const double direction = state.slip.lane(i), velocity = state.velocity.lane(i);
+            const double direction = state.slip.lane(i), velocity = velocities[i];
             speed[stage][i] = velocity - model.v;
             acceleration[stage][i] = 0.0;
             if (direction == 0.0) continue;
-            const double s = model.springs.sliding_force[i] + model.springs.pull(position, i);
+            double force = model.springs.sliding_force[i] + model.springs.pull(position, i);
+            if (model.springs.damped) force += model.springs.damping_load[i] + model.springs.drag(velocities, i);
             acceleration[stage][i] =
-                (s - direction * (model.springs.threshold[i] * model.law.at(direction * velocity))) /
+                (force - direction * (model.springs.threshold[i] * model.law.at(direction * velocity))) /
                 model.springs.mass[i];
         }
     }
@@ -182,6 +181,10 @@ class TimeStepping {
                                  0.5 * (model.springs.pull(old_x.data(), i) + model.springs.pull(position, i));
             event->energy += force * ((position[i] - old_x[i]) + model.v * h);
             event->peak_velocity = std::max(event->peak_velocity, direction * state.velocity.lane(i));
+            auto damped = [&](const double *u) {
+                return model.springs.damping_load[i] * (model.v - 2.0 * u[i]) - u[i] * model.springs.drag(u, i);
+            };
+            if (model.springs.damped) event->damped += 0.5 * h * (damped(old_u.data()) + damped(&state.velocity.lane(0)));
         }
     }
 
@@ -231,11 +234,14 @@ class TimeStepping {
         for (int i = 0; i < n && !observer.section_only; i++) {
             const double direction = state.slip.lane(i), threshold = model.springs.threshold[i];
             observer.extreme(direction != 0.0, threshold, UNKNOWN, start, 0.0, h, [&]() -> Polynomial & {
+                const Springs &springs = model.springs;
                 polynomial.degree = 3;
-                for (int k = 0; k < 4; k++)
-                    polynomial.coefficient[k] =
-                        direction != 0.0 ? direction * u[k][i] : -model.springs.pull(x[k].data(), i);
-                if (direction == 0.0) polynomial.coefficient[0] += threshold - model.springs.sliding_force[i];
+                for (int k = 0; k < 4; k++) {
+                    polynomial.coefficient[k] = direction != 0.0 ? direction * u[k][i] : -springs.pull(x[k].data(), i);
+                    if (direction == 0.0 && springs.damped) polynomial.coefficient[k] -= springs.drag(u[k].data(), i);
+                }
+                if (direction == 0.0)
+                    polynomial.coefficient[0] += threshold - springs.sliding_force[i] - springs.damping_load[i];
                 return polynomial;
             });
         }
@@ -254,8 +260,8 @@ class TimeStepping {
             std::vector<int> due(layout.columns);
             changing = false;
             watch.worked(n);
-            for (int c = 0; c < layout.columns; c++) relative[c] = state.velocity[c] - model.v;
-            for (int c = 0; c < layout.columns; c++) changing |= (due[c] = bits(state.pending(relative.at(), c))) != 0;
+            state.measure();
+            for (int c = 0; c < layout.columns; c++) changing |= (due[c] = bits(state.pending(c))) != 0;
             for (int c = 0; changing && c < layout.columns; c++)
                 for (int lane = 0; due[c] >> lane; lane++) {
                     if (!(due[c] >> lane & 1)) continue;

@@ -31,7 +31,7 @@ class TrajectoryLanes {
     // model : one that is like those of all lanes
     explicit TrajectoryLanes(const Model &model)
         : blocks(model.springs.blocks), layout(model), law(model.law, blocks), state(layout), series(layout, law),
-          search(scratch), relative(blocks) {}
+          search(scratch) {}
     TrajectoryLanes(const TrajectoryLanes &) = delete;
 
     // Expand the motion of all lanes, with columns of g beyond those of the blocks; return for which time the series
@@ -74,10 +74,10 @@ class TrajectoryLanes {
         std::vector<int> due(blocks);
         for (where &= is_open(); any(where); where &= is_open()) {
             mask changing{};
-            for (int i = 0; i < blocks; i++) relative[i] = state.velocity[i] - layout.v;
+            state.measure();
             // Who changes is decided before anyone does: then no order of the blocks is preferred.
             for (int i = 0; i < blocks; i++) {
-                const mask own = where & state.pending(relative.at(), i);
+                const mask own = where & state.pending(i);
                 due[i] = bits(own);
                 changing |= own;
             }
@@ -86,9 +86,6 @@ class TrajectoryLanes {
             where = changing;
         }
     }
-
-  private:
-    Trajectories::Rows relative;
 };
 
 }  // namespace bk

@@ -1,4 +1,4 @@
-"""The chain: blocks held by static friction and coupled by springs to their neighbours and to the driver."""
+"""The chain: blocks held by static friction, coupled by springs and dashpots to their neighbours and to the driver."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from burridge_knopoff.model.own_units import OwnUnits, own_units_of
 from burridge_knopoff.model.ranges import Either, Number, OneOf, Several, Whole
 from burridge_knopoff.model.solving import static_displacement
 from burridge_knopoff.model.springs import (
+    DAMPING,
     MAXIMUM_BLOCKS,
     STRENGTH,
     Neighbours,
@@ -39,6 +40,7 @@ BLOCKS = 3
 _STRENGTHS = Either((STRENGTH, Several(STRENGTH)))
 _OF_BLOCKS = Either((STRENGTH, Several(STRENGTH), Drawn(STRENGTH)))
 _PULLING = Number(STRENGTH.least, STRENGTH.most, or_zero=True)
+_DAMPING = Either((DAMPING, Several(DAMPING)))
 _SIDE = Whole(1, MAXIMUM_BLOCKS)
 
 
@@ -49,18 +51,19 @@ class Chain(Unchanging):
 
     A row has N − 1 springs between neighbours. A ring has N: the last spring joins the last block to the first. A grid
     of nx × ny blocks has open edges; block 1 + ix + nx·iy is in column ix and row iy, both from 0. A file of springs
-    has a line `block block strength` for each, with blocks numbered from 1. A block of mass m obeys
-    m U'' = s − threshold · Φ(U') while it slips.
+    has a line `block block strength` for each, with blocks numbered from 1, or `block block strength damping`. A block
+    of mass m obeys m U'' = F − threshold · Φ(U') while it slips, and sticks while F is at most its threshold.
 
-    The spring force on block i is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian of the springs plus diag(D),
-    so that K·1 = D. The defaults give the paper's chain (Eq. 2) for N = 3. The train model that the paper cites is
+    The force on block i is F_i = s_i + d_i. The spring force is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian
+    of the springs plus diag(D), so that K·1 = D. Dashpots (Kelvin-Voigt damping) add
+    d_i = Σ_j c_ij (U_j' − U_i') + c_i (v − U_i') = c_i v − (C U')_i, by default 0. The defaults give the paper's chain (Eq. 2) for N = 3. The train model that the paper cites is
     pulled at its first block only: `Chain(2, pulling=(1.0, 0.0))`. A single block hangs on one spring to the driver.
 
     Raises ValueError for a number of blocks, a number of springs or a strength out of range, for a file that is no list
     of springs, and if the driver pulls no block of a connected part of the chain, since K is then singular.
 
     Positions are in units of F(0)/k, strengths in units of the paper's spring constant k (its Section II), thresholds
-    in units of F(0), masses in units of the mass of the paper's blocks.
+    in units of F(0), masses in units of the mass m of the paper's blocks, damping in units of √(km).
 
     >>> from burridge_knopoff import Chain
     >>> chain = Chain(3, coupling=(1.0, 1.5))
@@ -97,8 +100,17 @@ class Chain(Unchanging):
     springs: Annotated[
         str | None,
         SpringsFile(),
-        "file of the springs between blocks, instead of a row: lines `block block strength`, blocks numbered from 1",
+        "file of the springs between blocks, instead of a row: lines `block block strength`, blocks numbered from 1; a "
+        "fourth column is the dashpot beside each spring",
     ] = None
+    damping: Annotated[
+        float | Sequence[float],
+        _DAMPING,
+        "dashpots beside the springs between neighbours: one number for all, or one a spring of a row or a ring",
+    ] = 0.0
+    pulling_damping: Annotated[
+        float | Sequence[float], _DAMPING, "dashpots to the driver: one number for all, or one a block"
+    ] = 0.0
 
     def __post_init__(self) -> None:
         is_new = isinstance(self.springs, str) and not has_digest(self.springs)
@@ -117,6 +129,8 @@ class Chain(Unchanging):
             ("pulling", self.blocks, "blocks"),
             ("threshold", self.blocks, "blocks"),
             ("mass", self.blocks, "blocks"),
+            ("damping", springs, "springs"),
+            ("pulling_damping", self.blocks, "blocks"),
         ):
             value = getattr(self, key)
             if isinstance(value, tuple) and len(value) != count:
@@ -134,17 +148,19 @@ class Chain(Unchanging):
         given = "chain.grid" if self.grid else "chain.springs"
         if self.ends != "open":
             raise ValueError(f"chain.ends: got {self.ends}, expected open beside {given}")
-        if isinstance(self.coupling, tuple):
-            raise ValueError(f"chain.coupling: got {len(self.coupling)} numbers, expected one beside {given}")
+        for key in ("coupling", "damping"):
+            value, usual = getattr(self, key), 1.0 if key == "coupling" else 0.0
+            if isinstance(value, tuple):
+                raise ValueError(f"chain.{key}: got {len(value)} numbers, expected one beside {given}")
+            if self.springs and value != usual:
+                raise ValueError(f"chain.{key}: got {value!r}, expected none beside {given}")
         if self.grid:
             count = math.prod(self.grid)
             if self.blocks not in (None, count):
                 raise ValueError(f"chain.blocks: got {self.blocks}, expected {count} for chain.grid {list(self.grid)}")
             object.__setattr__(self, "blocks", count)
-        elif self.coupling != 1.0:
-            raise ValueError(f"chain.coupling: got {self.coupling!r}, expected none beside {given}")
         elif self.blocks is None:
-            one, other, _ = read_edges(str(self.springs))
+            one, other, *_ = read_edges(str(self.springs))
             object.__setattr__(self, "blocks", int(max(one.max(), other.max())) + 1)
 
     def check_springs(self) -> None:
@@ -167,13 +183,14 @@ class Chain(Unchanging):
             )
 
     def is_like(self, other: Chain) -> bool:
-        """Tell whether another chain has the same springs, masses and static friction, in whatever form.
+        """Tell whether another chain has the same springs, dashpots, masses and static friction, in whatever form.
 
         A network is like no row, which has a mirror image.
         """
         if self.is_network != other.is_network:
             return False
-        pairs = [(getattr(self, name), getattr(other, name)) for name in ("driving", "thresholds", "masses")]
+        of_blocks = ("driving", "driver_damping", "thresholds", "masses")
+        pairs = [(getattr(self, name), getattr(other, name)) for name in of_blocks]
         return all(np.array_equal(*pair) for pair in (*pairs, *zip(self.neighbours, other.neighbours, strict=True)))
 
     @property
@@ -194,12 +211,15 @@ class Chain(Unchanging):
     @cached_property
     def before(self) -> np.ndarray:
         """Strength of the spring to the previous block of a row or ring, shape (blocks,); 0 at an open end."""
+        return self._before(self.coupling)
+
+    def _before(self, values: float | Sequence[float]) -> np.ndarray:
+        """Return a number of each spring in the place of the block after it, shape (blocks,); 0 at an open end."""
         if self.is_network:
             raise ValueError("chain: got a network of springs, expected a row or a ring")
-        strengths = np.zeros(self.blocks)
-        springs = self.blocks - (self.ends == "open")
-        strengths[:springs] = self.coupling
-        return read_only(np.roll(strengths, 1))
+        springs = np.zeros(self.blocks)
+        springs[: self.blocks - (self.ends == "open")] = values
+        return read_only(np.roll(springs, 1))
 
     @cached_property
     def after(self) -> np.ndarray:
@@ -215,14 +235,14 @@ class Chain(Unchanging):
         """
         if self.grid:
             columns, rows = self.grid
-            return of_grid(columns, rows, float(self.coupling))  # type: ignore[arg-type]
+            return of_grid(columns, rows, float(self.coupling), float(self.damping))  # type: ignore[arg-type]
         if self.springs is None:
-            return along(self.before, self.after)
-        one, other, strength = read_edges(self.springs)
+            return along(self.before, self._before(self.damping))
+        one, other, strength, damping = read_edges(self.springs)
         largest = int(max(one.max(), other.max())) + 1
         if largest > self.blocks:
             raise ValueError(f"chain.springs: got block {largest}, expected at most chain.blocks ({self.blocks})")
-        return of_edges(one, other, strength, self.blocks)
+        return of_edges(one, other, strength, damping, self.blocks)
 
     @cached_property
     def driving(self) -> np.ndarray:
@@ -230,6 +250,22 @@ class Chain(Unchanging):
         if isinstance(self.pulling, str):
             return read_only(np.diff(self.neighbours.start).astype(float) if self.blocks > 1 else np.ones(1))
         return read_only(np.broadcast_to(self.pulling, self.blocks))
+
+    @cached_property
+    def driver_damping(self) -> np.ndarray:
+        """The dashpots c_i to the driver, shape (blocks,)."""
+        return read_only(np.broadcast_to(self.pulling_damping, self.blocks).astype(float))
+
+    @cached_property
+    def damping_diagonal(self) -> np.ndarray:
+        """Diagonal of C: the total of the dashpots at each block, shape (blocks,)."""
+        coupled = np.bincount(self.neighbours.block, self.neighbours.damping, self.blocks)
+        return read_only(coupled + self.driver_damping)
+
+    @property
+    def is_damped(self) -> bool:
+        """Whether there is a dashpot."""
+        return bool(self.damping_diagonal.any())
 
     @cached_property
     def diagonal(self) -> np.ndarray:
@@ -240,8 +276,17 @@ class Chain(Unchanging):
     @property
     def stiffness(self) -> np.ndarray:
         """The matrix K, dense, shape (blocks, blocks)."""
-        matrix = np.diag(self.diagonal)
-        np.subtract.at(matrix, (self.neighbours.block, self.neighbours.index), self.neighbours.strength)
+        return self._dense(self.diagonal, self.neighbours.strength)
+
+    @property
+    def damping_matrix(self) -> np.ndarray:
+        """The matrix C, dense, shape (blocks, blocks)."""
+        return self._dense(self.damping_diagonal, self.neighbours.damping)
+
+    def _dense(self, diagonal: np.ndarray, joined: np.ndarray) -> np.ndarray:
+        """Return the matrix with this diagonal and minus a number for each neighbour of each block."""
+        matrix = np.diag(diagonal)
+        np.subtract.at(matrix, (self.neighbours.block, self.neighbours.index), joined)
         return matrix
 
     @property
@@ -267,12 +312,15 @@ class Chain(Unchanging):
         """
         if self.blocks == 1 or self.is_network:
             return False
-        pairs = [(values, values) for values in (self.driving, self.thresholds, self.masses)]
-        return all(bool((one == other[::-1]).all()) for one, other in (*pairs, (self.before, self.after)))
+        of_blocks = (self.driving, self.thresholds, self.masses, self.driver_damping)
+        of_springs = (self.before, self._before(self.damping))
+        pairs = [(values, values) for values in of_blocks] + [(values, np.roll(values, -1)) for values in of_springs]
+        return all(bool((one == other[::-1]).all()) for one, other in pairs)
 
     @property
     def is_uniform(self) -> bool:
-        """Whether this is a row with open ends, masses of 1, and one number each for coupling, pulling and threshold.
+        """Whether this is a row with open ends, masses of 1, one number each for coupling, pulling and threshold, and
+        no dashpots.
 
         The solver `map` knows the modes of no other chain.
         """
@@ -283,6 +331,7 @@ class Chain(Unchanging):
             and (isinstance(self.pulling, float) or self.pulling == NEIGHBOURS)
             and isinstance(self.threshold, float)
             and self.mass == 1.0
+            and not self.is_damped
         )
 
     @property
@@ -291,6 +340,13 @@ class Chain(Unchanging):
         bound = self.diagonal.copy()
         np.add.at(bound, self.neighbours.block, self.neighbours.strength)
         return math.sqrt(float((bound / self.masses).max()))
+
+    @property
+    def highest_rate(self) -> float:
+        """Upper bound on the rates |λ| at which slipping blocks oscillate and dashpots damp them, friction aside."""
+        bound = self.damping_diagonal.copy()
+        np.add.at(bound, self.neighbours.block, self.neighbours.damping)
+        return self.highest_frequency + float((bound / self.masses).max())
 
     @cached_property
     def own_units(self) -> OwnUnits:
@@ -310,6 +366,14 @@ class Chain(Unchanging):
         block = np.arange(self.blocks)
         pull = self.before * position[..., block - 1] + self.after * position[..., (block + 1) % self.blocks]
         return pull - self.diagonal * position
+
+    def damping_force(self, velocity: np.ndarray, v: float) -> np.ndarray:
+        """Return the forces c_i v − (C U')_i of the dashpots for velocities U', shape (…, blocks)."""
+        if not self.is_damped:
+            return np.zeros(velocity.shape)
+        flat = velocity.reshape(-1, self.blocks).T
+        pulls = (self._matrix(self.neighbours.damping) @ flat).T.reshape(velocity.shape)
+        return self.driver_damping * v + (pulls - self.damping_diagonal * velocity)
 
     def sliding_offset(self, friction: float) -> np.ndarray:
         """Return e with K e = −friction · threshold, shape (blocks,).

@@ -22,7 +22,7 @@ LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z
 CONTACTS = ("one_sided", "symmetric")
 STARTS = ("moving", "tested")
 #: The choices of `start` and their meaning.
-START = "moving: every block slips at tau = 0 | tested: those with spring force at most threshold stick there"
+START = "moving: every block slips at tau = 0 | tested: those on which the force is at most threshold stick there"
 
 
 @settings
@@ -117,7 +117,7 @@ class Model(Unchanging):
         """
         OneOf(STARTS).form(start, "start")
         u, w = self.numbers_of(initial)
-        stuck = self.starts_stuck(u, start)
+        stuck = self.starts_stuck(u, w, start)
         return ChainState(u - self.sliding_offset, np.where(stuck, 0.0, w), stuck)
 
     def numbers_of(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
@@ -137,10 +137,17 @@ class Model(Unchanging):
                 "forward; contact symmetric lets them slip backward"
             )
 
-    def starts_stuck(self, position: np.ndarray, start: str) -> np.ndarray:
-        """Return which blocks stick at τ = 0 for a choice of `start`; same shape as U(0), (…, blocks)."""
+    def starts_stuck(self, position: np.ndarray, velocity: np.ndarray, start: str) -> np.ndarray:
+        """Return which blocks stick at τ = 0 for a choice of `start`; same shape as U(0) and U'(0), (…, blocks).
+
+        Dashpots pull on a block at rest whose neighbours have their U'(0).
+        """
+        chain = self.chain
         # Spring forces from U itself: rounding in co-moving coordinates could move a block across its threshold.
-        return (start == "tested") & (self.chain.force(position) <= self.chain.thresholds)
+        force = chain.force(position)
+        if chain.is_damped:
+            force += chain.damping_force(velocity, self.v) + chain.damping_diagonal * velocity
+        return (start == "tested") & (force <= chain.thresholds)
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from burridge_knopoff.model.model import Model
 
 #: Parameters of the chain.
-CHAIN = ("coupling", "pulling", "threshold", "mass")
+CHAIN = ("coupling", "pulling", "threshold", "mass", "damping", "pulling_damping")
 
 ONE = "one number for the whole chain"
 

@@ -1,4 +1,4 @@
-"""The springs between blocks as lists of neighbours, for rows, rings, grids and networks from a file."""
+"""Springs and dashpots between blocks as lists of neighbours, for rows, rings, grids and networks from a file."""
 
 from __future__ import annotations
 
@@ -17,21 +17,28 @@ from burridge_knopoff.values import read_only
 #: Limit on the number of blocks.
 MAXIMUM_BLOCKS = 10**6
 STRENGTH = Number(1e-6, 1e6)
-_LINES = f"lines `block block strength`, with blocks from 1 to {MAXIMUM_BLOCKS} and strength {STRENGTH}"
+DAMPING = Number(STRENGTH.least, STRENGTH.most, or_zero=True)
+_LINES = (
+    f"lines `block block strength` or `block block strength damping`, with blocks from 1 to {MAXIMUM_BLOCKS}, "
+    f"strength {STRENGTH} and damping {DAMPING}"
+)
 _STATED = re.compile(r"(?s:(.+))@([0-9a-f]{16})")
 
 
 class Neighbours(NamedTuple):
     """The neighbours of each block in compressed rows; the arrays are read-only.
 
-    Those of block i (0 …) are index[start[i]:start[i + 1]]; springs of strength[start[i]:start[i + 1]] join them to it.
+    Those of block i (0 …) are index[start[i]:start[i + 1]]; springs of strength[start[i]:start[i + 1]] join them to it,
+    and dashpots of damping[start[i]:start[i + 1]].
 
-    start : shape (blocks + 1,), int64; index : shape (n,), int64; strength : shape (n,), above 0
+    start : shape (blocks + 1,), int64; index : shape (n,), int64
+    strength : shape (n,), above 0; damping : shape (n,), 0 without a dashpot
     """
 
     start: np.ndarray
     index: np.ndarray  # type: ignore[assignment]
     strength: np.ndarray
+    damping: np.ndarray
 
     @property
     def block(self) -> np.ndarray:
@@ -39,39 +46,41 @@ class Neighbours(NamedTuple):
         return np.repeat(np.arange(len(self.start) - 1), np.diff(self.start))
 
 
-def _listed(index: np.ndarray, strength: np.ndarray) -> Neighbours:
-    """Return neighbours from a table with a row for each block; entries of strength 0 are left out."""
+def _listed(index: np.ndarray, strength: np.ndarray, damping: np.ndarray) -> Neighbours:
+    """Return neighbours from tables with a row for each block; entries of strength 0 are left out."""
     joined = strength > 0.0
     start = np.concatenate([[0], np.cumsum(joined.sum(axis=1))])
-    arrays = start.astype(np.int64), index[joined].astype(np.int64), strength[joined].astype(float)
-    return Neighbours(*map(read_only, arrays))
+    numbers = (strength[joined].astype(float), damping[joined].astype(float))
+    return Neighbours(*map(read_only, (start.astype(np.int64), index[joined].astype(np.int64), *numbers)))
 
 
-def along(before: np.ndarray, after: np.ndarray) -> Neighbours:
+def along(strength: np.ndarray, damping: np.ndarray) -> Neighbours:
     """Return the neighbours in a row or a ring: the previous block, then the next one.
 
-    before, after : strengths of the springs to them, shape (blocks,), 0 at an open end
+    strength, damping : of the springs and dashpots to the previous block, shape (blocks,), 0 at an open end
     """
-    block = np.arange(len(before))
-    index = np.stack([np.roll(block, 1), np.roll(block, -1)], axis=1)
-    return _listed(index, np.stack([before, after], axis=1))
+    block = np.arange(len(strength))
+    numbers = (np.stack([values, np.roll(values, -1)], axis=1) for values in (strength, damping))
+    return _listed(np.stack([np.roll(block, 1), np.roll(block, -1)], axis=1), *numbers)
 
 
-def of_grid(columns: int, rows: int, strength: float) -> Neighbours:
+def of_grid(columns: int, rows: int, strength: float, damping: float) -> Neighbours:
     """Return the neighbours in a grid with open edges: left, right, down, up; block number is ix + columns * iy."""
     block = np.arange(columns * rows)
     ix, iy = block % columns, block // columns
     joined = np.stack([ix > 0, ix < columns - 1, iy > 0, iy < rows - 1], axis=1)
-    return _listed(block[:, None] + np.array([-1, 1, -columns, columns]), strength * joined)
+    return _listed(block[:, None] + np.array([-1, 1, -columns, columns]), strength * joined, damping * joined)
 
 
-def of_edges(one: np.ndarray, other: np.ndarray, strength: np.ndarray, blocks: int) -> Neighbours:
+def of_edges(
+    one: np.ndarray, other: np.ndarray, strength: np.ndarray, damping: np.ndarray, blocks: int
+) -> Neighbours:
     """Return the neighbours in a network, in ascending order; one, other : the blocks (0 …) that each spring joins."""
     block, index = np.concatenate([one, other]), np.concatenate([other, one])
     order = np.lexsort((index, block))
     start = np.concatenate([[0], np.cumsum(np.bincount(block, minlength=blocks))])
-    arrays = start.astype(np.int64), index[order].astype(np.int64), np.concatenate([strength, strength])[order]
-    return Neighbours(*map(read_only, arrays))
+    numbers = (np.concatenate([values, values])[order] for values in (strength, damping))
+    return Neighbours(*map(read_only, (start.astype(np.int64), index[order].astype(np.int64), *numbers)))
 
 
 class SpringsFile(Range):
@@ -96,8 +105,8 @@ def has_digest(springs: str) -> bool:
 
 
 @lru_cache(maxsize=4)
-def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the springs of a file: the blocks (0 …) that each one joins, and its strength.
+def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Return the springs of a file: the blocks (0 …) that each one joins, its strength and the dashpot beside it.
 
     springs : name of the file and digest, as `SpringsFile` returns it
 
@@ -114,9 +123,10 @@ def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             table = np.loadtxt(content.decode().splitlines(), ndmin=2)
     except ValueError as error:
         raise _refused(path, str(error).split(";")[0].rstrip(".")) from None
-    if not table.size or table.shape[1] != 3:
+    if not table.size or table.shape[1] not in (3, 4):
         raise _refused(path, f"{table.shape[1] if table.size else 0} columns")
     blocks, strength = table[:, :2], table[:, 2]
+    damping = table[:, 3] if table.shape[1] == 4 else np.zeros(len(table))
     pair = np.sort(blocks, axis=1)
     order = np.lexsort(pair.T)
     twice = np.zeros(len(pair), dtype=bool)
@@ -125,6 +135,7 @@ def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     for wrong, reason in (
         (~inside.all(axis=1), ""),
         (~((strength >= STRENGTH.least) & (strength <= STRENGTH.most)), ""),
+        (~((damping == 0.0) | ((damping >= DAMPING.least) & (damping <= DAMPING.most))), ""),
         (pair[:, 0] == pair[:, 1], ", a block joined to itself"),
         (twice, ", a pair of blocks that is listed twice"),
     ):
@@ -132,7 +143,7 @@ def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
             row = table[np.flatnonzero(wrong)[0]]
             raise _refused(path, f"{' '.join(f'{value:g}' for value in row)}{reason}")
     one, other = blocks.T.astype(np.int64) - 1
-    return read_only(one), read_only(other), read_only(strength)
+    return read_only(one), read_only(other), read_only(strength), read_only(damping)
 
 
 def _content(path: str) -> bytes:

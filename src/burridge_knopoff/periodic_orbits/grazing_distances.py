@@ -76,7 +76,7 @@ def drops(model: Model) -> bool:
 
 def longest_spacing(chain: Chain) -> float:
     """Return the longest time between two samples that resolves the motion of a chain."""
-    return min(SPACING * chain.own_units.time, LARGEST_PHASE / chain.highest_frequency)
+    return min(SPACING * chain.own_units.time, LARGEST_PHASE / chain.highest_rate)
 
 
 def contacts(orbit: PeriodicOrbit) -> Contacts:
@@ -99,7 +99,7 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     again = Runner(model)
     speed, gap = np.full(model.blocks, np.inf), np.full(model.blocks, np.inf)
     chunks = [slice(first, first + CHUNK) for first in range(0, len(time), CHUNK)]
-    parts = [_derivatives(model, position[chunk], velocity[chunk]) for chunk in chunks]
+    parts = [_derivatives(model, position[chunk], velocity[chunk], stuck[chunk]) for chunk in chunks]
     derivatives = [np.concatenate(values) for values in zip(*parts, strict=True)]
     # Backward slip and backward pull are treated as their mirror images.
     for side in SIDES[model.contact]:
@@ -111,7 +111,7 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
             for k in sorted(np.flatnonzero(turns), key=lambda k: moving[k, block])[:SLOWEST]:
                 share = _root(acceleration[k : k + 2, block], jerk[k : k + 2, block] * spacing)
                 at = after(again, ChainState(position[k], velocity[k], stuck[k]), share * spacing)
-                here = _derivatives(model, at.position[None], at.velocity[None])
+                here = _derivatives(model, at.position[None], at.velocity[None], at.stuck[None])
                 change, second = float(here[2][0, block]), float(here[3][0, block])
                 speed[block] = min(speed[block], side * (at.velocity[block] - 0.5 * change**2 / second))
             sticks = whole[:, block] & stuck[:-1, block]
@@ -136,9 +136,9 @@ def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
         events = runner.log.events.values()
         for number, threshold in enumerate(model.chain.thresholds):
             own = events[events[:, 0] == number + 1]
-            position = own[:, 2 : 2 + model.blocks]
-            force = _derivatives(model, position, np.zeros_like(position))[0][:, number]
-            # A slip goes in the direction of the spring force at its start, the event before its stop.
+            position, velocity = np.split(own[:, 2:], 2, axis=1)
+            force = _derivatives(model, position, velocity, velocity == 0.0)[0][:, number]
+            # A slip goes in the direction of the force at its start, the event before its stop.
             along = np.sign(np.roll(force, 1)) * force
             decelerations = (threshold * float(model.law(0.0)) - along) / model.chain.masses[number]
             least[number] = decelerations[own[:, 1] == 0].min(initial=np.inf)
@@ -163,13 +163,19 @@ def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray
         yield np.concatenate([[first], kind])[over] == 0, over
 
 
-def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return spring force, its rate, and acceleration and its rate of slipping blocks, each of shape (n, blocks)."""
+def _derivatives(
+    model: Model, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray
+) -> tuple[np.ndarray, ...]:
+    """Return the force, its rate, and acceleration and its rate of slipping blocks, each of shape (n, blocks)."""
     chain = model.chain
     force = chain.thresholds * float(model.law(model.v)) - position @ chain.stiffness.T
     force_rate = -(velocity - model.v) @ chain.stiffness.T
     speed = np.abs(velocity)
+    if chain.is_damped:
+        force += chain.damping_force(velocity, model.v)
     acceleration = (force - np.where(velocity < 0.0, -1.0, 1.0) * chain.thresholds * model.law(speed)) / chain.masses
+    if chain.is_damped:
+        force_rate -= np.where(stuck, 0.0, acceleration) @ chain.damping_matrix.T
     jerk = (force_rate - chain.thresholds * model.law.slope(speed) * acceleration) / chain.masses
     return force, force_rate, acceleration, jerk
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
+import numpy as np
 import xarray
 import yaml
 
@@ -94,6 +95,9 @@ def chain_text(chain: Chain) -> str:
     parts.append(f"static friction {_numbers(chain.threshold)}")
     if chain.mass != 1.0:
         parts.append(f"mass {_numbers(chain.mass)}")
+    for words, damping in (("neighbours", chain.damping), ("the driver", chain.pulling_damping)):
+        if np.any(damping):
+            parts.append(f"dashpots to {words} {_numbers(damping)}")
     shape = "a ring" if chain.ends == "ring" else "open ends"
     if chain.is_network:
         shape = f"a grid of {chain.grid[0]} × {chain.grid[1]} blocks" if chain.grid else "a network"

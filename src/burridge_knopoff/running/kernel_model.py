@@ -12,7 +12,8 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
     """Return the chain, friction law and driver of a model for the kernel; loading : see `Runner`."""
     chain, law = model.chain, model.law
     operations, constants = law.tape.table
-    start, index, strength = chain.neighbours
+    start, index, strength, damping = chain.neighbours
+    v = model.v if loading == "steady" else 0.0
     return KernelModel(
         diagonal=chain.diagonal,
         driving=np.ascontiguousarray(chain.driving),
@@ -22,6 +23,9 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         start=start,
         neighbour=index,
         strength=strength,
+        damping=damping,
+        damping_diagonal=chain.damping_diagonal,
+        damping_load=chain.driver_damping * v,
         operations=np.ascontiguousarray(operations, np.int64),
         constants=np.ascontiguousarray(constants, float),
         value=law.tape.value,
@@ -29,6 +33,6 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         linear=law.is_linear,
         rate=-float(law.slope(0.0)),
         steepest=law.steepest,
-        v=model.v if loading == "steady" else 0.0,
+        v=v,
         symmetric=model.contact == "symmetric",
     )

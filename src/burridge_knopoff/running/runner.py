@@ -74,7 +74,7 @@ class Runner:
         if solver == "map" and not model.has_closed_form:
             raise ValueError(
                 "solver: got 'map', expected series | rk4: map needs a closed form, that is a linear friction law, not "
-                "too steep, in a uniform chain with open ends"
+                "too steep, in a uniform chain with open ends and without dashpots"
             )
         quasistatic = is_quasistatic(loading, model, solver)
         self.model = model

@@ -36,9 +36,9 @@ LONGEST_STEP = 0.25
 def check_step(step: float, longest: float, duration: float, chain: Chain) -> None:
     """Raise ValueError if a fixed step is too long for a chain, or makes too many steps in a time.
 
-    longest : step times the highest frequency of the chain
+    longest : step times the highest rate of the chain
     """
-    if step > (longest := longest / chain.highest_frequency):
+    if step > (longest := longest / chain.highest_rate):
         raise refusal("step", step, f"at most {longest:.3g} in this chain: longer steps miss events")
     if duration * chain.blocks > MOST_STEPS * step:
         raise refusal("step", step, f"at most {MOST_STEPS / chain.blocks:.3g} steps in the whole run")

@@ -146,7 +146,10 @@ def _reason(model: Model) -> str:
     if not model.law.is_linear:
         return "as its friction is not linear in the speed"
     if not model.chain.is_uniform:
-        return "which needs a row with open ends, masses of 1 and one number each for coupling, pulling and threshold"
+        return (
+            "which needs a row with open ends, masses of 1, one number each for coupling, pulling and threshold, and no "
+            "dashpots"
+        )
     return f"as a slope steeper than {model.chain.damping_limit:g} overdamps the blocks"
 
 

@@ -100,7 +100,7 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
         {
             "history": "snakemake chains",
             "blocks": first.blocks,
-            **{name: getattr(first.chain, name) for name in ("coupling", "pulling", "threshold", "ends", "mass")},
+            **{name: getattr(first.chain, name) for name in ("coupling", "pulling", "threshold", "ends", "mass", "damping", "pulling_damping")},
             "friction": friction_words(model.law for model in models),
             "v": first.v,
             "contact": first.contact,

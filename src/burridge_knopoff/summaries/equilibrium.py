@@ -120,7 +120,7 @@ def sliding_position(model: Model) -> np.ndarray:
     return solveh_banded(bands, load)
 
 
-def damping(model: Model) -> np.ndarray:
+def weakening(model: Model) -> np.ndarray:
     """Return g = −threshold·dΦ/dU'/m of each block at the velocity of the driver, shape (blocks,)."""
     return -model.chain.thresholds * float(model.law.slope(model.v)) / model.chain.masses
 
@@ -131,12 +131,11 @@ def eigenvalues(model: Model) -> np.ndarray:
     From the slowest oscillation to the fastest, of a pair the positive imaginary part first; those without oscillation
     come before, the one that grows most first.
     """
-    stiffness, rates, root = model.chain.stiffness, damping(model), np.sqrt(model.chain.masses)
-    if (rates != rates[0]).any():
-        blocks = model.blocks
-        jacobian = np.block(
-            [[np.zeros((blocks, blocks)), np.eye(blocks)], [-stiffness / model.chain.masses[:, None], np.diag(rates)]]
-        )
+    stiffness, rates, root = model.chain.stiffness, weakening(model), np.sqrt(model.chain.masses)
+    if model.chain.is_damped or (rates != rates[0]).any():
+        blocks, masses = model.blocks, model.chain.masses[:, None]
+        damped = np.diag(rates) - model.chain.damping_matrix / masses
+        jacobian = np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-stiffness / masses, damped]])
         found = [complex(_rounded(value.real), _rounded(value.imag)) for value in np.linalg.eigvals(jacobian)]
         return np.array(sorted(found, key=lambda value: (abs(value.imag), value.imag < 0.0, -value.real)))
     half = 0.5 * rates[0]

@@ -120,7 +120,8 @@ def train(chain: Chain, blocks: int) -> Chain:
     """
     first = 1.0 if isinstance(chain.pulling, str) else chain.pulling
     pulling = (first, *(blocks - 1) * (0.0,))
-    return Chain(blocks, chain.coupling, pulling, chain.threshold, mass=chain.mass)  # type: ignore[arg-type]
+    given = {name: getattr(chain, name) for name in ("threshold", "mass", "damping", "pulling_damping")}
+    return Chain(blocks, chain.coupling, pulling, **given)
 
 
 def run_settings(**settings: Any) -> Settings:
