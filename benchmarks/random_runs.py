@@ -28,6 +28,7 @@ def random_model(random: np.random.Generator) -> Model:
     """Return a chain, ring or grid of up to 60 blocks with a law, a driver and a contact."""
     shape = random.integers(3)
     springs = {"coupling": 10 ** random.uniform(-1, 1.5), "pulling": 10 ** random.uniform(-0.5, 0.5)}
+    springs |= {name: 10 ** random.uniform(-2, 0) for name in ("damping", "pulling_damping") if random.random() < 0.3}
     if shape == 2:
         chain = Chain(grid=tuple(random.integers(1, 8, 2).tolist()), **springs)
     else:

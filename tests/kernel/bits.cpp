@@ -52,6 +52,9 @@ void read_model(Model &model) {
     springs.start = next<int64_t>();
     springs.neighbour = next<int>();
     springs.strength = next();
+    springs.damping = next();
+    springs.damping_diagonal = next();
+    springs.damping_load = next();
     springs.blocks = int(springs.diagonal.size());
     springs.complete();
     const std::vector<int> code = next<int>();
@@ -94,6 +97,7 @@ void finish(Solver &solver, int status, const EventLog &log, const Observer &obs
     write(catalogue.table.time);
     write(catalogue.table.moment);
     write(catalogue.table.energy_released);
+    write(catalogue.table.energy_damped);
 }
 
 }  // namespace

@@ -23,8 +23,15 @@ pytestmark = pytest.mark.slow
 
 SOURCE = Path(__file__).with_name("bits.cpp")
 EDGES, TIMES, STEP, COUNT = np.array([5.0, 20.0, 40.0]), np.array([7.0, 30.0]), 0.01, 11
-# The last one moves in groups.
-CHAINS = Chain(3), Chain(grid=(4, 3), coupling=2.0, mass=1.5), Chain(5, ends="ring"), Chain(26)
+CHAINS = (
+    Chain(3),
+    Chain(grid=(4, 3), coupling=2.0, mass=1.5),
+    Chain(5, ends="ring"),
+    Chain(3, damping=0.2, pulling_damping=0.1),
+    # This one moves in groups.
+    Chain(26, damping=0.1),
+    Chain(26),
+)
 # Without exp, log and fractional powers, whose last bit depends on the C library.
 LAWS = (
     law_of("linearized", 0.2),
@@ -38,7 +45,7 @@ CASES = [
     for law, contact in zip(LAWS, ("one_sided", "symmetric") * 2, strict=True)
 ]
 RUN = """status, x, U', event times, events, J, positions, velocities, integral of J, crossing times, crossings, speeds,
-forces, times of slip events, moments, energies""".replace("\n", " ").split(", ")
+forces, times of slip events, moments, energies, energies of dashpots""".replace("\n", " ").split(", ")
 MANY = "positions", "velocities", "ends"
 LOCKSTEP = [f"{name} in lockstep" for name in (*RUN, "growth")]
 NAMES = [*RUN, "growth", *4 * LOCKSTEP, *(f"{name} by rk4" for name in RUN), *(f"{name} of many" for name in MANY)]
@@ -86,7 +93,7 @@ def found_here(model):
         found, events = runner.observer.results(), catalogue.take()
         measured = "distance position velocity batch_integral crossing_time crossing highest_speed lowest_force"
         yield from (found[name] for name in measured.split())
-        yield from (events[name] for name in ("time", "moment", "energy_released"))
+        yield from (events[name] for name in ("time", "moment", "energy_released", "energy_damped"))
         if runner.solver[1] == "series":
             yield runner.exponents.results()["growth"]
 

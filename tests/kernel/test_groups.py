@@ -37,11 +37,13 @@ def events(model, start, end, groups):
     st.sampled_from(["open", "ring"]),
     st.floats(0.2, 30.0),
     st.floats(0.003, 0.3),
+    st.sampled_from([(0.0, 0.0), (0.5, 0.0), (0.0, 0.2), (2.0, 0.1)]),
     st.integers(0, 10_000),
 )
-@settings(max_examples=60)
-def test_events_are_those_of_the_chain_as_a_whole(blocks, law, contact, ends, coupling, v, seed):
-    chain = Chain(blocks, coupling=coupling, pulling=1.0, ends=ends if blocks > 1 else "open")
+@settings(max_examples=100)
+def test_events_are_those_of_the_chain_as_a_whole(blocks, law, contact, ends, coupling, v, dashpots, seed):
+    dashpots = dict(zip(("damping", "pulling_damping"), dashpots, strict=True))
+    chain = Chain(blocks, coupling=coupling, pulling=1.0, ends=ends if blocks > 1 else "open", **dashpots)
     model = Model(chain, law_of(law, LAWS[law]), v, contact)
     start = at_rest(model, seed)
     # Chaos sets in with the first slips that reach far.

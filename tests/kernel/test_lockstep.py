@@ -28,10 +28,12 @@ def batches(draw):
     ends = draw(st.sampled_from(["open", "ring"])) if blocks > 2 else "open"
     law, contact = draw(st.sampled_from(LAWS)), draw(st.sampled_from(["one_sided", "symmetric"]))
     exponents = draw(st.integers(0, min(2 * blocks, 4)))
+    dashpots = draw(st.sampled_from([("damping",), ("pulling_damping",), ("damping", "pulling_damping"), ()]))
     members = []
     for _ in range(draw(st.sampled_from([2, LANES - 1, LANES, LANES + 1, 3 * LANES]))):
         a = float(generator.choice([0.02, 0.08, 0.3]) * generator.uniform(0.8, 1.2))
-        chain = Chain(blocks, generator.uniform(0.3, 3.0), generator.uniform(0.5, 2.0), ends=ends)
+        damped = {name: float(generator.uniform(0.01, 1.0)) for name in dashpots}
+        chain = Chain(blocks, generator.uniform(0.3, 3.0), generator.uniform(0.5, 2.0), ends=ends, **damped)
         model = Model(chain, law_of(law, a), float(generator.choice([0.01, 0.1, 0.5])), contact)
         position, velocity = generator.uniform(-0.5, 0.4, blocks), generator.uniform(0.0, 0.2, blocks)
         # Blocks that move as one, but for rounding.

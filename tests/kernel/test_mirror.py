@@ -4,6 +4,8 @@ Mirror images have their events at the same instant because they have the same b
 how far rounding leaves a spring force from its threshold grows with the stiffness.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -13,6 +15,8 @@ from burridge_knopoff import Chain, Model, law_of, simulate
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.running.ensemble import new_ensemble
 
+#: Of neighbours and to the driver.
+DASHPOTS = st.sampled_from([(0.0, 0.0), (0.3, 0.0), (0.0, 0.1), (1.0, 0.2)])
 ENGINES = ("series", "map", "ensemble")
 TIMES = 20
 
@@ -49,7 +53,8 @@ def chains(draw, ends=("open", "ring")):
     threshold = draw(st.sampled_from([1e-3, 1.0, 50.0]))
     v = threshold * draw(st.sampled_from([0.01, 0.1, 1.0]))
     law = law_of(draw(st.sampled_from(["linearized", "nonlinear"])), generator.uniform(0.0, 0.4) / max(1.0, threshold))
-    chain = Chain(blocks, coupling, pulling, threshold, end)
+    damping, pulling_damping = (size * (coupling * pulling) ** 0.25 for size in draw(DASHPOTS))
+    chain = Chain(blocks, coupling, pulling, threshold, end, damping=damping, pulling_damping=pulling_damping)
     model = Model(chain, law, v, draw(st.sampled_from(["one_sided", "symmetric"])))
     size = threshold / (coupling + pulling) * draw(st.sampled_from([1e-3, 0.1, 1.0]))
     position = size * generator.normal(size=blocks)
@@ -97,7 +102,7 @@ def test_a_ring_knows_no_first_block(drawn, turn, period):
     """A turned state moves as the turned state; one that repeats along the ring goes on to do so."""
     model, position, velocity, duration = drawn
     blocks = model.blocks // period * period
-    repeated = Model(Chain(max(blocks, 3), model.chain.coupling, model.chain.pulling, ends="ring"), model.law, model.v)
+    repeated = Model(replace(model.chain, blocks=max(blocks, 3), threshold=1.0), model.law, model.v)
     x, u, _ = states_of("series", model, position, velocity, duration)
     other_x, other_u, _ = states_of("series", model, np.roll(position, turn), np.roll(velocity, turn), duration)
     assert (np.roll([x, u], turn, axis=2) == np.array([other_x, other_u])).all()

@@ -1,5 +1,7 @@
 """Networks of springs and blocks of unequal mass: events against SciPy, in groups, in lanes, and perturbations."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -11,12 +13,18 @@ from burridge_knopoff.running.status import Status
 from tests.flows import carry, check_events, differences, directions
 from tests.scipy_flow import model_events
 
+NETWORK = str(Path(__file__).with_name("damped_network.txt"))
+
 CHAINS = [
     Chain(grid=(3, 2), pulling=1.0),
     Chain(grid=(2, 3), coupling=2.0, pulling=0.5, mass=[1.0, 2.0, 0.5, 1.0, 3.0, 1.5]),
     Chain(5, mass=[1.0, 2.0, 0.5, 1.0, 3.0]),
     Chain(4, ends="ring", mass=[0.5, 1.0, 2.0, 1.0]),
     Chain(1, mass=2.0),
+    Chain(grid=(3, 2), pulling=1.0, damping=0.3),
+    Chain(4, ends="ring", damping=(0.1, 0, 0.5, 1), pulling_damping=(0, 0.2, 0, 0.1), mass=(0.5, 1.0, 2.0, 1.0)),
+    Chain(springs=NETWORK, pulling=1.0, pulling_damping=0.1),
+    Chain(1, pulling_damping=0.4),
 ]
 
 
@@ -46,7 +54,7 @@ def test_events_against_scipy(law, chain, contact):
     check_events(list(zip(*columns, strict=True)), expected, 1e-8)
 
 
-@pytest.mark.parametrize("chain", CHAINS[:4])
+@pytest.mark.parametrize("chain", CHAINS)
 def test_perturbations_against_differences(law, chain):
     model = Model(chain, law_of(law, 0.2))
     start = rest(model, 3)

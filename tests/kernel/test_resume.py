@@ -28,6 +28,7 @@ def symmetric_cases(draw, loadings=("steady", "quasistatic")):
     law = DROP if loading == "quasistatic" else draw(st.sampled_from(list(LAWS)))
     form = draw(st.sampled_from(["open", "ring", "grid"]))
     springs = {"coupling": 10.0 ** draw(st.floats(-0.5, 1.5)), "pulling": 1.0}
+    springs |= {name: draw(st.sampled_from([0.0, 0.0, 0.4])) for name in ("damping", "pulling_damping")}
     if form == "grid":
         columns, rows = draw(st.integers(2, 10)), draw(st.integers(2, 6))
         chain = Chain(grid=(columns, rows), **springs)
@@ -91,6 +92,23 @@ def test_a_run_in_parts_is_the_whole_run_to_the_bit(case, groups, cuts):
     for expected, parts in zip(whole, zip(*found, strict=True), strict=True):
         axis = 1 if expected is whole[0] else 0
         assert np.array_equal(np.concatenate(parts, axis=axis), expected)
+
+
+@pytest.mark.parametrize("groups", [True, False])
+def test_runs_of_no_length_change_nothing(groups):
+    """Crossings told by another bit once."""
+    model = Model(Chain(3, 1.1, 1.0, ends="ring"), law_of("linearized", 0.3), 0.03)
+    for seed in range(40):
+        position = np.random.default_rng(seed).uniform(-1.2, -0.9, 3) - model.sliding_offset
+        start = ChainState(position, np.zeros(3), np.ones(3, dtype=bool))
+        whole = followed(model, start, 30.0, groups, "steady")[1]
+        state, found = start, []
+        for time in (1.6, 1.6, 1.6, 30.0):
+            part, rows = followed(model, state, time, groups, "steady")
+            state = part.final()
+            found.append(rows)
+        for axis, (expected, parts) in zip((1, 0), zip(whole, zip(*found, strict=True), strict=True), strict=True):
+            assert np.array_equal(np.concatenate(parts, axis=axis), expected)
 
 
 WAYS = ("whole", "groups", "exponents", "catalogue", "any")

@@ -64,9 +64,9 @@ POINT_VARIABLES: dict[str, Variable] = {
     "batch_mean_distance": _V(("batch",), "f8", "time average of J over one batch of the window"),
     "batch": _V(("batch",), "f8", "time tau at the middle of the batch", coordinate=True),
     "least_friction": _V((), "f8", "least friction Phi on a slipping block in the whole run"),
-    "least_spring_force": _V((), "f8", "least spring force s on a stuck block in the whole run"),
+    "least_spring_force": _V((), "f8", "least force on a stuck block in the whole run"),
     "window_least_friction": _V((), "f8", "least friction Phi on a slipping block in the window"),
-    "window_least_spring_force": _V((), "f8", "least spring force s on a stuck block in the window"),
+    "window_least_spring_force": _V((), "f8", "least force on a stuck block in the window"),
     "lyapunov_exponent": _V(
         ("exponent",),
         "f8",

@@ -99,10 +99,12 @@ bool Run::process() {
     for (int number : ending) {
         Group &own = *groups[number];
         end_piece(own, own.length);
-        if (!own.event) continue;
+        if (own.event)
+            find_due(own);
+        else if (!find_resting(own))
+            continue;
         events++;
         group = &own;
-        find_due(own);
         for (int k = 0; k < own.size(); k++)
             if (due[k / LANES] >> k % LANES & 1) changing.push_back(own.layout.member[k]);
     }

@@ -128,7 +128,7 @@ struct Observer {
         }
     }
 
-    // Follow the highest slip speed and the lowest spring force on a stuck block, in transient and window: a piece from
+    // Follow the highest slip speed and the lowest force on a stuck block, in transient and window: a piece from
     // one time to another in which |U_i'| or θ_i − s_i, a polynomial that `load` gives, is at most `bound`.
     template <class Load>
     void extreme(bool slips, double threshold, double bound, const Clock &start, double from, double to, Load &&load) {

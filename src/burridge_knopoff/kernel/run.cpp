@@ -224,6 +224,16 @@ void Run::find_due(Group &group) {
     for (int c = 0; c < group.layout.columns; c++) due[c] = bits(group.search.due(group.series, c));
 }
 
+// Find the blocks that come to rest where a piece ends without an event, and tell whether there are any.
+bool Run::find_resting(Group &group) {
+    due.assign(group.layout.columns, 0);
+    if (!(loading > 0.0 && model.springs.damped)) return false;
+    bool any = false;
+    for (int c = 0; c < group.layout.columns; c++)
+        any |= (due[c] = bits(group.state.at_rest(c) & group.layout.present[c])) != 0;
+    return any;
+}
+
 // Keep the pieces that the end of a run cuts off.
 void Run::remember() {
     marked.block = alone;
@@ -231,7 +241,8 @@ void Run::remember() {
     marked.sliding_force.assign(blocks, 0.0);
     marked.drift.assign(blocks, 0.0);
     marked.group = group_of;
-    marked.now = now;
+    // Up to when groups have been observed: a run of no length leaves that as it is.
+    marked.now = local && loading == 0.0 ? observed : now;
     marked.load = load;
     marked.since_event = since_event;
     if (catalogue) marked.catalogue = catalogue->open();
@@ -317,6 +328,7 @@ int Run::run_whole() {
             if (completed) remember();
         } else {
             advance(group, length);
+            if (find_resting(group)) change_due(group, now);
         }
         // At events, so that all solvers look after them at the same times.
         if (exponents.running && (due || since_event >= LONGEST_FOLLOW * model.springs.unit))

@@ -178,6 +178,7 @@ class Run {
     void change(Group &group, int lane, const Clock &at);
     bool settle(Group &group, const Clock &at);
     void find_due(Group &group);
+    bool find_resting(Group &group);
     void change_due(Group &group, const Clock &at);
     void remember();
     void start_modes(Group &group, const Mark &mark);

@@ -132,6 +132,15 @@ struct State {
         if (layout.damped) size = largest(size, layout.damping_diagonal[c] * fastest());
         return magnitude(s) - layout.threshold[c] <= AT_THRESHOLD * size;
     }
+    // Where a slip has come to rest but for rounding: friction and the force on the block balance, and what is left of
+    // the dashpots' force is rounding as well. A slip that dashpots overdamp, behind a driver that stands, decays
+    // exponentially: it has no other end.
+    mask at_rest(int c) const {
+        const vec zero{}, own = slip[c] * velocity[c];
+        const vec size = largest(layout.threshold[c], layout.diagonal[c] * magnitude(position[c]));
+        const vec balance = force(c) - slip[c] * (layout.threshold[c] * friction(own));
+        return (slip[c] != zero) & (largest(magnitude(balance), layout.damping_diagonal[c] * own) <= AT_THRESHOLD * size);
+    }
     // The largest |U_i'| of all blocks.
     vec fastest() const {
         vec found{};

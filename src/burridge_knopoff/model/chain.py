@@ -56,7 +56,9 @@ class Chain(Unchanging):
 
     The force on block i is F_i = s_i + d_i. The spring force is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian
     of the springs plus diag(D), so that K·1 = D. Dashpots (Kelvin-Voigt damping) add
-    d_i = Σ_j c_ij (U_j' − U_i') + c_i (v − U_i') = c_i v − (C U')_i, by default 0. The defaults give the paper's chain (Eq. 2) for N = 3. The train model that the paper cites is
+    d_i = Σ_j c_ij (U_j' − U_i') + c_i (v − U_i') = c_i v − (C U')_i, by default 0.
+
+    The defaults give the paper's chain (Eq. 2) for N = 3. The train model that the paper cites is
     pulled at its first block only: `Chain(2, pulling=(1.0, 0.0))`. A single block hangs on one spring to the driver.
 
     Raises ValueError for a number of blocks, a number of springs or a strength out of range, for a file that is no list

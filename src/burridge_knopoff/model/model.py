@@ -140,14 +140,24 @@ class Model(Unchanging):
     def starts_stuck(self, position: np.ndarray, velocity: np.ndarray, start: str) -> np.ndarray:
         """Return which blocks stick at τ = 0 for a choice of `start`; same shape as U(0) and U'(0), (…, blocks).
 
-        Dashpots pull on a block at rest whose neighbours have their U'(0).
+        Dashpots pull on a block at rest whose neighbours have their U'(0), or stick themselves.
         """
         chain = self.chain
         # Spring forces from U itself: rounding in co-moving coordinates could move a block across its threshold.
         force = chain.force(position)
-        if chain.is_damped:
-            force += chain.damping_force(velocity, self.v) + chain.damping_diagonal * velocity
-        return (start == "tested") & (force <= chain.thresholds)
+        stuck = np.zeros(position.shape, dtype=bool)
+        if start == "moving":
+            return stuck
+        if not chain.is_damped:
+            return force <= chain.thresholds
+        for _ in range(self.blocks):
+            speed = np.where(stuck, 0.0, velocity)
+            at_rest = force + chain.damping_force(speed, self.v) + chain.damping_diagonal * speed
+            more = stuck | (at_rest <= chain.thresholds)
+            if np.array_equal(more, stuck):
+                break
+            stuck = more
+        return stuck
 
 
 @dataclass(frozen=True, eq=False)

@@ -72,9 +72,7 @@ def of_grid(columns: int, rows: int, strength: float, damping: float) -> Neighbo
     return _listed(block[:, None] + np.array([-1, 1, -columns, columns]), strength * joined, damping * joined)
 
 
-def of_edges(
-    one: np.ndarray, other: np.ndarray, strength: np.ndarray, damping: np.ndarray, blocks: int
-) -> Neighbours:
+def of_edges(one: np.ndarray, other: np.ndarray, strength: np.ndarray, damping: np.ndarray, blocks: int) -> Neighbours:
     """Return the neighbours in a network, in ascending order; one, other : the blocks (0 …) that each spring joins."""
     block, index = np.concatenate([one, other]), np.concatenate([other, one])
     order = np.lexsort((index, block))

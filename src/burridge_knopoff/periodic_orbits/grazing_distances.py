@@ -163,9 +163,7 @@ def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray
         yield np.concatenate([[first], kind])[over] == 0, over
 
 
-def _derivatives(
-    model: Model, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray
-) -> tuple[np.ndarray, ...]:
+def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return the force, its rate, and acceleration and its rate of slipping blocks, each of shape (n, blocks)."""
     chain = model.chain
     force = chain.thresholds * float(model.law(model.v)) - position @ chain.stiffness.T

@@ -30,7 +30,7 @@ VARIABLES = {
     "synchronized": Variable(_AXES, "i1", "whether <J> is below the threshold", YES_OR_NO),
     "least_friction": Variable(_AXES, "f8", "least friction Phi on a slipping block in the whole run"),
     "window_least_friction": Variable(_AXES, "f8", "least friction Phi on a slipping block in the window"),
-    "window_least_spring_force": Variable(_AXES, "f8", "least spring force s on a stuck block in the window"),
+    "window_least_spring_force": Variable(_AXES, "f8", "least force on a stuck block in the window"),
     "event_count": Variable(_AXES, "i8", "number of stops and starts in the whole run"),
     "status": Variable(_AXES, "i1", "how the run ended", STATUS_FLAG),
     "settling_time": Variable(

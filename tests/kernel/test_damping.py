@@ -1,0 +1,264 @@
+"""Dashpots: one block in closed form, SciPy, balances of energy, the force at starts, and what refuses them.
+
+Kelvin-Voigt damping adds d_i = Σ c_ij (U_j' − U_i') + c_i (v − U_i') to the force on block i, slipping or stuck.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.optimize import brentq
+
+from burridge_knopoff import Chain, ChainState, InitialState, Model, Settings, law_of, record_events, simulate
+from burridge_knopoff.model.model import CONTACTS
+from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.summaries.equilibrium import eigenvalues
+from tests.flows import carry, check_events, directions
+from tests.kernel.test_catalogue import at_rest, last_rest, recorded
+from tests.scipy_flow import scipy_events
+
+LAWS = {"linearized": 0.1, "nonlinear": 0.3, "carlson_langer": 2.0, "exponential": 0.5, "stribeck": 1.0}
+
+
+@st.composite
+def damped(draw):
+    """A model with dashpots, K and C of its springs and dashpots as listed here, and a state."""
+    generator = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    form = draw(st.sampled_from(["row", "ring", "grid"]))
+    blocks = 6 if form == "grid" else draw(st.integers(2 if form == "row" else 3, 6))
+    pairs = [(i, i + 1) for i in range(blocks - 1)] + [(blocks - 1, 0)] * (form == "ring")
+    if form == "grid":
+        pairs = [(0, 1), (1, 2), (3, 4), (4, 5), (0, 3), (1, 4), (2, 5)]
+    uneven = form != "grid"
+    strength = generator.uniform(0.5, 2.0, len(pairs) if uneven else 1)
+    dashpot = 10.0 ** draw(st.floats(-2.0, 0.5)) * generator.uniform(0.0, 1.0, len(pairs) if uneven else 1)
+    to_driver = draw(st.sampled_from([0.0, 0.3])) * generator.uniform(0.0, 1.0, blocks)
+    given = {"coupling": strength, "damping": dashpot} if uneven else {}
+    given = given or {"coupling": strength[0], "damping": dashpot[0], "grid": (3, 2)}
+    chain = Chain(blocks, pulling=1.0, pulling_damping=to_driver, ends="ring" if form == "ring" else "open", **given)
+    stiffness, damping = np.eye(blocks), np.diag(to_driver)
+    for (i, j), k, c in zip(pairs, np.resize(strength, len(pairs)), np.resize(dashpot, len(pairs)), strict=True):
+        for matrix, number in ((stiffness, k), (damping, c)):
+            matrix[[i, j], [i, j]] += number
+            matrix[[i, j], [j, i]] -= number
+    name, contact = draw(st.sampled_from(list(LAWS))), draw(st.sampled_from(CONTACTS))
+    model = Model(chain, law_of(name, LAWS[name]), draw(st.sampled_from([0.1, 0.3])), contact)
+    velocity = generator.uniform(0.0, 0.3, blocks)
+    if contact == "symmetric":
+        velocity *= generator.choice([-1.0, 1.0], blocks)
+    stuck = generator.random(blocks) < 0.3
+    position = generator.uniform(-1.4, 0.4, blocks)
+    return model, (stiffness, damping), ChainState(position, np.where(stuck, 0.0, velocity), stuck)
+
+
+@given(damped())
+@settings(max_examples=60)
+def test_events_against_scipy(drawn):
+    model, (stiffness, damping), start = drawn
+    offset = np.linalg.solve(stiffness, np.full(model.blocks, -float(model.law(model.v))))
+    assert np.allclose(model.chain.stiffness, stiffness, rtol=1e-15)
+    slip = np.where(start.stuck, 0, np.where(start.velocity < 0.0, -1, 1))
+    expected, position, velocity = scipy_events(
+        *(stiffness, np.ones(model.blocks), model.law, model.v, start.position + offset, start.velocity, slip, 10.0),
+        contact=model.contact,
+        damping=damping,
+    )
+    for groups in (False, True):
+        runner = Runner(model, keep_events=True, groups=groups)
+        runner.begin(start)
+        assert runner.run(10.0) == Status.COMPLETED
+        time, block, kind = runner.events()
+        check_events(list(zip(time, block + 1, kind, strict=True)), expected, 1e-8)
+        assert np.allclose(runner.state().position + offset, position, rtol=0.0, atol=1e-8)
+        assert np.allclose(runner.state().velocity, velocity, rtol=0.0, atol=1e-8)
+
+
+@pytest.mark.parametrize("mass", [1.0, 2.5])
+@pytest.mark.parametrize("c", [0.05, 0.4, 3.0])
+def test_one_block_in_closed_form(c, mass):
+    """It starts at y = U − vτ = −(θ − c v)/D, and then m y'' = −D y − c y' − θ + a (y' + v) until y' = −v."""
+    a, v, pulling, threshold = 0.3, 0.1, 0.7, 1.3
+    chain = Chain(1, pulling=pulling, threshold=threshold, mass=mass, pulling_damping=c)
+    model = Model(chain, law_of("linearized", a), v)
+    # Of z = y − e, z'' = −(D/m) z − ((c − θ a)/m) z'; c = 3 overdamps.
+    rate, square = 0.5 * (c - threshold * a) / mass, pulling / mass
+    omega = np.emath.sqrt(square - rate**2)
+    offset = -threshold * (1.0 - a * v) / pulling
+    first = -(threshold - c * v) / pulling - offset
+
+    def z_and_rate(t):
+        # Complex sines and cosines are hyperbolic ones where it does not oscillate.
+        sine, cosine = np.sin(omega * t) / omega, np.cos(omega * t)
+        z = np.exp(-rate * t) * (first * cosine + (-v + rate * first) * sine)
+        change = np.exp(-rate * t) * (-v * cosine - (square * first - rate * v) * sine)
+        return float(np.real(z)), float(np.real(change))
+
+    begun = 0.1
+    start = ChainState(np.array([first + v * begun]), np.zeros(1), np.array([True]))
+    runner = Runner(model, keep_events=True)
+    runner.begin(start)
+    assert runner.run(25.0) == Status.COMPLETED
+    time, _, kind = runner.events()
+    assert kind[0] == 1
+    assert time[0] == pytest.approx(begun, rel=1e-13)
+    grid = np.linspace(1e-3, 24.0, 8000)
+    stops = [t for t in grid if z_and_rate(t)[1] <= -v]
+    if stops:
+        stop = brentq(lambda t: z_and_rate(t)[1] + v, stops[0] - grid[1] + grid[0], stops[0], xtol=1e-15)
+        assert time[1] - time[0] == pytest.approx(stop, rel=1e-11)
+    runner.begin(start)
+    middle = 0.5 * (stop if stops else 8.0)
+    assert runner.run(begun + middle) == Status.COMPLETED
+    z, change = z_and_rate(middle)
+    assert runner.state().position[0] == pytest.approx(z, abs=1e-13)
+    assert runner.state().velocity[0] == pytest.approx(v + change, abs=1e-13)
+    # The dashpot turns growth into decay, and the slip then ends in uniform sliding.
+    assert bool(stops) == (c < threshold * a)
+
+
+@pytest.mark.parametrize("groups", [False, True])
+def test_balance_of_work_friction_and_dashpots(groups):
+    """By quadrature of what friction and each dashpot dissipate, between two moments of rest."""
+    damping = np.array([0.3, 0.0, 0.1, 0.2, 0.5])
+    chain = Chain(6, coupling=2.0, pulling=1.0, damping=damping, pulling_damping=0.05)
+    model = Model(chain, law_of("nonlinear", 1.5), 0.02)
+    start = at_rest(model)
+    end = last_rest(model, start, 120.0)
+    table, runner, _ = recorded(model, start, end, groups)
+    assert len(table["time"]) > 4
+    friction = damped = towed = 0.0
+    node, weight = np.polynomial.legendre.leggauss(24)
+    solver = Runner(model, groups=groups)
+    solver.begin(start)
+    for low, high in pairwise(np.unique(np.concatenate([[0.0], runner.events()[0], [end]]))):
+        for x, w in zip(node, 0.5 * (high - low) * weight, strict=True):
+            assert solver.run(low + 0.5 * (high - low) * (1.0 + x)) == Status.COMPLETED
+            speed = solver.state().velocity
+            slips = speed > 0.0
+            friction += w * float(np.sum(speed * model.law(speed)))
+            damped += w * float(np.sum(damping * np.diff(speed) ** 2) + np.sum(0.05 * (model.v - speed[slips]) ** 2))
+            towed += w * float(np.sum(0.05 * model.v * (model.v - speed[slips])))
+    assert damped > 1e-3 * friction
+    assert table["energy_damped"].sum() == pytest.approx(damped, rel=1e-9)
+    # The driver works on the blocks by its dashpots as well.
+    assert table["energy_released"].sum() + towed == pytest.approx(friction + damped, rel=1e-9)
+
+
+def test_energies_of_fixed_steps_converge():
+    """Of rk4, whose events are at ends of steps, to those of `series`."""
+    model = Model(Chain(3, coupling=2.0, pulling=1.0, damping=0.3, pulling_damping=0.1), law_of("nonlinear", 0.8), 0.05)
+    start = at_rest(model)
+    exact = record_events(model, start, 30.0)
+    errors = []
+    for step in (1e-3, 1e-4):
+        found = record_events(model, start, 30.0, solver="rk4", step=step)
+        errors.append(np.abs(found.energy_damped[:3] - exact.energy_damped[:3]).max())
+    assert errors[1] < 0.5 * errors[0]
+    assert errors[1] < 1e-3 * exact.energy_damped[:3].max()
+
+
+@pytest.mark.parametrize("groups", [False, True])
+def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
+    """Which tows nothing while blocks slip."""
+    chain = Chain(5, coupling=2.0, pulling=1.0, damping=0.4, pulling_damping=0.2)
+    start = at_rest(Model(chain, law_of("carlson_langer", 1.0), 0.01))
+    columns = []
+    for v, loading in ((0.01, "quasistatic"), (2e-6, "steady")):
+        model = Model(chain, law_of("carlson_langer", 1.0), v)
+        position = start.position + Model(chain, model.law, 0.01).sliding_offset - model.sliding_offset
+        again = ChainState(position, start.velocity, start.stuck)
+        found = recorded(model, again, 0.5 / v, groups, loading=loading)[0]
+        names = ("duration", "moment", "peak_velocity", "stress_drop", "energy_released", "energy_damped")
+        columns.append(np.array([found["time"] * v, *(found[name] for name in names)])[:, :6])
+    assert columns[0].shape == (7, 6)
+    assert (columns[0][-1] > 0.0).all()
+    assert np.allclose(*columns, rtol=3e-3, atol=1e-5)
+
+
+@pytest.mark.parametrize("groups", [False, True])
+def test_an_overdamped_slip_ends_where_friction_balances_the_springs(groups):
+    """It only decays behind a driver that stands, and comes to rest but for rounding: the force falls to θ Φ(0)."""
+    one = Model(Chain(1, pulling=2.0, threshold=3.0, pulling_damping=10.0), law_of("carlson_langer", 1.0), 0.01)
+    table, _, _ = recorded(one, at_rest(one), 90.0, groups, loading="quasistatic")
+    assert len(table["time"]) > 10
+    assert np.allclose(table["stress_drop"], 3.0 * 0.01, rtol=1e-11)
+    assert np.allclose(table["moment"], 3.0 * 0.01 / 2.0, rtol=1e-11)
+    # Almost all of it is lost to the dashpot as slowly as its time, c/D = 5.
+    assert (table["duration"] > 20 * 5.0).all()
+    many = Model(Chain(8, coupling=9.0, pulling=1.0, damping=6.0), law_of("carlson_langer", 1.0), 0.01)
+    table, runner, _ = recorded(many, at_rest(many), 60.0, groups, loading="quasistatic")
+    assert len(table["time"]) > 10
+    assert runner.kernel.steps < 1000 * len(table["time"])
+
+
+def test_a_neighbour_pulls_on_a_stuck_block_by_its_dashpot():
+    """It starts where the whole force passes its threshold, and `start: tested` asks for the same force."""
+    c, state = 2.0, InitialState("own", (-0.85, -1.1), (0.05, 0.3))
+    model = Model(Chain(2, pulling=1.0, damping=c), law_of("nonlinear", 0.3), 0.1)
+    spring = model.chain.force(np.array(state.position))
+    assert spring[0] < 1.0 < spring[0] + c * 0.3
+    assert spring[1] > 1.0
+    assert model.begin(state, "tested").stuck.tolist() == [False, False]
+    assert model.at(damping=0.0).begin(state, "tested").stuck.tolist() == [True, False]
+    # Where the neighbour sticks it does not pull.
+    held = InitialState("own", (-0.6, -0.6), (0.05, 0.3))
+    assert model.begin(held, "tested").stuck.tolist() == [True, True]
+    # A block that is set at rest starts at once.
+    resting = ChainState(np.array(state.position) - model.sliding_offset, np.array([0.0, 0.3]), np.array([True, False]))
+    runner = Runner(model, keep_events=True)
+    runner.begin(resting)
+    assert runner.run(0.1) == Status.COMPLETED
+    assert [row[:1].tolist() for row in runner.events()] == [[0.0], [0], [1]]
+    # A dashpot to the driver pulls by c v.
+    towed = Model(Chain(1, pulling=1.0, pulling_damping=c), law_of("nonlinear", 0.3), 0.1)
+    for position, stuck in ((-0.79, True), (-0.81, False)):
+        assert towed.begin(InitialState("own", (position,), (0.0,)), "tested").stuck.tolist() == [stuck]
+
+
+@pytest.mark.parametrize("contact", CONTACTS)
+def test_the_least_force_is_that_of_springs_and_dashpots(contact):
+    chain = Chain(3, coupling=1.5, damping=0.4, pulling_damping=0.1)
+    model = Model(chain, law_of("nonlinear", 0.3), contact=contact)
+    run = simulate(model, transient=0.0, window=40.0, trajectory=40.0, trajectory_sampling=1e-3, lyapunov_exponents=0)
+    force = chain.force(run.position) + 0.1 * 0.1 - run.velocity @ chain.damping_matrix.T
+    assert run.least_spring_force == pytest.approx(force[run.velocity == 0.0].min(), abs=2e-3)
+
+
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+@pytest.mark.parametrize("ends", ["open", "ring"])
+def test_growth_of_uniform_sliding(law, ends):
+    """The eigenvalues of its Jacobian are those of the tangent map."""
+    chain = Chain(5, damping=0.02, pulling_damping=0.01, mass=(1.0, 2.0, 1.0, 0.5, 1.0), ends=ends)
+    model = Model(chain, law_of(law, 0.1))
+    start = ChainState(np.zeros(5), np.full(5, model.v), np.zeros(5, dtype=bool))
+    found = np.log(np.linalg.eigvals(carry(model, start, 0.5, directions(start))[0].perturbations)) / 0.5
+    expected = eigenvalues(model)
+    assert np.allclose(np.sort_complex(found), np.sort_complex(expected), rtol=0.0, atol=1e-9)
+
+
+def test_units():
+    """Damping is in units of √(km), twice as large where springs and masses are."""
+    chain = Chain(3, damping=0.3, pulling_damping=(0.1, 0.0, 0.2))
+    other = Chain(3, 2.0, (2.0, 4.0, 2.0), mass=2.0, threshold=2.0, damping=0.6, pulling_damping=(0.2, 0.0, 0.4))
+    runs = [
+        simulate(Model(one, law_of("nonlinear", 0.2)), initial="plus", transient=0, window=60, lyapunov_exponents=0)
+        for one in (chain, other)
+    ]
+    assert runs[0].event_count > 10
+    assert runs[0].mean_distance == pytest.approx(runs[1].mean_distance, rel=1e-12)
+
+
+def test_the_closed_form_is_refused():
+    for dashpots in ({"damping": 0.1}, {"pulling_damping": (0.0, 0.1, 0.0)}):
+        with pytest.raises(ValueError, match="^solver: got 'map', expected series .* without dashpots$"):
+            simulate(Model(Chain(3, **dashpots), law_of("linearized", 0.1)), initial="plus", solver="map")
+
+
+def test_long_steps_are_refused():
+    """A dashpot damps faster than a spring pulls."""
+    model = Model(Chain(3, damping=100.0), law_of("linearized", 0.1))
+    with pytest.raises(ValueError, match="^step: got 0.001, expected at most"):
+        simulate(model, initial="plus", solver="rk4", settings=Settings(solver="rk4"))
