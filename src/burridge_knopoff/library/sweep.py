@@ -53,7 +53,7 @@ def sweep(
 
     law : a `Model` with its own chain, contact and values of all parameters; or a law in any form that `simulate` takes
     a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
-    by_name : other parameters, v, coupling, pulling, threshold, mass, and the numbers of the law such as sigma, each
+    by_name : other parameters, v, those of the chain such as coupling, and the numbers of the law such as sigma, each
         one number or a sequence; and settings of the run by name
     initial, settings, chain, contact : see `simulate`
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
