@@ -26,3 +26,9 @@ def test_long_chains_are_drawn_by_their_ends(blocks, names):
 def test_what_differs_between_blocks_is_said():
     said = words(blocks=3, coupling=[1.0, 1.5, 2.5], threshold=[1.0, 1.2, 1.0], ends="ring")
     assert {"$1$", "$1.5$", "$F=1.2$", "a spring of strength $2.5$ couples block 3 to block 1"} <= set(said)
+
+
+def test_dashpots_are_said():
+    said = words(blocks=3, damping=[0.1, 0.3], pulling_damping=0.2)
+    assert "dashpots $0.1$ to $0.3$ between blocks\ndashpots $0.2$ to the driver" in said
+    assert not any("dashpots" in word for word in words(blocks=3))

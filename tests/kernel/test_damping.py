@@ -119,6 +119,27 @@ def test_one_block_in_closed_form(c, mass):
     assert bool(stops) == (c < threshold * a)
 
 
+@pytest.mark.parametrize("contact", CONTACTS)
+@pytest.mark.parametrize("blocks", [4, 30])
+def test_dashpots_in_proportion_to_masses_only_lower_a(blocks, contact):
+    """With γ m_i to the driver the linearized law is one with a − γ: all moves as without them."""
+    gamma, generator = 0.07, np.random.default_rng(blocks)
+    start = ChainState(
+        generator.uniform(-0.3, 0.3, blocks), generator.uniform(0.0, 0.3, blocks), np.zeros(blocks, bool)
+    )
+    rows = []
+    for c, a in ((gamma, 0.2 + gamma), (0.0, 0.2)):
+        model = Model(Chain(blocks, pulling_damping=c), law_of("linearized", a), contact=contact)
+        runner = Runner(model, keep_events=True)
+        runner.begin(start)
+        assert runner.run(15.0) == Status.COMPLETED
+        rows.append((*runner.events(), runner.state().vector()))
+    assert len(rows[0][0]) > 10
+    assert np.array_equal(rows[0][1:3], rows[1][1:3])
+    assert np.allclose(rows[0][0], rows[1][0], rtol=0.0, atol=1e-10)
+    assert np.allclose(rows[0][3], rows[1][3], rtol=0.0, atol=1e-10)
+
+
 @pytest.mark.parametrize("groups", [False, True])
 def test_balance_of_work_friction_and_dashpots(groups):
     """By quadrature of what friction and each dashpot dissipate, between two moments of rest."""

@@ -9,6 +9,7 @@ from burridge_knopoff.periodic_orbits.synchronized_bifurcations import unit
 
 LIGHT = Model(Chain(3, coupling=2.0, threshold=(1.0, 1.5, 0.7)), law_of("nonlinear", 0.3), 0.2)
 HEAVY = Model(Chain(3, coupling=2.0, threshold=(1.0, 1.5, 0.7), mass=(1.0, 4.0, 0.5)), LIGHT.law, 0.2)
+SLIPPING = np.zeros((1, 3), dtype=bool)
 POSITION, VELOCITY = np.array([0.1, -0.2, 0.05]), np.array([0.3, 0.1, 0.2])
 
 
@@ -18,12 +19,14 @@ def test_forces_are_divided_by_masses():
     assert (heavy[:3] == light[:3]).all()
     assert np.allclose(heavy[3:], light[3:] / HEAVY.chain.masses, rtol=1e-14)
     force, force_rate, acceleration, jerk = (
-        values[0] for values in _derivatives(HEAVY, POSITION[None], VELOCITY[None])
+        values[0] for values in _derivatives(HEAVY, POSITION[None], VELOCITY[None], SLIPPING)
     )
     assert np.allclose(acceleration, heavy[3:], rtol=1e-13)
     # The jerk is the rate of the acceleration along the motion.
     step = 1e-6
-    ahead = _derivatives(HEAVY, (POSITION + step * (VELOCITY - 0.2))[None], (VELOCITY + step * acceleration)[None])
+    ahead = _derivatives(
+        HEAVY, (POSITION + step * (VELOCITY - 0.2))[None], (VELOCITY + step * acceleration)[None], SLIPPING
+    )
     assert np.allclose((ahead[0][0] - force) / step, force_rate, atol=1e-5)
     assert np.allclose((ahead[2][0] - acceleration) / step, jerk, atol=1e-5)
 

@@ -23,7 +23,8 @@ CAPTION = """\
 The chain of the study. Springs join neighbouring blocks (blue, strength above) and join blocks to a driver that moves
 with velocity v (red, strength D_i beside). Dry friction holds a block up to its static friction F. U_i is the position
 of block i. Strengths are in units of the spring constant k. Friction is in units of F(0), which is its value if none is
-given. Of a long chain, only the first two blocks and the last are drawn, and of a network no springs between blocks.
+given. Of a long chain, only the first two blocks and the last are drawn, of a network no springs between blocks, and no
+dashpots.
 """
 
 #: Longer chains are drawn in part.
@@ -65,22 +66,29 @@ def draw(chain_description: Mapping[str, Any]) -> Figure:
             continue
         _spring(panel, (start, SIDE / 2), (end, SIDE / 2), color(0))
         panel.text(0.5 * (start + end), 0.62, f"${chain.after[one]:g}$", ha="center", color=color(0))
-    words = ""
-    if chain.ends == "ring":
-        words = f"a spring of strength ${chain.after[-1]:g}$ couples block {count} to block 1"
-    elif chain.grid:
-        words = f"springs of strength ${chain.coupling:g}$ couple a grid of {chain.grid[0]} × {chain.grid[1]} blocks"
-    elif chain.springs:
-        words = "springs of a network couple the blocks to each other"
-    if words:
-        panel.text(0.5 * (left + right), -0.75, words, ha="center", va="top", color=color(0))
-    panel.set(
-        xlim=(left - 0.05, right + 0.05),
-        ylim=(-1.1 if panel.texts[-1].get_position()[1] < 0.0 else -0.35, TOP + 0.7),
-        aspect="equal",
-    )
+    lines = _words(chain)
+    lowest = -0.75 - 0.4 * len(lines) if lines or np.ptp(chain.thresholds) > 0.0 else -0.35
+    panel.text(0.5 * (left + right), -0.75, "\n".join(lines), ha="center", va="top", color=color(0))
+    panel.set(xlim=(left - 0.05, right + 0.05), ylim=(lowest, TOP + 0.7), aspect="equal")
     panel.set_axis_off()
     return figure
+
+
+def _words(chain: Chain) -> list[str]:
+    """Return in words what is not drawn."""
+    lines = []
+    if chain.ends == "ring":
+        lines.append(f"a spring of strength ${chain.after[-1]:g}$ couples block {chain.blocks} to block 1")
+    elif chain.grid:
+        size = f"{chain.grid[0]} × {chain.grid[1]}"
+        lines.append(f"springs of strength ${chain.coupling:g}$ couple a grid of {size} blocks")
+    elif chain.springs:
+        lines.append("springs of a network couple the blocks to each other")
+    for values, where in ((chain.neighbours.damping, "between blocks"), (chain.driver_damping, "to the driver")):
+        if values.any():
+            strength = f"{values.min():g}" if np.ptp(values) == 0.0 else f"{values.min():g}$ to ${values.max():g}"
+            lines.append(f"dashpots ${strength}$ {where}")
+    return lines
 
 
 def _spring(panel: Axes, start: tuple[float, float], end: tuple[float, float], hue: str) -> None:

@@ -1,0 +1,93 @@
+"""Periodic orbits with dashpots: a chain that is one without them, SciPy over a period, differences, derivatives.
+
+Dashpots γ m_i to the driver turn the linearized law 1 − aU' into one with a − γ in place of a (masses and thresholds of
+1): positions relative to uniform sliding move as without them.
+"""
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    BifurcationKind,
+    Chain,
+    ChainState,
+    Model,
+    find_periodic_orbit,
+    follow,
+    law_of,
+    limit_cycle,
+    locate_bifurcations,
+    multipliers,
+    synchronized_orbit,
+)
+from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.periodic_orbits.flow import rate
+from burridge_knopoff.periodic_orbits.grazing_distances import _derivatives
+from tests.flows import differences
+from tests.scipy_flow import model_events
+
+GAMMA = 0.05
+#: a_c of the paper's chain, from interval arithmetic.
+CRITICAL = 0.0869729046660773
+
+
+def test_dashpots_to_the_driver_shift_the_loss_of_synchrony():
+    damped = Model(Chain(3, pulling_damping=GAMMA), law_of("linearized", 0.08 + GAMMA))
+    orbit, other = (synchronized_orbit(model) for model in (damped, Model(Chain(3), law_of("linearized", 0.08))))
+    assert orbit.period == pytest.approx(other.period, rel=1e-13)
+    assert np.allclose(multipliers(orbit).whole[:2], multipliers(other).whole[:2], rtol=1e-12)
+    (found,) = locate_bifurcations(follow(orbit, (0.07 + GAMMA, 0.1 + GAMMA)))
+    assert found.kind == BifurcationKind.PITCHFORK
+    assert found.a == pytest.approx(CRITICAL + GAMMA, abs=1e-11)
+
+
+@pytest.fixture(scope="module")
+def orbit():
+    """Return an asymmetric orbit of unequal dashpots."""
+    model = Model(Chain(3, damping=(0.05, 0.02), pulling_damping=(0.0, 0.01, 0.02)), law_of("nonlinear", 0.12))
+    return limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=3000.0)
+
+
+def test_an_orbit_returns_by_scipy(orbit):
+    events, end = model_events(orbit.model, orbit.reference, orbit.period)
+    assert sum(kind == 0 for _, _, kind in events) == sum(orbit.stop_counts)
+    assert np.abs(end - orbit.reference.vector()).max() < 1e-8
+
+
+def test_multipliers_are_those_of_differences(orbit):
+    found = differences(orbit.model, orbit.reference, orbit.period, 1e-5)
+    assert found is not None
+    expected = np.linalg.eigvals(found[0])
+    order = np.argsort(-np.abs(expected))[:4]
+    whole = np.abs(multipliers(orbit).whole)
+    # The motion along the orbit has the multiplier 1, which is left out.
+    assert np.sort(np.append(whole, 1.0))[-4:] == pytest.approx(np.sort(np.abs(expected[order])), abs=1e-5)
+
+
+def test_an_orbit_is_followed_to_other_dashpots():
+    model = Model(Chain(3, damping=0.03), law_of("nonlinear", 0.08))
+    start = synchronized_orbit(model)
+    branch = follow(start, (0.01, 0.03), parameter="damping", upward=False)
+    reached = branch[-1].orbit
+    assert reached.model.chain.damping == pytest.approx(0.01, abs=1e-3)
+    again = find_periodic_orbit(reached.model, reached.reference, reached.period, reached.symmetry)
+    assert again.period == pytest.approx(reached.period, rel=1e-11)
+
+
+def test_derivatives_along_the_motion():
+    """Force, acceleration and their rates, with a stuck block among those that slip."""
+    chain = Chain(4, damping=0.3, pulling_damping=0.1, mass=(1.0, 2.0, 1.0, 1.0))
+    model = Model(chain, law_of("nonlinear", 0.3), 0.2)
+    stuck = np.array([False, True, False, False])
+    position, velocity = np.array([0.1, -0.2, 0.05, 0.2]), np.array([0.3, 0.0, 0.2, 0.1])
+    force, force_rate, acceleration, jerk = (
+        values[0] for values in _derivatives(model, position[None], velocity[None], stuck[None])
+    )
+    slips = ~stuck
+    made = rate(model, ChainState(position, velocity, stuck))
+    assert np.allclose(made[4:][slips], acceleration[slips], rtol=1e-13)
+    step = 1e-6
+    ahead = (position + step * (velocity - 0.2))[None], (velocity + step * np.where(stuck, 0.0, acceleration))[None]
+    later = _derivatives(model, *ahead, stuck[None])
+    assert np.allclose((later[0][0] - force) / step, force_rate, atol=1e-5)
+    assert np.allclose(((later[2][0] - acceleration) / step)[slips], jerk[slips], atol=1e-5)
