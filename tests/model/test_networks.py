@@ -17,10 +17,16 @@ strength = st.floats(0.1, 5.0)
 UNIFORM = {"random": "uniform", "low": 0.5, "high": 1.5, "seed": 3}
 
 
-def written(folder, edges):
-    """Return the path of a file of springs."""
+def dashpot(i, k):
+    """Return the damping between two blocks of a network that has dashpots, 0 for some."""
+    return 0.25 * ((i + 2 * k) % 4)
+
+
+def written(folder, edges, damped=False):
+    """Return the path of a file of springs, with a column of dashpots or without."""
     path = folder / "springs.txt"
-    path.write_text("# block block strength\n" + "".join(f"{i} {k} {s!r}\n" for (i, k), s in edges.items()))
+    lines = (f"{i} {k} {s!r} {dashpot(i, k) if damped else ''}\n" for (i, k), s in edges.items())
+    path.write_text("# block block strength\n" + "".join(lines))
     return str(path)
 
 
@@ -48,50 +54,64 @@ def connected(blocks, edges):
 
 
 def dense(chain):
-    """Return K from the lists of neighbours, summed by hand."""
-    matrix = np.diag(chain.driving).astype(float)
-    start, index, strengths = chain.neighbours
+    """Return K and C from the lists of neighbours, summed by hand."""
+    stiffness, damping = np.diag(chain.driving).astype(float), np.diag(chain.driver_damping)
+    start, index, strengths, dashpots = chain.neighbours
     for block in range(chain.blocks):
         for place in range(start[block], start[block + 1]):
-            matrix[block, block] += strengths[place]
-            matrix[block, index[place]] -= strengths[place]
-    return matrix
+            for matrix, numbers in ((stiffness, strengths), (damping, dashpots)):
+                matrix[block, block] += numbers[place]
+                matrix[block, index[place]] -= numbers[place]
+    return stiffness, damping
 
 
 def check_algebra(chain):
-    """Require that all forms of the springs are those of one symmetric matrix K with K·1 = D."""
-    matrix, blocks = dense(chain), chain.blocks
+    """Require that all forms of springs and dashpots are those of symmetric matrices K, with K·1 = D, and C."""
+    (matrix, damping), blocks = dense(chain), chain.blocks
     assert np.allclose(chain.stiffness, matrix, rtol=0, atol=1e-12)
     assert (chain.sparse_stiffness.toarray() == chain.stiffness).all()
     assert (chain.stiffness == chain.stiffness.T).all()
     assert np.allclose(matrix @ np.ones(blocks), chain.driving, rtol=0, atol=1e-12)
     position = np.sin(1.0 + 3.0 * np.arange(3.0 * blocks)).reshape(3, blocks)
     assert np.allclose(chain.force(position), -position @ matrix, rtol=0, atol=1e-11)
+    assert np.allclose(chain.damping_matrix, damping, rtol=0, atol=1e-12)
+    assert (chain.damping_matrix == chain.damping_matrix.T).all()
+    forces = chain.driver_damping * 0.3 - position @ damping
+    assert np.allclose(chain.damping_force(position, 0.3), forces, rtol=0, atol=1e-11)
+    assert chain.is_damped == damping.any()
     expected = np.linalg.solve(matrix, -0.7 * chain.thresholds)
     assert np.allclose(chain.sliding_offset(0.7), expected, rtol=1e-9, atol=1e-12)
     modes = np.linalg.eigvals(matrix / chain.masses[:, None])
     assert np.sqrt(modes.real.max()) <= chain.highest_frequency * (1 + 1e-12)
+    inverse, zero = np.diag(1.0 / chain.masses), np.zeros((blocks, blocks))
+    rates = np.linalg.eigvals(np.block([[zero, np.eye(blocks)], [-inverse @ matrix, -inverse @ damping]]))
+    assert np.abs(rates).max() <= chain.highest_rate * (1 + 1e-12)
 
 
 @hypothesis_settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(networks())
-def test_a_network_from_a_file(tmp_path, network):
+@given(networks(), st.booleans())
+def test_a_network_from_a_file(tmp_path, network, damped):
     blocks, edges, pulling = network
     masses = [1.0 + 0.1 * block for block in range(blocks)]
-    chain = Chain(blocks, pulling=pulling, threshold=UNIFORM, mass=masses, springs=written(tmp_path, edges))
-    expected = np.zeros((blocks, blocks))
+    springs = written(tmp_path, edges, damped)
+    chain = Chain(blocks, pulling=pulling, threshold=UNIFORM, mass=masses, springs=springs, pulling_damping=0.1)
+    expected, dashpots = np.zeros((2, blocks, blocks))
     for (i, k), value in edges.items():
         expected[i - 1, k - 1] = expected[k - 1, i - 1] = -value
+        dashpots[i - 1, k - 1] = dashpots[k - 1, i - 1] = -dashpot(i, k) if damped else 0.0
     assert (chain.stiffness - np.diag(chain.diagonal) == expected).all()
+    assert (chain.damping_matrix - np.diag(chain.damping_diagonal) == dashpots).all()
     assert all((np.diff(index) > 0).all() for index in np.split(chain.neighbours.index, chain.neighbours.start[1:-1]))
     check_algebra(chain)
     assert not chain.is_mirror_symmetric
     assert not chain.is_uniform
 
 
-@given(st.integers(1, 5), st.integers(1, 5), strength, st.sampled_from([0.3, "neighbours"]))
-def test_a_grid(columns, rows, coupling, pulling):
-    chain = Chain(grid=[columns, rows], coupling=coupling, pulling=pulling, threshold=UNIFORM)
+@given(
+    st.integers(1, 5), st.integers(1, 5), strength, st.sampled_from([0.3, "neighbours"]), st.sampled_from([0.0, 0.2])
+)
+def test_a_grid(columns, rows, coupling, pulling, damping):
+    chain = Chain(grid=[columns, rows], coupling=coupling, pulling=pulling, threshold=UNIFORM, damping=damping)
     assert chain.blocks == columns * rows
     for block in range(chain.blocks):
         ix, iy = block % columns, block // columns
@@ -102,21 +122,25 @@ def test_a_grid(columns, rows, coupling, pulling):
         if pulling == "neighbours":
             assert chain.driving[block] == (len(expected) if chain.blocks > 1 else 1)
     assert (chain.neighbours.strength == coupling).all()
+    assert (chain.neighbours.damping == damping).all()
     check_algebra(chain)
 
 
 @pytest.mark.parametrize(
-    ("chain", "start", "index", "springs"),
+    ("chain", "start", "index", "springs", "dashpots"),
     [
-        (Chain(3, coupling=(1.0, 2.0)), [0, 1, 3, 4], [1, 0, 2, 1], [1, 1, 2, 2]),
-        (Chain(3, (1.0, 2.0, 3.0), ends="ring"), [0, 2, 4, 6], [2, 1, 0, 2, 1, 0], [3, 1, 1, 2, 2, 3]),
-        (Chain(2, (1.0, 2.0), ends="ring"), [0, 2, 4], [1, 1, 0, 0], [2, 1, 1, 2]),
-        (Chain(1), [0, 0], [], []),
+        (Chain(3, coupling=(1.0, 2.0), damping=(0.0, 4.0)), [0, 1, 3, 4], [1, 0, 2, 1], [1, 1, 2, 2], [0, 0, 4, 4]),
+        (
+            Chain(3, (1.0, 2.0, 3.0), ends="ring", damping=(4.0, 5.0, 6.0)),
+            *([0, 2, 4, 6], [2, 1, 0, 2, 1, 0], [3, 1, 1, 2, 2, 3], [6, 4, 4, 5, 5, 6]),
+        ),
+        (Chain(2, (1.0, 2.0), ends="ring", damping=(3, 0)), [0, 2, 4], [1, 1, 0, 0], [2, 1, 1, 2], [0, 3, 3, 0]),
+        (Chain(1), [0, 0], [], [], []),
     ],
 )
-def test_the_previous_block_comes_first_in_a_row_or_ring(chain, start, index, springs):
-    assert [values.tolist() for values in chain.neighbours] == [start, index, springs]
-    assert [values.dtype.str for values in chain.neighbours] == ["<i8", "<i8", "<f8"]
+def test_the_previous_block_comes_first_in_a_row_or_ring(chain, start, index, springs, dashpots):
+    assert [values.tolist() for values in chain.neighbours] == [start, index, springs, dashpots]
+    assert [values.dtype.str for values in chain.neighbours] == ["<i8", "<i8", "<f8", "<f8"]
     for values in (*chain.neighbours, chain.diagonal, chain.masses, chain.driving):
         assert not values.flags.writeable
     check_algebra(chain)
@@ -196,7 +220,9 @@ def test_initial_states_of_any_number_of_blocks():
     [
         ("", "got 0 columns, expected lines `block block strength`"),
         ("1 2\n", "got 2 columns"),
-        ("1 2 1.0 3\n", "got 4 columns"),
+        ("1 2 1.0 3 4\n", "got 5 columns, expected lines `block block strength` or `block block strength damping`"),
+        ("1 2 1.0 -3\n", "got 1 2 1 -3, expected"),
+        ("1 2 1.0 0.1\n2 3 1.0\n", "the number of columns changed"),
         ("1 2 strong\n", "could not convert string 'strong'"),
         ("1 2 1\n2 3\n", "the number of columns changed"),
         ("0 1 1.0\n", "got 0 1 1, expected"),

@@ -11,9 +11,9 @@ MODEL = Model(Chain(3, pulling=1.5), law_of("stribeck", 0.3), v=0.2)
 
 
 def test_the_names_are_those_of_the_law_the_driver_and_the_chain():
-    names = "a", "sigma", "eta", "v", "coupling", "pulling", "threshold", "mass"
+    names = "a", "sigma", "eta", "v", "coupling", "pulling", "threshold", "mass", "damping", "pulling_damping"
     assert names_of(MODEL) == names
-    assert [value_of(MODEL, name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 1.5, 1.0, 1.0]
+    assert [value_of(MODEL, name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 1.5, 1.0, 1.0, 0.0, 0.0]
 
 
 def test_a_model_at_other_parameters_is_one_made_of_them():
