@@ -96,11 +96,13 @@ def _advance(values: np.ndarray, frequency: float) -> float:
 
     The weight suppresses other lines faster than any power of the number of samples.
     """
+    if math.isnan(frequency):
+        return math.nan
     half = len(values) // 2
     place = (np.arange(half) + 0.5) / half
     line = np.exp(-1.0 / (place * (1.0 - place)) - 2j * math.pi * frequency * np.arange(half))
     first, second = (line @ (values[start : start + half] - values.mean()) for start in (0, half))
-    advance = np.angle(second / first * np.exp(-2j * math.pi * frequency * half)) if first else 0.0
+    advance = np.angle(second / first * np.exp(-2j * math.pi * frequency * half))
     return float(advance) / (2.0 * math.pi * half)
 
 
