@@ -101,8 +101,9 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
             )
         where += told_where("locked to the middle block", grid, locked, law)
     reason = (
-        f"With {100 * detuning:g} % more mass of one end block, the end blocks of branch 1 keep one frequency, and "
-        f"perturbations of their phases decay, at {shares_text(shares)} of the values of a with {a}, each followed for "
+        f"With {100 * detuning:g} % more mass of one end block, the end blocks of branch 1 keep one frequency and a "
+        f"relation of their phases that attracts (the third Lyapunov exponent is negative) at {shares_text(shares)} of "
+        f"the values of a with {a}, each followed for "
         f"{rotation.attrs['detuned_transient'] + 2.0 * rotation.attrs['detuned_window']:g} time units."
     )
     return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(where))
