@@ -125,5 +125,6 @@ def _single(chain: Chain, name: str, key: str, number: int) -> float:
     if key in SPRING_NUMBERS and chain.is_network:
         raise ValueError(f"{name}: got one spring of a network, expected {key}: only those of rows and rings have names")
     if not 1 <= number <= count:
-        raise refusal(name, f"{of} {number}", f"1 to {count}" if count else f"none: a single block has no {of}s")
+        allowed = f"1 to {count}" if count else "none: a single block has no neighbour"
+        raise ValueError(f"{name}: got {of} {number}, expected {allowed}")
     return float(chain.numbers_of(key)[number - 1])
