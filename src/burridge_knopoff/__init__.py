@@ -21,6 +21,9 @@ Its stability: `multipliers` returns `Multipliers`.
 
 Exponents: Lyapunov exponents come with a `Trajectory`; `transverse_exponent` is that of synchrony.
 
+Locking: `block_frequencies` returns the frequency of each block, of which locked blocks keep the ratio if one of them
+differs.
+
 Bifurcations: `follow` leads along a branch in any parameter, each orbit a `BranchOrbit`, as `Following` says;
 `locate_bifurcations` finds every `Bifurcation` on it, and its `BifurcationKind`; `follow_bifurcation` continues one in
 two parameters and returns a `BifurcationCurve`.

@@ -25,6 +25,7 @@ from .model.initial import InitialState as InitialState
 from .model.model import ChainState as ChainState
 from .model.model import Model as Model
 from .motion.chain_synchronization import transverse_exponent as transverse_exponent
+from .motion.frequency import block_frequencies as block_frequencies
 from .motion.kind import MotionKind as MotionKind
 from .motion.limit_cycle import limit_cycle as limit_cycle
 from .motion.observables import SteadyMotion as SteadyMotion

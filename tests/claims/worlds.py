@@ -246,7 +246,7 @@ def _refined() -> xarray.Dataset:
 
 
 def _rotation() -> xarray.Dataset:
-    """Return a plateau, 1/2, over all values of a of both laws, and end blocks that keep one frequency if detuned."""
+    """Return a plateau, 1/2, over all values of a of both laws, and end blocks that stay locked if detuned."""
     refined = _refined()
     there = np.isfinite(refined["a"].values)
     data = {
@@ -259,10 +259,17 @@ def _rotation() -> xarray.Dataset:
             ("law", "value", "detuning", "block"),
             there[..., None, None] * np.ones((2, 1)) * [0.22, 0.34, 0.22],
         ),
-        "detuned_correlation": (("law", "value", "detuning"), there[..., None] * [-0.6, -0.6]),
+        "detuned_exponent": (
+            ("law", "value", "detuning", "exponent"),
+            there[..., None, None] * np.ones((2, 1)) * [0.0, 0.0, -0.02],
+        ),
+        "detuned_exponent_error": (
+            ("law", "value", "detuning", "exponent"),
+            there[..., None, None] * np.full((2, 3), 0.0005),
+        ),
     }
     coordinates = {"law": list(LAWS), "detuning": [0.1, 0.8], "block": BLOCKS}
-    return xarray.Dataset(data, coordinates, {"detuned_window": 1000.0})
+    return xarray.Dataset(data, coordinates, {"detuned_transient": 4000.0, "detuned_window": 4000.0})
 
 
 def _bifurcations() -> xarray.Dataset:

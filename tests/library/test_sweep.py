@@ -55,6 +55,18 @@ def test_a_grid_over_several_parameters_has_the_numbers_of_single_runs(law, axes
             assert np.array_equal(numbers, getattr(run, name), equal_nan=True), (name, point)
 
 
+def test_the_number_of_one_block_is_a_dimension():
+    model = Model(Chain(3), law_of("linearized", 0.08))
+    runs = sweep(model, initial="plus", **{"mass[3]": [1.0, 1.2], "coupling[1]": 1.1}, **SHORT)
+    assert runs["mean_distance"].dims == ("mass_3",)
+    assert runs["mass_3"].attrs["long_name"] == "parameter mass[3] of the model"
+    for mass in (1.0, 1.2):
+        run = simulate(model.at(**{"mass[3]": mass, "coupling[1]": 1.1}), initial="plus", **SHORT)
+        assert runs["mean_distance"].sel(mass_3=mass).item() == run.mean_distance
+    with refused("mass[4]: block 4", match="expected 1 to 3"):
+        sweep(model, **{"mass[4]": [1.0, 1.2]}, **SHORT)
+
+
 def test_parameters_that_are_one_number_are_no_dimensions():
     runs = sweep("carlson_langer", 0.3, v=[0.1, 0.2], sigma=0.05, coupling=1.1, **SHORT)
     assert runs["mean_distance"].dims == ("v",)

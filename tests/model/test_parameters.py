@@ -11,9 +11,9 @@ MODEL = Model(Chain(3, pulling=1.5), law_of("stribeck", 0.3), v=0.2)
 
 
 def test_the_names_are_those_of_the_law_the_driver_and_the_chain():
-    names = "a", "sigma", "eta", "v", "coupling", "pulling", "threshold", "mass", "damping", "pulling_damping"
+    names = "a", "sigma", "eta", "v", "coupling", "damping", "pulling", "threshold", "mass", "pulling_damping"
     assert names_of(MODEL) == names
-    assert [value_of(MODEL, name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 1.5, 1.0, 1.0, 0.0, 0.0]
+    assert [value_of(MODEL, name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 0.0, 1.5, 1.0, 1.0, 0.0]
 
 
 def test_a_model_at_other_parameters_is_one_made_of_them():
@@ -31,6 +31,51 @@ def test_a_model_at_other_parameters_is_one_made_of_them():
     assert MODEL.at(v=0.3).chain is MODEL.chain
 
 
+RING = Model(Chain(4, ends="ring"), law_of("nonlinear", 0.1))
+DRAWN = Model(Chain(3, threshold="random=uniform,low=0.9,high=1.1,seed=1"), MODEL.law)
+
+
+@pytest.mark.parametrize(
+    ("model", "parameters", "chain"),
+    [
+        (MODEL, {"mass[3]": 1.2}, Chain(3, pulling=1.5, mass=(1.0, 1.0, 1.2))),
+        (MODEL, {"pulling[1]": 0, "pulling[3]": 2}, Chain(3, pulling=(0.0, 1.5, 2.0))),
+        (MODEL, {"coupling[1]": 0.5}, Chain(3, pulling=1.5, coupling=(0.5, 1.0))),
+        (MODEL, {"threshold[2]": 1.1}, Chain(3, pulling=1.5, threshold=(1.0, 1.1, 1.0))),
+        # One number for all comes first, in whatever order they are given.
+        (MODEL, {"mass[2]": 3.0, "mass": 2.0}, Chain(3, pulling=1.5, mass=(2.0, 3.0, 2.0))),
+        (Model(Chain(3), MODEL.law), {"pulling[3]": 0.7}, Chain(3, pulling=(1.0, 2.0, 0.7))),
+        (Model(Chain(2, mass=(1.0, 2.0)), MODEL.law), {"mass[1]": 3.0}, Chain(2, mass=(3.0, 2.0))),
+        # Spring i joins blocks i and i + 1, and the last one of a ring the last block to the first.
+        (RING, {"coupling[4]": 2.0}, Chain(4, ends="ring", coupling=(1.0, 1.0, 1.0, 2.0))),
+        (Model(Chain(grid=(2, 2)), MODEL.law), {"mass[4]": 2.0}, Chain(grid=(2, 2), mass=(1.0, 1.0, 1.0, 2.0))),
+        (
+            Model(Chain(2), FormulaLaw(0.1, "1/(1 + a*u*mass)", mass=2.0)),
+            {"mass[1]": 3.0},
+            Chain(2, mass=(3.0, 1.0)),
+        ),
+    ],
+)
+def test_the_number_of_one_block_or_spring(model, parameters, chain):
+    made = at(model, parameters)
+    assert made == Model(chain, model.law, model.v)
+    for name, value in parameters.items():
+        if name.endswith("]"):
+            assert value_of(made, name) == value
+
+
+def test_the_last_spring_of_a_ring_joins_the_last_block_to_the_first():
+    stiffness = RING.at(**{"coupling[4]": 2.0}).chain.stiffness
+    assert stiffness[0, 3] == stiffness[3, 0] == -2.0
+    assert stiffness[0, 1] == stiffness[2, 3] == -1.0
+
+
+def test_the_drawn_numbers_of_the_other_blocks_stay():
+    one = DRAWN.at(**{"threshold[2]": 1.5}).chain
+    assert one.thresholds.tolist() == [DRAWN.chain.thresholds[0], 1.5, DRAWN.chain.thresholds[2]]
+    assert DRAWN.at(**{"threshold[2]": value_of(DRAWN, "threshold[2]")}).chain.is_like(DRAWN.chain)
+
+
 def test_other_contact_and_the_shape_of_the_chain_stay():
     model = Model(Chain(4, ends="ring"), law_of("nonlinear", 0.1), contact="symmetric").at(pulling=0.25)
     assert (model.contact, model.chain.ends, model.blocks) == ("symmetric", "ring", 4)
@@ -41,6 +86,16 @@ def test_other_contact_and_the_shape_of_the_chain_stay():
     ("model", "parameters", "words"),
     [
         (MODEL, {"drop": 0.1}, "drop: not a parameter of this model, expected a | sigma | eta | v"),
+        (MODEL, {"mass[4]": 1.0}, "mass[4]: block 4, expected 1 to 3"),
+        (MODEL, {"mass[0]": 1.0}, "mass[0]: block 0, expected 1 to 3"),
+        (MODEL, {"coupling[3]": 1.0}, "coupling[3]: spring 3, expected 1 to 2"),
+        (Model(Chain(1), MODEL.law), {"coupling[1]": 1.0}, "coupling[1]: spring 1, expected none"),
+        (Model(Chain(grid=(2, 2)), MODEL.law), {"coupling[1]": 1.0}, "coupling[1]: one spring of a network"),
+        (MODEL, {"mass[3]": 0.0}, "mass[3]: 0.0"),
+        (MODEL, {"mass[3]": None}, "mass[3]: None"),
+        (MODEL, {"mass[03]": 1.0}, "'mass[03]': not a parameter of this model"),
+        (MODEL, {"v[1]": 1.0}, "'v[1]': not a parameter of this model"),
+        (Model(Chain(2, pulling=(1.0, 0.0)), MODEL.law), {"pulling[1]": 0.0}, "pulling: (0.0, 0.0)"),
         (MODEL, {"v": 0}, "v: 0"),
         (MODEL, {"v": True}, "v: True"),
         (MODEL, {"a": None}, "a: None"),

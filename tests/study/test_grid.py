@@ -38,6 +38,24 @@ def test_points_are_named_in_the_order_of_the_config_and_hold_their_parameters()
     assert all(words in command for words in ("--a 0.2", "--v 0.05", "--coupling 0.5"))
 
 
+def test_the_number_of_one_block_is_a_parameter():
+    study = load(grid={"a": [0.2], "mass[2]": [1.0, 1.5]})
+    points = all_points(study)
+    assert [study.point_file.format(**point) for point in points[:2]] == [
+        "linearized/pair/a0.2000_mass_2_1.0000.nc",
+        "linearized/pair/a0.2000_mass_2_1.5000.nc",
+    ]
+    assert [study.run_of(**point)[0].chain.masses.tolist() for point in points[:2]] == [[1.0, 1.0], [1.0, 1.5]]
+    assert "--mass 1.0,1.5" in study.command(**points[1])
+    names = set(Jobs(study).all_files)
+    assert not any(letter in name for name in names for letter in "[]")
+    assert study.chain_description["mass"] == (1.0, 1.0)
+    # One number for all blocks and that of one of them.
+    both = load(grid={"a": [0.2], "mass[2]": [1.0, 1.5], "mass": [1.0, 2.0]})
+    found = {tuple(both.run_of(**point)[0].chain.masses.tolist()) for point in all_points(both)}
+    assert found == {(1.0, 1.0), (1.0, 1.5), (2.0, 1.0), (2.0, 1.5)}
+
+
 def test_a_grid_of_a_alone_is_a():
     alone, usual = load(grid={"a": [0.1, 0.2]}), load(grid=None, a=[0.1, 0.2])
     assert (alone.config, alone.parameters) == (usual.config, usual.parameters)

@@ -18,9 +18,11 @@ RUN = {"transient": 2000.0, "window": 2000.0, "batches": 4}
 PAIR = InitialState("pair", (-0.9, -1.1), (0.1, 0.1))
 TOLD = {"lyapunov_exponents": 3, "synchronization_threshold": 1e-6, "motion": {}}
 
+MASSES = {"mass[2]": [0.999999999, 1.0]}
+
 
 def summary(folder, law, state=PAIR, **parameters):
-    named = {name: {f"{value:.4f}": value for value in values} for name, values in parameters.items()}
+    named = {name: {f"{value:.9f}": value for value in values} for name, values in parameters.items()}
     models = {**PAPER_MODELS, "laws": {law: {}}, "chain": {**PAPER_MODELS["chain"], "blocks": state.blocks}}
     grid = Grid(folder, {state.name: state}, named, {law: Settings(**RUN)}, models)
     return summarize(write_points(grid), **TOLD).squeeze(("law", "initial"))
@@ -40,6 +42,15 @@ def test_each_point_is_the_run_of_its_parameters(tmp_path):
             here = found.sel(a=a, coupling=coupling)
             assert here["mean_distance"].item() == own.mean_distance
             assert np.array_equal(here["lyapunov_exponent"], own.lyapunov_exponent)
+
+
+def test_only_end_blocks_of_one_mass_synchronize(tmp_path):
+    """The chain of a pair is its own mirror image at one of the masses, whichever comes first."""
+    found = summary(tmp_path, "linearized", InitialState("same", (-0.9, -0.9), (0.1, 0.1)), a=[0.01], **MASSES)
+    assert found["mean_distance"].dims == ("a", "mass_2")
+    assert found["mass_2"].values.tolist() == [0.999999999, 1.0]
+    assert found["run_kind"].values[0].tolist() == [MotionKind.PERIODIC, MotionKind.SYNCHRONIZED]
+    assert (found["mean_distance"].values < TOLD["synchronization_threshold"]).all()
 
 
 def test_v_is_a_scale_of_the_linearized_law(tmp_path):

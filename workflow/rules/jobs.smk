@@ -25,7 +25,7 @@ for declared in JOBS.defined.values():
             **{
                 name: "|".join(dict.fromkeys(job[name] for job in declared.each))
                 for name in declared.each[0]
-                if name not in ("law", "initial", *STUDY.parameters)
+                if name not in ("law", "initial", *STUDY.wildcards)
             },
         priority: declared.priority
         group:

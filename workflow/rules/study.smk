@@ -104,7 +104,7 @@ shell.prefix(
 
 
 wildcard_constraints:
-    **dict.fromkeys(STUDY.parameters, VALUE),
+    **dict.fromkeys(STUDY.wildcards, VALUE),
     law="|".join(STUDY.laws),
     initial="|".join(STUDY.initial),
 

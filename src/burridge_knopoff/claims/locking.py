@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings, shares_by_readings
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.verdict import (
@@ -33,21 +32,27 @@ from burridge_knopoff.summaries.plateaux import plateaux
 if TYPE_CHECKING:
     import xarray
 
+# End blocks whose frequencies differ by no more have one frequency: on tori they are known to a tenth of this. An
+# exponent is negative if it is so by this many standard errors.
+ONE_FREQUENCY = 1e-6
+CERTAIN = 3.0
+
 TORUS = "quasiperiodic motion, or chaos too weak to tell from it,"
 UNFOLLOWED = "a closed orbit too long to be followed, or a torus beside it,"
 
 
 @judge("rotation")
 def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: float) -> Verdict:
-    """Judge whether the unsynchronized motion, branch 1, is locked at all a of a range, under both laws.
+    """Judge whether the end blocks of the unsynchronized motion, branch 1, are locked to each other at all a of a range.
 
-    The end blocks may be locked to each other: they then keep one frequency, in antiphase, if the mass of one of them
-    becomes 1 + `detuning` times as large. At equal masses their equal frequencies would show nothing, since the motion
-    is its own mirror image. Or they may be locked to the middle block: the rotation number decides, which is then a
-    ratio of whole numbers, constant in a.
+    The paper speaks of the phases of the lateral blocks. At equal masses their equal frequencies would show nothing,
+    since the motion is its own mirror image. They are locked if they keep one frequency when the mass of one of them
+    becomes 1 + `detuning` times as large, and if a perturbation of their phases decays: of three blocks without any
+    locking three Lyapunov exponents would be 0.
 
-    The fraction of a is taken over the values of the grid; plateaux are also known between the added values. A value
-    with an unknown kind of motion counts as neither.
+    Whether they are locked to the middle block as well, the rotation number shows, which is then a ratio of whole
+    numbers, constant in a; the verdict says where, and does not depend on it. The fraction of a is taken over the
+    values of the grid. A value with an unknown kind of motion does not count.
 
     loose_share : fraction of a from which the claim holds loosely
     """
@@ -55,9 +60,7 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
     rotation = evidence.summary("rotation")
     if detuning not in rotation["detuning"].values:
         raise NotTestableError(f"rotation.nc has no motion with a detuning of {detuning:g}")
-    resolution = 1.0 / rotation.attrs["detuned_window"]
-    end_blocks, middle = "the end blocks to each other", "the end blocks to the middle block"
-    shares: dict[str, dict[str, Share]] = {end_blocks: {}, middle: {}}
+    shares: dict[str, Share] = {}
     measured, where = [], []
     for law in PAPER_LAWS:
         found = rotation.sel(law=law)
@@ -68,13 +71,20 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
         grid = found["a"].values[known]
         detuned = found.sel(detuning=detuning).isel(value=known)
         apart = np.abs(detuned["detuned_frequency"].values[:, -1] - detuned["detuned_frequency"].values[:, 0])
-        together = (apart <= resolution) & (detuned["detuned_correlation"].values < 0.0)
-        shares[end_blocks][law] = share_of(together)
-        if np.isfinite(apart).any():
-            measured.append(Measured(f"largest difference of their frequencies, {law}", float(np.nanmax(apart))))
+        third, error = (detuned[name].values[:, 2] for name in ("detuned_exponent", "detuned_exponent_error"))
+        together = (apart <= ONE_FREQUENCY) & (third < -CERTAIN * error)
+        shares[law] = share_of(together)
+        measured.append(
+            Measured(f"share of a at which the end blocks are locked to each other, {law}", shares[law].value)
+        )
+        for name, of in (("difference of their frequencies", apart), ("third exponent", third)):
+            if np.isfinite(of).any():
+                measured.append(Measured(f"largest {name}, {law}", float(np.nanmax(of))))
         where += told_where("the end blocks are not locked to each other", grid, ~together, law)
         locked = found["locked"].values[known] == 1
-        shares[middle][law] = share_of(locked)
+        measured.append(
+            Measured(f"share of a at which they are locked to the middle block, {law}", share_of(locked).value)
+        )
         number = found["rotation_number"].values[inside]
         measured += [
             Measured(f"smallest rotation number, {law}", float(np.nanmin(number))),
@@ -90,16 +100,13 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
                 f"the widest plateau, {widest.ratio}, reaches from a = {widest.first:.5g} to {widest.last:.5g} ({law})"
             )
         where += told_where("locked to the middle block", grid, locked, law)
-    for reading, of_laws in shares.items():
-        name = f"share of a at which branch 1 is locked, {reading}"
-        measured += [Measured(f"{name}, {law}", share.value) for law, share in of_laws.items()]
-    readings = shares_by_readings(shares, loose_share)
-    texts = [f"{r} at {shares_text(s)} ({readings[r]})" for r, s in shares.items()]
     reason = (
-        f"Branch 1 is locked: {'; '.join(texts)}, of the values of a with {a}. Locked to each other, the end blocks "
-        f"keep one frequency with {100 * detuning:g} % more mass of one of them."
+        f"With {100 * detuning:g} % more mass of one end block, the end blocks of branch 1 keep one frequency and a "
+        f"relation of their phases that attracts (the third Lyapunov exponent is negative) at {shares_text(shares)} of "
+        f"the values of a with {a}, each followed for "
+        f"{rotation.attrs['detuned_transient'] + 2.0 * rotation.attrs['detuned_window']:g} time units."
     )
-    return by_readings(readings, reason, measured, where)
+    return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(where))
 
 
 @judge("bifurcations", "refined")

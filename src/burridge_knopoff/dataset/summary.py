@@ -17,6 +17,7 @@ from burridge_knopoff.dataset.variables import (
     described,
     global_attributes,
 )
+from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.provenance.seal import BadFile, check_seal, write_sealed
 from burridge_knopoff.provenance.sources import source_fingerprint
 
@@ -30,11 +31,16 @@ STATE = Variable(("state",), "i4", "number of the sampled initial state", coordi
 
 
 def axes(**values: Sequence[Any]) -> dict[str, Any]:
-    """Return the coordinates of a summary over some of law, initial, a and other parameters, given by these names."""
-    known = {name: AXES.get(name, Variable((name,), "f8", f"parameter {name}", coordinate=True)) for name in values}
-    return {
-        name: (name, np.array(values[name], dtype=item.dtype), item.all_attributes()) for name, item in known.items()
-    }
+    """Return the coordinates of a summary over some of law, initial, a and other parameters, given by these names.
+
+    That of `mass[3]` is `mass_3`: names in netCDF files have letters, digits and underscores.
+    """
+    made = {}
+    for name, each in values.items():
+        plain = plain_name(name)
+        item = AXES.get(name, Variable((plain,), "f8", f"parameter {name}", coordinate=True))
+        made[plain] = plain, np.array(each, dtype=item.dtype), item.all_attributes()
+    return made
 
 
 def summary(

@@ -182,7 +182,7 @@ class Jobs:
     def pattern(self, form: str) -> str:
         """Return a regular expression for the names of files, with a group for each wildcard."""
         literal, *parts = re.split(r"\{(\w+)\}", form)
-        known = {**PATTERNS, **dict.fromkeys(self.study.parameters, VALUE)}
+        known = {**PATTERNS, **dict.fromkeys(self.study.wildcards, VALUE)}
         groups = (f"(?P<{name}>{known.get(name, PATTERNS['solver'])})" for name in parts[::2])
         return re.escape(literal) + "".join(
             group + re.escape(text) for group, text in zip(groups, parts[1::2], strict=True)

@@ -35,7 +35,7 @@ def runs(study: Study) -> list[Rule]:
             "simulate",
             "Simulate one point: one friction law from one initial state at one a, or at one point of the grid.",
             "simulate {law} law, initial state {initial}, "
-            + ", ".join(f"{name} = {{{name}}}" for name in study.parameters),
+            + ", ".join(f"{name} = {{{word}}}" for word, name in study.wildcards.items()),
             (f"points/{file}",),
             each=all_points(study),
             stage="points",

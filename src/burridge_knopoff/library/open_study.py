@@ -71,7 +71,7 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
                 point = nodes[name.removesuffix(".nc")] = _opened(results / name)
                 for number, everywhere in found.items():
                     everywhere[index] = point.variables[number].values
-        dimensions = ("law", "initial", *study.parameters)
+        dimensions = ("law", "initial", *study.wildcards)
         nodes["grid"] = xarray.Dataset(
             {name: (dimensions, found[name], POINT_VARIABLES[name].all_attributes()) for name in NUMBERS},
             axes(law=study.laws, initial=study.initial, **values),

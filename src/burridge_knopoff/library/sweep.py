@@ -19,7 +19,7 @@ from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, gi
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import names_of, value_of
+from burridge_knopoff.model.parameters import names_of, plain_name, single_of, value_of, words_of
 from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.runner import TOGETHER, run_together
 from burridge_knopoff.running.settings import Settings
@@ -53,13 +53,13 @@ def sweep(
 
     law : a `Model` with its own chain, contact and values of all parameters; or a law in any form that `simulate` takes
     a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
-    by_name : other parameters, v, those of the chain such as coupling, and the numbers of the law such as sigma, each
-        one number or a sequence; and settings of the run by name
+    by_name : other parameters, v, those of the chain such as coupling, or of one block or spring such as `mass[3]`, and
+        the numbers of the law such as sigma, each one number or a sequence; and settings of the run by name
     initial, settings, chain, contact : see `simulate`
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
 
-    Each parameter given as a sequence is a dimension of the Dataset: first a, then the others in the order given. The
-    variables are the numbers of a run, a batch or an exponent in a point file (docs/data.md), among them
+    Each parameter given as a sequence is a dimension of the Dataset: first a, then the others in the order given; that
+    of `mass[3]` is `mass_3`. The variables are the numbers of a run, a batch or an exponent in a point file (docs/data.md), among them
     `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for a completed run. Raises
     ValueError, one line, for a wrong argument; an error at one point names it.
 
@@ -100,16 +100,17 @@ def sweep(
     import xarray
 
     shape = [len(values) for values in axes.values()]
+    plain = {name: plain_name(name) for name in axes}
     data: dict[str, Any] = {}
     for name, item in _KEPT.items():
         if item.coordinate:
             data[name] = item.dimensions, np.asarray(found[0][0][name], item.dtype), item.all_attributes()
         else:
             array = np.array([numbers[name] for numbers, _ in found], item.dtype)
-            data[name] = (*axes, *item.dimensions), array.reshape((*shape, *array.shape[1:])), item.all_attributes()
+            data[name] = (*plain.values(), *item.dimensions), array.reshape((*shape, *array.shape[1:])), item.all_attributes()
     for name, values in axes.items():
         item = _KEPT.get(name, Variable((), "f8", f"parameter {name} of the model"))
-        data[name] = name, values, item.all_attributes()
+        data[plain[name]] = plain[name], values, item.all_attributes()
     first, *others = (attributes for _, attributes in found)
     common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
     return xarray.Dataset(data, attrs=common).set_coords({name for name, item in _KEPT.items() if item.coordinate})
@@ -137,8 +138,8 @@ def _grid(
         first = axes["a"][0] if "a" in axes else single.get("a", law.a if isinstance(law, Law) else None)
         base = given_model(law, first, blocks, chain, None, contact)
     for name in parameters:
-        if name not in names_of(base):
-            known = " | ".join([*names_of(base), *sorted(fields_of(Settings))])
+        if name not in names_of(base) and single_of(name) is None:
+            known = " | ".join([words_of(base), *sorted(fields_of(Settings))])
             raise ValueError(f"{joined('', name)}: not a setting or a parameter, expected {known}")
     base = base.at(**single)
     for name, values in axes.items():

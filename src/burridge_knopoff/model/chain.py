@@ -41,6 +41,9 @@ _STRENGTHS = Either((STRENGTH, Several(STRENGTH)))
 _OF_BLOCKS = Either((STRENGTH, Several(STRENGTH), Drawn(STRENGTH)))
 _PULLING = Number(STRENGTH.least, STRENGTH.most, or_zero=True)
 _DAMPING = Either((DAMPING, Several(DAMPING)))
+#: What each spring between neighbours, and each block, has a number of, with the range of this number.
+SPRING_NUMBERS = {"coupling": STRENGTH, "damping": DAMPING}
+BLOCK_NUMBERS = {"pulling": _PULLING, "threshold": STRENGTH, "mass": STRENGTH, "pulling_damping": DAMPING}
 _SIDE = Whole(1, MAXIMUM_BLOCKS)
 
 
@@ -49,10 +52,11 @@ _SIDE = Whole(1, MAXIMUM_BLOCKS)
 class Chain(Unchanging):
     """N blocks in a row, a ring, a grid, or any network of springs.
 
-    A row has N − 1 springs between neighbours. A ring has N: the last spring joins the last block to the first. A grid
-    of nx × ny blocks has open edges; block 1 + ix + nx·iy is in column ix and row iy, both from 0. A file of springs
-    has a line `block block strength` for each, with blocks numbered from 1, or `block block strength damping`. A block
-    of mass m obeys m U'' = F − threshold · Φ(U') while it slips, and sticks while F is at most its threshold.
+    A row has N − 1 springs between neighbours; spring i joins blocks i and i + 1. A ring has N: the last spring joins
+    the last block to the first. A grid of nx × ny blocks has open edges; block 1 + ix + nx·iy is in column ix and row
+    iy, both from 0. A file of springs has a line `block block strength` for each, with blocks numbered from 1, or
+    `block block strength damping`. A block of mass m obeys m U'' = F − threshold · Φ(U') while it slips, and sticks
+    while F is at most its threshold.
 
     The force on block i is F_i = s_i + d_i. The spring force is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian
     of the springs plus diag(D), so that K·1 = D. Dashpots (Kelvin-Voigt damping) add
@@ -125,19 +129,12 @@ class Chain(Unchanging):
             self._check_network()
         elif self.blocks is None:
             object.__setattr__(self, "blocks", BLOCKS)
-        springs = 1 if self.is_network else self.blocks - (self.ends == "open")
-        for key, count, of in (
-            ("coupling", springs, "springs"),
-            ("pulling", self.blocks, "blocks"),
-            ("threshold", self.blocks, "blocks"),
-            ("mass", self.blocks, "blocks"),
-            ("damping", springs, "springs"),
-            ("pulling_damping", self.blocks, "blocks"),
-        ):
-            value = getattr(self, key)
+        for key in (*SPRING_NUMBERS, *BLOCK_NUMBERS):
+            value, count = getattr(self, key), self.count_of(key)
             if isinstance(value, tuple) and len(value) != count:
                 raise ValueError(
-                    f"chain.{key}: got {len(value)} numbers, expected 1, or {count}: one for each of the {of}"
+                    f"chain.{key}: got {len(value)} numbers, expected 1, or {count}: one for each of the "
+                    f"{'springs' if key in SPRING_NUMBERS else 'blocks'}"
                 )
         if self.blocks == 1 and self.ends == "ring":
             raise ValueError("chain.ends: got ring, expected open for one block")
@@ -194,6 +191,19 @@ class Chain(Unchanging):
         of_blocks = ("driving", "driver_damping", "thresholds", "masses")
         pairs = [(getattr(self, name), getattr(other, name)) for name in of_blocks]
         return all(np.array_equal(*pair) for pair in (*pairs, *zip(self.neighbours, other.neighbours, strict=True)))
+
+    def count_of(self, key: str) -> int:
+        """Return the number of springs of a row or a ring, or of blocks, each of which has a number under this key."""
+        if key in BLOCK_NUMBERS:
+            return self.blocks
+        return 0 if self.is_network else self.blocks - (self.ends == "open")
+
+    def numbers_of(self, key: str) -> np.ndarray:
+        """Return the numbers of all springs, or of all blocks, under a key of the chain, shape (count_of(key),).
+
+        Springs of a row or a ring are in the order of the blocks on their left.
+        """
+        return self.driving if key == "pulling" else numbers_of(getattr(self, key), self.count_of(key), key)
 
     @property
     def is_network(self) -> bool:

@@ -102,7 +102,7 @@ def follow_bifurcation(
         raise refusal("parameters", parameters, "the names of two parameters")
     ends = ends_of(interval)
     plane = BifurcationPlane(bifurcation, names)
-    orbit = bifurcation.at.orbit
+    orbit = plane.orbit
     first = plane.point(
         orbit, np.array([0.0, 1.0]), orbit.model, orbit.reference, orbit.return_time, settings.first_step
     )

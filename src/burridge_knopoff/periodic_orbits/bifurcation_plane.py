@@ -22,7 +22,15 @@ from burridge_knopoff.periodic_orbits.following import FASTER
 from burridge_knopoff.periodic_orbits.grazing_distances import contacts
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, safe_offset
-from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, line_of, solve_ahead, tangent_of, weights
+from burridge_knopoff.periodic_orbits.pseudo_arclength import (
+    BranchOrbit,
+    in_symmetry_of,
+    line_of,
+    solve_ahead,
+    tangent_of,
+    weights,
+)
+from burridge_knopoff.values import refusal
 
 # First step of the search for a root along a branch, the change at which it ends, and the most iterations.
 PROBE = 1e-6
@@ -46,12 +54,16 @@ class CurvePoint:
 class BifurcationPlane:
     """The plane of two parameters, and the function that vanishes at one kind of bifurcation of an orbit.
 
+    Raises ValueError, one line, if the bifurcation is of a symmetry that one of the parameters breaks.
+
     Places in the plane are in the units of `line_of` at the bifurcation.
     """
 
     def __init__(self, bifurcation: Bifurcation, names: tuple[str, str]) -> None:
         orbit = bifurcation.at.orbit
-        self.kind, self.names = bifurcation.kind, names
+        for name in names:
+            orbit = in_symmetry_of(line_of(orbit, name), orbit)
+        self.orbit, self.kind, self.names = orbit, bifurcation.kind, names
         self.units = np.array([line_of(orbit, name).rates[0] for name in names])
         self.own_units = orbit.model.chain.own_units
         self.symmetry, self.stops = orbit.symmetry, orbit.stop_counts
@@ -59,6 +71,8 @@ class BifurcationPlane:
             self.contact = int(bifurcation.at.contacts.shares(self.own_units).argmin())
         else:
             values = {key: abs(value) for key, value in critical_values(orbit).items() if key[0] == self.kind}
+            if not values:
+                raise refusal("parameters", names, f"two that keep the mirror symmetry: no {self.kind.words} without it")
             self.key = min(values, key=values.__getitem__)
 
     def place(self, model: Model) -> np.ndarray:

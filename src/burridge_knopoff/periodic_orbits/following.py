@@ -62,7 +62,8 @@ def follow(
     orbit : stable or unstable, of any chain; reduced to its simplest form first
     interval : (low, high) of the parameter; by default as far as the branch goes
     settings : lengths of steps; upward : whether the parameter grows at first
-    parameter : a, v, a number of the law such as sigma, or one of the chain such as coupling (`Model.at`)
+    parameter : a, v, a number of the law such as sigma, one of the chain such as coupling, or of one block or spring
+        such as `mass[3]` (`Model.at`)
     enough : called after each orbit except those on a corner, with all orbits so far
 
     A grazing orbit is in the list with `corner` set; the next orbit, if there is one, is on the other side. The branch

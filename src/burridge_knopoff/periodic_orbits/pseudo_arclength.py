@@ -150,8 +150,23 @@ def tangent_of(orbit: PeriodicOrbit, line: ParameterLine) -> np.ndarray:
     return vector / np.sqrt(weights(model, line) @ vector**2)
 
 
+def in_symmetry_of(line: ParameterLine, orbit: PeriodicOrbit) -> PeriodicOrbit:
+    """Return an orbit as one of the symmetry that all models on a line have: none, if the line breaks the mirror's."""
+    model, here = orbit.model, line.coordinate(orbit.model)
+    if orbit.symmetry == Symmetry.ASYMMETRIC:
+        return orbit
+    for step in (PART, -PART):
+        try:
+            if not line.model(model, here + step).chain.is_mirror_symmetric:
+                return solve_return(model, orbit.reference, orbit.period, Symmetry.ASYMMETRIC)
+        except OrbitError:
+            continue
+    return orbit
+
+
 def begin_branch(orbit: PeriodicOrbit, upward: bool, line: ParameterLine) -> BranchOrbit:
     """Return an orbit with the tangent along which the parameter grows or falls."""
+    orbit = in_symmetry_of(line, orbit)
     tangent = tangent_of(orbit, line)
     return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent, line)
 

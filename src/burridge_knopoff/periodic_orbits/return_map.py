@@ -66,8 +66,8 @@ class ReturnMap:
 
         start, time, end : of the return; events : blocks and kinds of its events in order, shape (n, 2)
 
-        By finite differences; next to a grazing, where the derivative jumps, on the side of the orbit. Raises
-        OrbitError if there is none.
+        By finite differences; next to a grazing, where the derivative jumps, on the side of the orbit. It does not jump
+        where two blocks stop at one instant and one of them becomes the first. Raises OrbitError if there is none.
         """
         step, here = STEP, line.coordinate(self.model)
         while step > LEAST_STEP:
@@ -78,7 +78,7 @@ class ReturnMap:
                     continue
                 runner = Runner(model, keep_events=True)
                 moved = self._mirrored(after(runner, start, time))
-                if np.array_equal(np.stack(runner.events()[1:], axis=1), events):
+                if np.array_equal(_by_block(np.stack(runner.events()[1:], axis=1)), _by_block(events)):
                     return (moved.vector() - end.vector()) / (there - here)
             step *= 0.1
         raise OrbitError(f"{line.place(self.model)}: stops and starts change however little this does")
@@ -92,6 +92,11 @@ class ReturnMap:
 
     def _mirrored_rows(self, matrix: np.ndarray) -> np.ndarray:
         return matrix[mirror(self.model.blocks)] if self.symmetry == Symmetry.SYMMETRIC else matrix
+
+
+def _by_block(events: np.ndarray) -> np.ndarray:
+    """Return events in order of blocks, those of each block in order of time, shape (n, 2)."""
+    return events[np.argsort(events[:, 0], kind="stable")]
 
 
 def mirror(blocks: int) -> np.ndarray:

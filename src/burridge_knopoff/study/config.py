@@ -46,7 +46,10 @@ def _values(one: Number, longest: float) -> Several:
 VALUES = _values(A, 100.0)
 SOME_VALUES = Several(A, 0, 100, distinct=True)
 
-PARAMETER_NAME = Text("letters, digits and _, a letter first", "[A-Za-z][A-Za-z0-9_]*")
+PARAMETER_NAME = Text(
+    "letters, digits and _, a letter first; of one block or spring as mass[1]",
+    r"[A-Za-z][A-Za-z0-9_]*(\[[0-9]+\])?",
+)
 STUDY_NAME = Text("letters, digits, _ and -, at most 64, a letter or digit first", "[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 
 

@@ -7,6 +7,7 @@ from decimal import Decimal
 from itertools import pairwise
 from typing import Any
 
+from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.values import refusal, shown
 
 #: Limit on the values of a list and on the points of a study. Planning so many jobs takes Snakemake minutes; in
@@ -32,8 +33,9 @@ def given_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:
         raise ValueError(f"a: got {shown(config['a'])} beside grid, expected one of them")
     if "a" not in grid:
         raise ValueError("grid.a: missing, expected friction parameters; a single one is enough")
-    for name in _TAKEN:
-        if name in grid:
+    plain = [plain_name(f"{name}") for name in grid]
+    for name in plain:
+        if name in _TAKEN or plain.count(name) > 1:
             raise refusal("grid", name, "another name of the law's number")
     others = {key: value for key, value in config.items() if key not in ("a", "grid")}
     return {**others, "grid": grid} if len(grid) > 1 else {**others, "a": grid["a"]}

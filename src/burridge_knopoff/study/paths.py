@@ -4,10 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from burridge_knopoff.model.parameters import plain_name
+
 
 def point_file(parameters: Iterable[str]) -> str:
-    """Return the path of a point, in the folder `points`, with the name of each parameter's value as a wildcard."""
-    return "{law}/{initial}/" + "_".join(f"{name}{{{name}}}" for name in parameters) + ".nc"
+    """Return the path of a point, in the folder `points`, with the name of each parameter's value as a wildcard.
+
+    The value of `mass[3]` follows after an underscore: `a0.0200_mass_3_1.2000.nc`.
+    """
+    plain = {name: plain_name(name) for name in parameters}
+    parts = [f"{word}{'' if word == name else '_'}{{{word}}}" for name, word in plain.items()]
+    return "{law}/{initial}/" + "_".join(parts) + ".nc"
 
 
 #: Path of a point of a study over a alone, in the folder `points`, or `solvers/<solver>` for another solver.

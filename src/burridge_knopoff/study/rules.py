@@ -117,10 +117,10 @@ def check_models(
             with under("laws."):
                 law = law_of(name, a, laws[name])
             tapes.append(law.tape)
-            model = Model(chain, law, config["v"], config["contact"])
+            base = Model(chain, law, config["v"], config["contact"])
             for values in others:
                 with under(f"grid ({name} law, a = {a:g}): " if values else ""):
-                    model = at(model, values) if values else model
+                    model = at(base, values) if values else base
                 if solver == "map" and not model.has_closed_form:
                     known = " | ".join(solver for solver in SOLVERS if solver != "map")
                     raise refusal(f"solver.{name}", "map", f"{known}: no closed form at a = {a:g}, {_reason(model)}")

@@ -12,6 +12,7 @@ import numpy as np
 from burridge_knopoff.model.fields import settings_from
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.parameters import plain_name, single_of
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
@@ -53,6 +54,11 @@ class Study:
     def grid(self) -> Mapping[str, float]:
         """The values of a, by their names in file names."""
         return self.parameters["a"]
+
+    @property
+    def wildcards(self) -> dict[str, str]:
+        """The parameters by their names in file names and Datasets."""
+        return {plain_name(name): name for name in self.parameters}
 
     @property
     def is_plane(self) -> bool:
@@ -104,8 +110,9 @@ class Study:
     @property
     def chain_description(self) -> dict[str, Any]:
         """The chain as arguments of `Chain`; of several, that of the first point."""
-        chain, first = self.config["chain"], self.others[0]
-        return {**chain, **{name: first[name] for name in first if name in chain}}
+        chain, first = self.config["chain"], self.model(self.laws[0], self.shown_a, **self.others[0]).chain
+        varied = {(single_of(name) or (name,))[0] for name in self.parameters}
+        return {key: getattr(first, key) if key in varied else value for key, value in chain.items()}
 
     @property
     def has_several_laws(self) -> bool:
@@ -224,7 +231,8 @@ class Study:
         solver : a solver other than that of the study's points
         Raises ConfigError if a value is not in the grid, or the solver is not one of `other_solvers`.
         """
-        values = {parameter: self.value(name, parameter) for parameter, name in {"a": a, **others}.items()}
+        names = {self.wildcards[word]: name for word, name in {"a": a, **others}.items()}
+        values = {parameter: self.value(name, parameter) for parameter, name in names.items()}
         return self.model(law, **values), self.state(initial), self.settings(law, solver)
 
     def command(self, law: str, initial: str, a: str, solver: str | None = None, **others: str) -> str:
@@ -244,7 +252,7 @@ class Study:
 
 def all_points(study: Study) -> list[dict[str, str]]:
     """Return the wildcards of every point, the arguments of `Study.command`, in the order of the summaries."""
-    names = ("law", "initial", *study.parameters)
+    names = ("law", "initial", *study.wildcards)
     return [
         dict(zip(names, point, strict=True)) for point in product(study.laws, study.initial, *study.parameters.values())
     ]

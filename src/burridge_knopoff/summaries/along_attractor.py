@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.motion.frequency import leading_frequency
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.summaries.correlation import correlation
-from burridge_knopoff.summaries.frequency import leading_frequency
 
 #: Time for which each attractor is followed.
 FOLLOWED = 1000.0

@@ -6,8 +6,7 @@ import math
 
 import numpy as np
 
-# A velocity that varies by no more than this share of its modulus is constant: the rest is rounding.
-ROUNDING = 1e-10
+from burridge_knopoff.motion.frequency import is_constant
 
 
 def correlation(one: np.ndarray, other: np.ndarray) -> float:
@@ -18,8 +17,3 @@ def correlation(one: np.ndarray, other: np.ndarray) -> float:
     # Sums, not products of matrices: the last bit of those depends on where in memory the values lie.
     product = (one * other).sum() / math.sqrt((one * one).sum() * (other * other).sum())
     return float(min(max(product, -1.0), 1.0))
-
-
-def is_constant(values: np.ndarray) -> bool:
-    """Return whether values differ by rounding only."""
-    return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())

@@ -46,8 +46,7 @@ def summarize(
     """
     chosen = {**motion, "synchronization_threshold": synchronization_threshold, "section": grid.section}
     settings = MotionSettings(**chosen)
-    symmetric = grid.is_mirror_symmetric
-    axes = ("law", "initial", *grid.parameters)
+    axes = tuple(grid.axes())
     variables = {name: replace(item, dimensions=(*axes, *item.dimensions[3:])) for name, item in VARIABLES.items()}
     values = {}
     for name, item in variables.items():
@@ -57,6 +56,8 @@ def summarize(
         read = read_point(grid, point, [*_READ, *SECTION, "v"])
         for name in _READ:
             values[name][index] = read[name]
+        law, _, *names = point
+        symmetric = grid.model_of(law, *names).chain.is_mirror_symmetric
         found = motion_of_run(read, symmetric, settings.at_speed(float(read["v"])))
         values["run_kind"][index], values["unstable"][index] = found.kind, found.unstable
         values["section_period"][index], values["period"][index] = found.section_period, found.period

@@ -18,6 +18,7 @@ from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.provenance.seal import check_seal
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.section import Section
@@ -99,6 +100,11 @@ class Grid:
         """Return the model of the points under one law at one a, and at values of the other parameters."""
         return model_of(self.models, law, a, others=others)
 
+    def model_of(self, law: str, *names: str) -> Model:
+        """Return the model of a point; names : of the values of the parameters."""
+        values = {parameter: self.parameters[parameter][name] for parameter, name in zip(self.parameters, names)}
+        return self.model(law, **values)
+
     @property
     def shape(self) -> tuple[int, ...]:
         """Numbers of laws, initial states and values of each parameter."""
@@ -116,11 +122,10 @@ class Grid:
 
     def command(self, law: str, initial: str, *names: str) -> str:
         """Return the `bk simulate` command that makes a point."""
-        values = {name: self.parameters[name][value] for name, value in self._named(names).items()}
-        return simulate_command(self.model(law, **values), self.initial[initial], self.settings[law])
+        return simulate_command(self.model_of(law, *names), self.initial[initial], self.settings[law])
 
     def _named(self, names: tuple[str, ...]) -> dict[str, str]:
-        return dict(zip(self.parameters, names, strict=True))
+        return dict(zip(map(plain_name, self.parameters), names, strict=True))
 
     def __iter__(self) -> Iterator[tuple[tuple[int, ...], tuple[str, ...]]]:
         """Yield (index, (law, initial, names of the values)) in the order law, initial, parameters."""

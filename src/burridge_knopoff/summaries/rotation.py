@@ -3,7 +3,7 @@
 Branch 1 is the motion without synchrony that `plus` reaches at a = 0.08. Whether its end blocks are locked to the
 middle one is shown by its rotation number (`motion.rotation`), at all values of `refined`. Whether they are locked to
 each other is shown where mirror symmetry does not make their frequencies equal: with another mass of the last block
-(`summaries.detuning`), at the values of the grid.
+(`summaries.detuning`), at the values of the grid, by their frequencies and by the Lyapunov exponents.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
 from burridge_knopoff.motion.rotation import rotation_number
+from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.summaries.detuning import TRANSIENT, WINDOW, detuned_motion
 
 TITLE = "Rotation number of branch 1, and its frequencies after detuning"
@@ -28,6 +29,8 @@ FOLLOWED = 1000.0
 
 #: Detunings, small and large, that are tried on branch 1.
 DETUNINGS = (0.1, 0.3, 0.8)
+
+_WHERE = "NaN beyond the grid of the study, and where there is no such motion"
 
 _VALUE = ("law", "value")
 _DETUNED = (*_VALUE, "detuning")
@@ -47,12 +50,19 @@ VARIABLES = {
     "detuned_frequency": Variable(
         (*_DETUNED, "block"),
         "f8",
-        "frequency, in cycles per unit time, of the highest peak of the spectrum of U' after detuning",
-        {"comment": "NaN beyond the grid of the study, and where there is no such motion or no peak"},
+        "frequency, in cycles per unit time, of the strongest line in the spectrum of U' after detuning",
+        {"ancillary_variables": "detuned_frequency_error", "comment": _WHERE},
     ),
-    "detuned_correlation": Variable(
-        _DETUNED, "f8", "Pearson correlation of the velocities U' of the end blocks after detuning"
+    "detuned_frequency_error": Variable(
+        (*_DETUNED, "block"), "f8", "difference of this frequency between both halves of the time"
     ),
+    "detuned_exponent": Variable(
+        (*_DETUNED, "exponent"),
+        "f8",
+        "Lyapunov exponents after detuning, the largest first",
+        {"ancillary_variables": "detuned_exponent_error", "comment": _WHERE},
+    ),
+    "detuned_exponent_error": Variable((*_DETUNED, "exponent"), "f8", "standard error of this exponent"),
 }
 DETUNING = Variable(
     ("detuning",), "f8", "by how much the mass of the last block is larger, as a fraction of it", coordinate=True
@@ -64,7 +74,8 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
 
     refined : the summary of that name; models : one for each of its laws, at any a
     """
-    sizes = {**refined.sizes, "detuning": len(DETUNINGS)}
+    exponents = Settings().exponents_of(models[0].chain)
+    sizes = {**refined.sizes, "detuning": len(DETUNINGS), "exponent": exponents}
     values = {
         name: np.full([sizes[key] for key in item.dimensions], -1 if item.dtype == "i1" else np.nan, item.dtype)
         for name, item in VARIABLES.items()
@@ -83,8 +94,9 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
         if not values["in_grid"][at]:
             continue
         for k, detuning in enumerate(DETUNINGS):
-            found = detuned_motion(model, start, detuning)
-            values["detuned_frequency"][*at, k], values["detuned_correlation"][*at, k] = found
+            found = detuned_motion(model, start, detuning, exponents)
+            for name in ("frequency", "frequency_error", "exponent", "exponent_error"):
+                values[f"detuned_{name}"][*at, k] = getattr(found, name)
     attributes = {
         "branch": BRANCH,
         "duration": FOLLOWED,

@@ -11,11 +11,11 @@ import xarray
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.motion.frequency import leading_frequency
 from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.correlation import correlation
-from burridge_knopoff.summaries.frequency import leading_frequency
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
 STOP, START = 0, 1
