@@ -100,7 +100,8 @@ def test_a_fold_in_the_mass_of_one_end_begins_at_the_pitchfork():
     """Above a_c two asymmetric orbits attract; that of the heavier leader ends at a fold, which is a cusp at a_c."""
     model = Model(Chain(3), law_of("linearized", 0.09))
     orbit = synchronized_orbit(model)
-    start = ChainState(orbit.reference.position + [1e-3, 0.0, -1e-3], orbit.reference.velocity, orbit.reference.stuck)
+    pushed = orbit.reference.position + np.array([1e-3, 0.0, -1e-3])
+    start = ChainState(pushed, orbit.reference.velocity, orbit.reference.stuck)
     pair = limit_cycle(model, start, settling=6000.0)
     assert pair.symmetry == Symmetry.ASYMMETRIC
     # Longer steps would jump over the fold to the other one of the pair.

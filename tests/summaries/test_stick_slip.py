@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, Settings, law_of, simulate
-from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.motion.frequency import leading_frequency
+from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.summaries.stick_slip import (
     correlation,
     cycle_time,

@@ -43,7 +43,7 @@ UNFOLLOWED = "a closed orbit too long to be followed, or a torus beside it,"
 
 @judge("rotation")
 def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: float) -> Verdict:
-    """Judge whether the end blocks of the unsynchronized motion, branch 1, are locked to each other at all a of a range.
+    """Judge whether the end blocks of branch 1, which is not synchronized, are locked at all a of a range.
 
     The paper speaks of the phases of the lateral blocks. At equal masses their equal frequencies would show nothing,
     since the motion is its own mirror image. They are locked if they keep one frequency when the mass of one of them

@@ -59,9 +59,9 @@ def sweep(
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
 
     Each parameter given as a sequence is a dimension of the Dataset: first a, then the others in the order given; that
-    of `mass[3]` is `mass_3`. The variables are the numbers of a run, a batch or an exponent in a point file (docs/data.md), among them
-    `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for a completed run. Raises
-    ValueError, one line, for a wrong argument; an error at one point names it.
+    of `mass[3]` is `mass_3`. The variables are the numbers of a run, a batch or an exponent in a point file
+    (docs/data.md), among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for
+    a completed run. Raises ValueError, one line, for a wrong argument; an error at one point names it.
 
     >>> from burridge_knopoff import sweep
     >>> runs = sweep("nonlinear", [0.02, 0.05, 0.3], transient=1000, window=500, batches=2)
@@ -107,7 +107,8 @@ def sweep(
             data[name] = item.dimensions, np.asarray(found[0][0][name], item.dtype), item.all_attributes()
         else:
             array = np.array([numbers[name] for numbers, _ in found], item.dtype)
-            data[name] = (*plain.values(), *item.dimensions), array.reshape((*shape, *array.shape[1:])), item.all_attributes()
+            dimensions = *plain.values(), *item.dimensions
+            data[name] = dimensions, array.reshape((*shape, *array.shape[1:])), item.all_attributes()
     for name, values in axes.items():
         item = _KEPT.get(name, Variable((), "f8", f"parameter {name} of the model"))
         data[plain[name]] = plain[name], values, item.all_attributes()

@@ -97,11 +97,11 @@ def at(model: Model, parameters: Mapping[str, float]) -> Model:
 
 def _with_singles(chain: Chain, values: Mapping[str, float]) -> Chain:
     """Return a chain at other values of the numbers of some springs and blocks."""
-    numbers: dict[str, list[float]] = {}
+    numbers: dict[str, Any] = {}
     for name, value in values.items():
         key, number = single_of(name)  # type: ignore[misc]
         numbers.setdefault(key, chain.numbers_of(key).tolist())[number - 1] = value
-    return replace(chain, **{key: tuple(each) for key, each in numbers.items()}) if numbers else chain
+    return replace(chain, **numbers) if numbers else chain
 
 
 def _given(model: Model, name: str) -> Any:
@@ -123,7 +123,7 @@ def _single(chain: Chain, name: str, key: str, number: int) -> float:
     """Return the number of one spring or block, by its name and the parts of it."""
     count, of = chain.count_of(key), "spring" if key in SPRING_NUMBERS else "block"
     if key in SPRING_NUMBERS and chain.is_network:
-        raise ValueError(f"{name}: got one spring of a network, expected {key}: only those of rows and rings have names")
+        raise ValueError(f"{name}: got one spring of a network, expected {key}: only rows and rings number them")
     if not 1 <= number <= count:
         allowed = f"1 to {count}" if count else "none: a single block has no neighbour"
         raise ValueError(f"{name}: got {of} {number}, expected {allowed}")

@@ -72,7 +72,8 @@ class BifurcationPlane:
         else:
             values = {key: abs(value) for key, value in critical_values(orbit).items() if key[0] == self.kind}
             if not values:
-                raise refusal("parameters", names, f"two that keep the mirror symmetry: no {self.kind.words} without it")
+                allowed = f"two that keep the mirror symmetry: no {self.kind.words} without it"
+                raise refusal("parameters", names, allowed)
             self.key = min(values, key=values.__getitem__)
 
     def place(self, model: Model) -> np.ndarray:

@@ -102,8 +102,8 @@ class Grid:
 
     def model_of(self, law: str, *names: str) -> Model:
         """Return the model of a point; names : of the values of the parameters."""
-        values = {parameter: self.parameters[parameter][name] for parameter, name in zip(self.parameters, names)}
-        return self.model(law, **values)
+        named = zip(self.parameters.items(), names, strict=True)
+        return self.model(law, **{parameter: values[name] for (parameter, values), name in named})
 
     @property
     def shape(self) -> tuple[int, ...]:
