@@ -62,19 +62,28 @@ class EdgeState:
     """The motion to which a trajectory on the boundary between two basins settles.
 
     kind : SYNCHRONIZED or PERIODIC for a saddle orbit, QUASIPERIODIC for a saddle torus, CHAOTIC for a chaotic saddle;
-        UNDETERMINED if the exponents are compatible with several of them
+        UNDETERMINED if its exponents do not decide between these
     symmetry : mirror symmetry of the set
     orbit : the saddle orbit, with exactly one multiplier outside the unit circle; None otherwise
     exponent, exponent_error : largest Lyapunov exponents along the trajectory on the boundary, with standard errors,
         shape (3,)
     mean_distance : ⟨J⟩ along it
     lifetime, lifetime_error : mean time for which trajectories stay near the set, the reciprocal of the escape rate,
-        with its standard error; for a saddle orbit the period over the logarithm of the multiplier
+        with its standard error: of a saddle orbit the period over the logarithm of the multiplier, of a saddle torus
+        the reciprocal of the largest exponent, of a chaotic saddle that of displaced states
     reached : number of displaced states that reach each attractor, a row for each side, shape (2, attractors)
     returns : states of the settled trajectory at stops of one block, shape (n, 2 blocks)
     duration : time for which the boundary was followed
 
-    Times are in units of 1/ω, states in those of `Model`; `edge_state` has an example.
+    Times are in units of 1/ω, states in those of `Model`.
+
+    >>> from burridge_knopoff import Chain, Model, edge_state, find_attractors, law_of
+    >>> model = Model(Chain(3), law_of("linearized", 0.1))
+    >>> attractors, labels = find_attractors(model, samples=24, transient=1000, window=1000)
+    >>> first, second = (item.motion.state() for item in attractors if item.symmetry.name == "ASYMMETRIC")
+    >>> between = edge_state(model, first, second, attractors)
+    >>> between.kind.words, round(between.lifetime, 2), between.multipliers.whole[:2].real.round(4).tolist()
+    ('synchronized', 80.72, [1.0732, 0.0789])
     """
 
     model: Model
@@ -108,7 +117,10 @@ class EdgeState:
 
     @property
     def has_crossing(self) -> bool:
-        """Whether states displaced to one side reach an attractor of the other, so that the boundary is fractal."""
+        """Whether states displaced to one side reach an attractor of the other, so that the boundary is fractal.
+
+        The unstable manifold then crosses the boundary, and a saddle orbit is part of a chaotic saddle.
+        """
         first, second = self.sides
         return not first.isdisjoint(second)
 
@@ -222,9 +234,15 @@ def _measured(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSetti
     stops = values[values[:, 1] == 0]
     found = returns_of(model, track.duration, stops[:, 0], lambda chosen: stops[chosen, 2:])
     exponent, error = _exponents(track.growth(since))
-    kind = _kind(orbit, exponent, error)
-    generator = np.random.default_rng(settings.seed)
-    reached, lifetime = _displaced(track, since, settings.samples, generator)
+    displaced = _Displaced(track, since, settings)
+    reached = displaced.reached()
+    kind = _kind(orbit, exponent, error, reached)
+    if orbit is not None:
+        lifetime = orbit.period / math.log(abs(multipliers(orbit).whole[0])), 0.0
+    elif kind == MotionKind.CHAOTIC:
+        lifetime = displaced.lifetime()
+    else:
+        lifetime = 1.0 / exponent[0], error[0] / exponent[0] ** 2
     return EdgeState(
         model,
         kind,
@@ -251,10 +269,16 @@ def _exponents(growth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return mean[order], error[order]
 
 
-def _kind(orbit: PeriodicOrbit | None, exponent: np.ndarray, error: np.ndarray) -> MotionKind:
-    """Return the kind of motion on the boundary: of its positive exponents one is that across the boundary."""
+def _kind(orbit: PeriodicOrbit | None, exponent: np.ndarray, error: np.ndarray, reached: np.ndarray) -> MotionKind:
+    """Return the kind of motion on a boundary.
+
+    One of its positive exponents is that across the boundary. A trajectory on a fractal boundary that does not settle
+    on an orbit moves on a chaotic saddle, even if only one exponent is positive.
+    """
     if orbit is not None:
         return MotionKind.SYNCHRONIZED if orbit.symmetry == Symmetry.SYNCHRONIZED else MotionKind.PERIODIC
+    if (reached > 0).all(axis=0).any():
+        return MotionKind.CHAOTIC
     return motion_with(0, math.nan, math.inf, exponent[1:], error[1:], MOTION).kind
 
 
@@ -265,32 +289,40 @@ def _symmetry(model: Model, found: Returns | None) -> Symmetry:
     return Symmetry.SYMMETRIC if is_near(found.mirror_returns, found.returns, reach) else Symmetry.ASYMMETRIC
 
 
-def _displaced(
-    track: EdgeTrack, since: int, samples: int, generator: np.random.Generator
-) -> tuple[np.ndarray, tuple[float, float]]:
-    """Return which attractors states displaced from the boundary reach, and the lifetime with its error.
+class _Displaced:
+    """States displaced from a set on a boundary to either side, and the attractors that they reach."""
 
-    Displacements with a uniform logarithm show all of the unstable manifold. Uniform ones show the rate at which
-    trajectories leave: the times at which labels are certain have an exponential tail.
-    """
-    reached, rates = np.zeros((2, len(track.attractors)), dtype=np.int64), []
-    low, high = np.log(DISPLACED)
-    for row, side in enumerate((-1.0, 1.0)):
-        amount = side * np.exp(generator.uniform(low, high, samples))
-        labels = _labelled(track, since, amount, generator)[0]
-        reached[row] = np.bincount(labels[labels != UNDETERMINED], minlength=len(track.attractors))
-        labels, times = _labelled(track, since, side * DISPLACED[1] * generator.random(samples), generator)
-        late = np.sort(times[labels != UNDETERMINED])
-        late = late[len(late) // 2 :]
-        rates.append((late - late[0])[1:])
-    tail = np.concatenate(rates)
-    lifetime = float(tail.mean()) if len(tail) else math.nan
-    return reached, (lifetime, lifetime / math.sqrt(len(tail)) if len(tail) else math.nan)
+    def __init__(self, track: EdgeTrack, since: int, settings: EdgeSettings) -> None:
+        self.track, self.since, self.samples = track, since, settings.samples
+        self.generator = np.random.default_rng(settings.seed)
 
+    def reached(self) -> np.ndarray:
+        """Return how many of them reach each attractor, shape (2, attractors).
 
-def _labelled(
-    track: EdgeTrack, since: int, amount: np.ndarray, generator: np.random.Generator
-) -> tuple[np.ndarray, np.ndarray]:
-    states = track.displaced(since, amount, generator)
-    labels, times, _ = label_together(track.model, track.attractors, *states, track.time_limit)
-    return labels, times
+        A uniform logarithm of the displacements shows all of the unstable manifold.
+        """
+        low, high = np.log(DISPLACED)
+        counts = []
+        for side in (-1.0, 1.0):
+            labels, _ = self._labelled(side * np.exp(self.generator.uniform(low, high, self.samples)))
+            counts.append(np.bincount(labels[labels != UNDETERMINED], minlength=len(self.track.attractors)))
+        return np.array(counts)
+
+    def lifetime(self) -> tuple[float, float]:
+        """Return the mean time for which uniformly displaced states stay, and its error.
+
+        From the exponential tail of the times at which their labels are certain, beyond the median of each side.
+        """
+        left = []
+        for side in (-1.0, 1.0):
+            labels, times = self._labelled(side * DISPLACED[1] * self.generator.random(self.samples))
+            late = np.sort(times[labels != UNDETERMINED])
+            late = late[len(late) // 2 :]
+            left.append(late[1:] - late[:1])
+        tail = np.concatenate(left)
+        return float(tail.mean()), float(tail.mean()) / math.sqrt(len(tail))
+
+    def _labelled(self, amount: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        states = self.track.displaced(self.since, amount, self.generator)
+        labels, times, _ = label_together(self.track.model, self.track.attractors, *states, self.track.time_limit)
+        return labels, times

@@ -41,6 +41,10 @@ DIRECTED = 1e-9
 # boundary takes twice as long for a factor e.
 STEP = 5.0
 
+# Where both states have come to the same side, as in strips of a fractal boundary thinner than rounding, the line
+# through them is searched at these distances from them, in units of their distance.
+BESIDE = np.geomspace(0.1, 100.0, 32)
+
 # Growth of a perturbation in a step below which it has vanished, as that of the velocity of a block that stops.
 VANISHED = 1e-12
 
@@ -124,7 +128,7 @@ class EdgeTrack:
     def piece_at(self, time: float) -> int:
         """Return the number of the piece that contains a time."""
         ends = np.cumsum([piece.duration for piece in self.pieces])
-        return int(min(np.searchsorted(ends, time, side="right"), len(ends) - 1))
+        return min(int(np.searchsorted(ends, time, side="right")), len(ends) - 1)
 
     def mean_distance(self, since: int) -> float:
         """Return ⟨J⟩ from the piece of that number on."""
@@ -162,26 +166,46 @@ class EdgeTrack:
         """Bring the two states together; what lies between them and reaches nothing is passed over."""
         shares = np.arange(PARTS + 1) / PARTS
         while (distance := self._distance(self.first, self.second)) > CLOSE:
-            first, second = self.first, self.second
-            stuck = np.tile(first.stuck & second.stuck, (PARTS + 1, 1))
-            position, velocity = (
-                (1.0 - shares[:, None]) * one + shares[:, None] * other
-                for one, other in ((first.position, second.position), (first.velocity, second.velocity))
-            )
-            stuck[0], stuck[-1] = first.stuck, second.stuck
-            labels, _, _ = label_together(self.model, self.attractors, position, velocity, stuck, self.time_limit)
-            known = np.flatnonzero(labels != UNDETERMINED)
-            ours = self.own[labels[known]]
-            if not len(known) or known[0] != 0 or known[-1] != PARTS or not ours[0] or ours[-1]:
-                raise LabelError
+            states, ours = self._sides(shares)
+            if len(ours) < 2 or not ours[0] or ours[-1]:
+                self._find_change()
+                continue
             other = _widest_change(ours)
-            states = [ChainState(position[k], velocity[k], stuck[k]) for k in known[other - 1 : other + 1]]
-            self.first, self.second = states
-            if self._distance(*states) > (1.0 - 0.5 / PARTS) * distance:
+            self.first, self.second = states[other - 1 : other + 1]
+            if self._distance(self.first, self.second) > (1.0 - 0.5 / PARTS) * distance:
                 raise OrbitError(
                     f"time_limit: got {self.time_limit:g}, by which no state between the basins reaches an attractor, "
                     f"expected more (a = {self.model.a:.12g})"
                 )
+
+    def _sides(self, shares: np.ndarray) -> tuple[list[ChainState], np.ndarray]:
+        """Return states on the line through the two states that reach an attractor, and which are on the first side.
+
+        shares : of the way from the first to the second, shape (n,)
+        """
+        first, second, share = self.first, self.second, shares[:, None]
+        stuck = np.tile(first.stuck & second.stuck, (len(shares), 1))
+        stuck[shares == 0.0], stuck[shares == 1.0] = first.stuck, second.stuck
+        position = (1.0 - share) * first.position + share * second.position
+        velocity = (1.0 - share) * first.velocity + share * second.velocity
+        # Beyond the two states a slip may not be reversed.
+        velocity[velocity * np.sign(first.velocity + second.velocity) < 0.0] = 0.0
+        labels, _, _ = label_together(self.model, self.attractors, position, velocity, stuck, self.time_limit)
+        known = np.flatnonzero(labels != UNDETERMINED)
+        return [ChainState(position[k], velocity[k], stuck[k]) for k in known], self.own[labels[known]]
+
+    def _find_change(self) -> None:
+        """Replace two states on the same side by the nearest two on the line through them that are not.
+
+        Raises LabelError if there are none.
+        """
+        states, ours = self._sides(np.concatenate([-BESIDE[::-1], [0.0, 1.0], 1.0 + BESIDE]))
+        changes = np.flatnonzero(np.diff(ours))
+        if not len(changes):
+            raise LabelError
+        nearest = changes[np.argmin([self._distance(states[k], self.first) for k in changes])]
+        both = states[nearest : nearest + 2]
+        self.first, self.second = both if ours[nearest] else both[::-1]
 
     def _follow(self) -> None:
         """Advance both states until they have separated."""
@@ -194,8 +218,11 @@ class EdgeTrack:
         distance, blocks = 0.0, self.model.blocks
         while distance < FAR:
             clock += step
-            if clock > self.time_limit or any(one.run(clock) != Status.COMPLETED for one in (runner, other)):
-                raise OrbitError(f"a = {self.model.a:.12g}: states on both sides of a boundary do not separate")
+            if clock > self.time_limit:
+                # They reach the same attractor after all.
+                raise LabelError
+            if any(one.run(clock) != Status.COMPLETED for one in (runner, other)):
+                raise OrbitError(f"a = {self.model.a:.12g}: the run ends at τ = {clock:g} on the boundary")
             self._basis, triangle = np.linalg.qr(runner.perturbations)
             runner.carry(self._basis)
             size = np.abs(np.diag(triangle))

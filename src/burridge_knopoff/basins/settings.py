@@ -1,4 +1,4 @@
-"""Maps of basins and of phases, and edge states: which states they label; fields and defaults are those of a study's config."""
+"""Maps of basins, initial phases and edge states; fields and defaults are those of a study's config."""
 
 from __future__ import annotations
 
