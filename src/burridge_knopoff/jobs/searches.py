@@ -159,6 +159,8 @@ def bifurcations(study: Study) -> list[Rule]:
                 "returns": "returns/{law}.nc",
                 "bifurcations": "bifurcations/{law}.nc",
             },
+            # Without bifurcations there are no crises.
+            if_there=True,
             params=lambda job: {
                 **keys(study, "attractors"),
                 "grid": config["a"],

@@ -185,7 +185,7 @@ def make_of_law(
 ) -> xarray.Dataset:
     """Return the edge states under one law; grid : values of a; the others as in a config."""
     found, refined = given.summary("attractors"), given.summary("refined").sel(law=given.law)
-    returns, bifurcations = given.summary("returns"), given.summary("bifurcations")
+    returns = given.summary("returns")
     known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
     limit = SearchSettings(**attractors).label_limit
     with shared_out(given.cores) as each:
@@ -194,6 +194,7 @@ def make_of_law(
     segments, numbers = followed_edges(states, float(found["a"].max()))
     crises = [
         (a, branch, _approach(known[0].model.at(near), refined, states, branch))
+        for bifurcations in given.summaries("bifurcations")
         for a, branch, near in _crises(bifurcations)
     ]
     return _of_law(known[0].model, states, numbers, segments, crises, found.sizes["attractor"])
