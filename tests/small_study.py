@@ -129,7 +129,8 @@ class SmallStudy:
 
 #: The stages that make summaries, besides proofs.
 SUMMARIES = (
-    *("points", "attractors", "basins", "bifurcations", "edges", "phases", "solvers", "catalogue", "two_blocks", "summary"),
+    *("points", "attractors", "basins", "bifurcations", "edges", "phases"),
+    *("solvers", "catalogue", "two_blocks", "summary"),
 )
 
 
