@@ -19,9 +19,9 @@ CATEGORY = "Attractors"
 INPUTS = ("attractors", "edges")
 CAPTION = """\
 The motion to which trajectories on the boundaries between basins settle, versus a for each law. Above: ⟨J⟩ of the
-attractors (grey) and of the edge states, in the colour of their kind of motion: circles where the boundary is smooth
-nearby, diamonds where the unstable manifold crosses it, so that it is fractal. Lines: saddle orbits, continued in a for
-as long as they have one unstable direction. Below: the mean time for which trajectories stay near an edge state.
+attractors (grey) and of the edge states, in the colour of their kind of motion. Diamonds: the unstable manifold crosses
+the boundary, so that it is fractal; circles: no displaced state shows a crossing. Lines: saddle orbits, continued in a
+for as long as they have one unstable direction. Below: the mean time for which trajectories stay near an edge state.
 """
 
 SADDLE_COLOR = "#555555"
@@ -94,7 +94,7 @@ def _handles(edges: xarray.Dataset) -> list[Line2D]:
         ),
         *(
             Line2D([], [], marker=MARKS[crossing][0], markersize=4.0, color="white", label=words, **style)
-            for crossing, words in ((0, "smooth boundary"), (1, "fractal boundary"))
+            for crossing, words in ((0, "no crossing seen"), (1, "crossing: fractal boundary"))
             if crossing in edges["has_crossing"].values
         ),
         Line2D([], [], color=SADDLE_COLOR, linewidth=0.6, label="saddle orbits"),

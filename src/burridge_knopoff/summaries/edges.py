@@ -287,7 +287,7 @@ def _dataset(names: Sequence[str], values: Mapping[str, np.ndarray], head: Mappi
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return a line for each edge state: between which branches, what it is, and whether the boundary is fractal."""
+    """Return a line for each edge state: between which branches, what it is, and whether the boundary is crossed."""
     lines = [f"{described}." for described in map(partial(_described, dataset), range(dataset.sizes["edge"]))]
     return "\n".join(lines or ["No edge state was found."]) + "\n"
 
@@ -299,10 +299,13 @@ def _described(dataset: xarray.Dataset, number: int) -> str:
     if np.isfinite(one["period"]):
         stops = " ".join(map(str, one["stops"]))
         motion += f", period {one['period']:.6g}, stops {stops}, multiplier {one['multiplier']:.4g}"
-    boundary = "fractal" if one["has_crossing"] else "smooth"
+    states = int(np.maximum(one["reached_count"], 0).sum())
+    boundary = (
+        "fractal boundary" if one["has_crossing"] else f"no crossing of the boundary by {states} displaced states"
+    )
     return (
         f"{one['law']}, a = {one['a']:g}, between branches {branches}: {motion}; lifetime {one['lifetime']:.4g}; "
-        f"the boundary is {boundary} there"
+        f"{boundary}"
     )
 
 
