@@ -54,7 +54,7 @@ _STATES = {"pushed": {"position": _EQUAL, "velocity": [0.1, 0.12, 0.09]}}
 #: What differs from it in the studies for which every figure and the report are drawn.
 STUDIES: dict[str, dict[str, Any]] = {
     "paper": {},
-    "one_law": {"laws": {"linearized": {}}},
+    "one_law": {"laws": {"linearized": {}}, "edges": {"a": [0.05], "duration": 800, "samples": 20}},
     "four_laws": {
         "laws": {
             "linearized": {},
@@ -63,6 +63,7 @@ STUDIES: dict[str, dict[str, Any]] = {
             "stribeck": {"sigma": 0.3},
         },
         "catalogue": {},
+        "edges": {"duration": 800, "samples": 20},
     },
     "ring": {
         "laws": {"slow": {"law": "exponential"}, "linearized": {}, "drop": {"law": "carlson_langer"}},
@@ -128,7 +129,8 @@ class SmallStudy:
 
 #: The stages that make summaries, besides proofs.
 SUMMARIES = (
-    *("points", "attractors", "basins", "bifurcations", "phases", "solvers", "catalogue", "two_blocks", "summary"),
+    *("points", "attractors", "basins", "bifurcations", "edges", "phases"),
+    *("solvers", "catalogue", "two_blocks", "summary"),
 )
 
 

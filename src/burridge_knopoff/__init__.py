@@ -14,7 +14,7 @@ Slip events: `record_events` and `Run.catalogue` make a `Catalogue`, the `SlipEv
 
 Attractors and basins: `find_attractors` by `SearchSettings` and `MotionSettings` returns each `Attractor` with its
 `SteadyMotion`, `MotionKind` and `Symmetry`; `label_states` tells which of them states reach, `basin_map` those of a
-plane.
+plane. `edge_state` follows the boundary between two basins, by `EdgeSettings`, to its `EdgeState`.
 
 Orbits: `limit_cycle`, `find_periodic_orbit` and `synchronized_orbit` return a `PeriodicOrbit` or raise `OrbitError`.
 Its stability: `multipliers` returns `Multipliers`.

@@ -2,6 +2,9 @@
 from .attractors.attractor import Attractor as Attractor
 from .attractors.labels import label_states as label_states
 from .attractors.settings import SearchSettings as SearchSettings
+from .basins.edge_state import EdgeState as EdgeState
+from .basins.edge_state import edge_state as edge_state
+from .basins.settings import EdgeSettings as EdgeSettings
 from .catalogue.events import SlipEvents as SlipEvents
 from .catalogue.slope import Slope as Slope
 from .catalogue.slope import fit_slope as fit_slope

@@ -37,7 +37,8 @@ def test_every_figure_is_drawn_and_names_all_laws(small, tmp_path: Path):
     # Longer chains and grids are no part of these; others need the chain of the paper, three blocks, several laws, or a
     # key of the config.
     of_grids = {figure.name for figure in figure_descriptions() if figure.inputs == ("grid",)}
-    assert missing <= {"chains", "phases", "orbits", "agreement", "two_blocks", "catalogue", "slip_map", *of_grids}
+    of_keys = {"catalogue", "slip_map", "edges"}
+    assert missing <= {"chains", "phases", "orbits", "agreement", "two_blocks", *of_keys, *of_grids}
     for name, figure in drawn.items():
         write_figure(figure, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").stat().st_size > 5_000, name

@@ -20,21 +20,21 @@ def jobs_of(**config):
     return Jobs(load_study({**CONFIG, **config}, "some.yaml"))
 
 
-ALL = jobs_of(catalogue={}, chains={"blocks": [2, 3]})
+ALL = jobs_of(catalogue={}, edges={}, chains={"blocks": [2, 3]})
 PLANE = {"study": "plane", "grid": {"a": [0.05], "v": [0.1, 0.2]}, "initial": STATES}
 
 
 @pytest.mark.parametrize(
     ("config", "missing"),
     [
-        ({}, {"catalogue"}),
-        ({"catalogue": {}}, set()),
-        ({"without": ["solvers", "claims"]}, {"solvers", "claims", "catalogue"}),
-        ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases", "catalogue"}),
-        ({"laws": {"linearized": {}}}, {"two_blocks", "catalogue"}),
-        ({"a": [0.31]}, {"basins", "phases", "catalogue"}),
-        ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof", "catalogue"}),
-        ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"two_blocks", "proof", "phases", "catalogue"}),
+        ({}, {"catalogue", "edges"}),
+        ({"catalogue": {}, "edges": {}}, set()),
+        ({"without": ["solvers", "claims"]}, {"solvers", "claims", "catalogue", "edges"}),
+        ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases", "catalogue", "edges"}),
+        ({"laws": {"linearized": {}}}, {"two_blocks", "catalogue", "edges"}),
+        ({"a": [0.31]}, {"basins", "phases", "catalogue", "edges"}),
+        ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof", "catalogue", "edges"}),
+        ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"two_blocks", "proof", "phases", "catalogue", "edges"}),
     ],
 )
 def test_the_stages_of_a_study(config, missing):
@@ -46,14 +46,14 @@ def test_what_is_left_out_has_no_values_of_a():
     """So that nobody who looks at the section alone takes it for wanted."""
     study = jobs_of(without=["attractors", "solvers"]).study
     assert (study.basin_maps, study.config["phases"]["a"], study.config["solvers"]["a"]) == ([], [], [])
-    assert study.left_out == ("attractors", "bifurcations", "basins", "phases", "solvers")
+    assert study.left_out == ("attractors", "bifurcations", "edges", "basins", "phases", "solvers")
 
 
 def test_stages_that_are_left_out_take_with_them_what_needs_their_results():
     """What `study.stages` says for configs is what the rules say."""
     for stage in STAGES:
         gone = {rule.stage for rule in ALL.there.values()} - {
-            rule.stage for rule in jobs_of(catalogue={}, without=[stage]).there.values()
+            rule.stage for rule in jobs_of(catalogue={}, edges={}, without=[stage]).there.values()
         }
         assert gone - {"chains"} == {stage, *(other for other, needed in STAGES.items() if needed == stage)}
 
@@ -147,7 +147,7 @@ CHANGES = [
 
 @pytest.mark.parametrize(("change", "rules"), CHANGES)
 def test_a_key_changes_what_depends_on_it_and_nothing_else(change, rules):
-    other = jobs_of(**{"catalogue": {}, "chains": {"blocks": [2, 3]}, **change})
+    other = jobs_of(**{"catalogue": {}, "edges": {}, "chains": {"blocks": [2, 3]}, **change})
     changed = {rule.name for name, (rule, _) in ALL.all_files.items() if ALL.expected(name) != other.expected(name)}
     after, more = set(), set(rules)
     while more:

@@ -9,11 +9,13 @@ import xarray
 import burridge_knopoff
 from burridge_knopoff import (
     Chain,
+    EdgeSettings,
     Following,
     InitialState,
     Model,
     SearchSettings,
     Symmetry,
+    find_attractors,
     follow,
     law_of,
     limit_cycle,
@@ -27,6 +29,8 @@ STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
 DROPPING = Model(Chain(2), law_of("carlson_langer", 1.0))
 REST = DROPPING.begin(InitialState("rest", (-0.5, -0.6), (0.0, 0.0)), "tested")
 QUICK = {"transient": 0, "window": 1, "batches": 2}
+EDGE_MODEL = Model(Chain(3), law_of("linearized", 0.08))
+EDGE_ATTRACTORS = find_attractors(EDGE_MODEL, starts=["plus"], samples=12, transient=500, window=500)[0]
 SEARCH = SearchSettings(samples=1, fraction_width=0.49, transient=100, window=100, time_limit=200)
 WRONG = (
     object(),
@@ -51,6 +55,14 @@ def correct_calls():
     return {
         "basin_map": {"law": "linearized", "a": 0.08, "initial": "minus", "pixels": 1, "samples": 1},
         "limit_cycle": {"model": MODEL, "state": STATE, "settling": 1000.0},
+        "edge_state": {
+            "model": EDGE_MODEL,
+            "state_a": EDGE_ATTRACTORS[0].motion.state(),
+            "state_b": EDGE_ATTRACTORS[1].motion.state(),
+            "attractors": EDGE_ATTRACTORS,
+            "settings": EdgeSettings(duration=3000, samples=20),
+            "time_limit": 20_000,
+        },
         "event_exponents": {"model": DROPPING, "start": REST, "end": 90.0, "begin": 10.0, "count": 1},
         "event_multipliers": {"model": DROPPING, "start": REST, "end": 10.3},
         "find_attractors": {"law": "linearized", "a": 0.08, "settings": SEARCH, "starts": ["plus"]},

@@ -32,9 +32,6 @@ BATCHES = 20
 # Cantor strips.
 _KEPT_OF_OLDER = 0.85
 
-# Age of a pair whose points, and those of the pairs that it is a part of, have never differed.
-_NEVER = len(SEPARATIONS)
-
 #: Takes points of the plane, shape (n, 2), and returns their labels, shape (n,): below 0 where undetermined.
 Label = Callable[[np.ndarray], np.ndarray]
 
@@ -61,6 +58,7 @@ class _Pairs:
     start, direction : first points and unit vectors to the second ones, shape (n, 2); labels : of both, shape (2, n)
     batch, weight : shape (n,)
     age : how many separations ago a pair that this one is a part of has differed, shape (n,)
+    never : age of a pair whose points, and those of the pairs that it is a part of, have never differed
     """
 
     start: np.ndarray
@@ -69,6 +67,7 @@ class _Pairs:
     batch: np.ndarray
     weight: np.ndarray
     age: np.ndarray
+    never: int
 
     @property
     def known(self) -> np.ndarray:
@@ -86,7 +85,7 @@ class _Pairs:
 
     def kept(self, size: int, generator: np.random.Generator) -> _Pairs:
         """Return about `size` pairs of each batch, the more of an age the younger it is, with the weight of all."""
-        age = np.where(self.different, 0, np.minimum(self.age + 1, _NEVER))
+        age = np.where(self.different, 0, np.minimum(self.age + 1, self.never))
         indices, weights = [], []
         for batch in range(BATCHES):
             ages = np.unique(age[self.batch == batch])
@@ -98,7 +97,7 @@ class _Pairs:
                 weights.append(weight)
         index = np.concatenate(indices)
         here = (self.start[index], self.direction[index], self.labels[:, index], self.batch[index])
-        return _Pairs(*here, np.concatenate(weights), age[index])
+        return _Pairs(*here, np.concatenate(weights), age[index], self.never)
 
     def divided(self, separation: float, label: Label) -> _Pairs:
         """Return all parts of the pairs, `separation` apart."""
@@ -112,11 +111,19 @@ class _Pairs:
             np.tile(self.batch, PARTS),
             np.tile(self.weight / PARTS, PARTS),
             np.tile(self.age, PARTS),
+            self.never,
         )
 
 
-def follow_pairs(label: Label, first: Sequence[float], last: Sequence[float], count: int, seed: int) -> PairCounts:
-    """Label pairs of points of a plane at each of SEPARATIONS.
+def follow_pairs(
+    label: Label,
+    first: Sequence[float],
+    last: Sequence[float],
+    count: int,
+    seed: int,
+    separations: Sequence[float] = SEPARATIONS,
+) -> PairCounts:
+    """Label pairs of points of a plane at each of several separations, each a third of the one before.
 
     first, last : ranges (low, high) of both coordinates; separations are parts of the width of the first one
     count : pairs that are kept at a separation, about; for each two points are labelled
@@ -134,16 +141,16 @@ def follow_pairs(label: Label, first: Sequence[float], last: Sequence[float], co
         labels[inside] = label(points[inside])
         return labels
 
-    longest = SEPARATIONS[0] * width
+    longest, never = separations[0] * width, len(separations)
     batch = np.repeat(np.arange(BATCHES), size)
     # Parts of a pair that begins outside may lie in the plane: without these there would be fewer near its edges.
     start = low - longest + (high - low + 2.0 * longest) * generator.random((len(batch), 2))
     angle = 2.0 * np.pi * generator.random(len(batch))
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
     ends = np.array([labels_of(start), labels_of(start + longest * direction)])
-    pairs = _Pairs(start, direction, ends, batch, np.ones(len(batch)), np.full(len(batch), _NEVER))
+    pairs = _Pairs(start, direction, ends, batch, np.ones(len(batch)), np.full(len(batch), never), never)
     found = []
-    for separation in (*SEPARATIONS[1:], 0.0):
+    for separation in (*separations[1:], 0.0):
         known, different = pairs.known, pairs.different
         found.append((pairs.weights(different), pairs.weights(known), different.sum(), known.sum()))
         if separation and len(batch):

@@ -1,4 +1,4 @@
-"""Which initial states maps of basins and of phases label; fields and defaults are those of a study's config."""
+"""Maps of basins, initial phases and edge states; fields and defaults are those of a study's config."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.ranges import Number, Several, Whole
 from burridge_knopoff.model.sampling import POSITION, POSITIONS, SAMPLES
+from burridge_knopoff.running.settings import TIME
 
 
 @settings
@@ -75,3 +76,33 @@ class PhaseSettings:
 
     def __post_init__(self) -> None:
         check_fields(self)
+
+
+@settings
+@dataclass(frozen=True)
+class EdgeSettings:
+    """How boundaries between basins are followed to edge states: the config's section `edges`, without the values of a.
+
+    Raises ValueError, one line, for anything out of range.
+
+    >>> from burridge_knopoff import EdgeSettings
+    >>> EdgeSettings(samples=100).duration
+    24000.0
+    """
+
+    duration: Annotated[
+        float, TIME, "longest time for which a boundary is followed; shorter if it leads to a periodic orbit"
+    ] = 24_000.0
+    samples: Annotated[
+        int,
+        Whole(20, 1_000_000),
+        "states displaced from an edge state to each side, from which its lifetime and the attractors reached follow",
+    ] = 500
+    seed: Annotated[int, SEED, "seed of these displacements"] = 1
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+#: The defaults of a study.
+EDGES = EdgeSettings()

@@ -125,7 +125,8 @@ def basins(study: Study) -> list[Rule]:
 
 
 def bifurcations(study: Study) -> list[Rule]:
-    """Bifurcations and crises of the branches of attractors, for each law, then merged."""
+    """Bifurcations and crises of the branches of attractors and the edge states that crises meet, for each law."""
+    config = study.config.get("edges", {"a": []})
     return [
         Rule(
             "bifurcations_of_law",
@@ -147,12 +148,52 @@ def bifurcations(study: Study) -> list[Rule]:
             work=len(study.grid),
         ),
         Rule(
+            "edges_of_law",
+            "Follow the boundaries between the basins of one friction law to edge states, and continue these in a.",
+            "edge states between the attractors of the {law} law",
+            ("edges/{law}.nc",),
+            "summaries.edges:make_of_law",
+            reads={
+                "attractors": "summary/attractors.nc",
+                "refined": "summary/refined.nc",
+                "returns": "returns/{law}.nc",
+                "bifurcations": "bifurcations/{law}.nc",
+            },
+            # Without bifurcations there are no crises.
+            if_there=True,
+            params=lambda job: {
+                **keys(study, "attractors"),
+                "grid": config["a"],
+                "edges": {key: value for key, value in config.items() if key != "a"},
+                "model": model_config(study, [job["law"]]),
+            },
+            each=of_laws(study),
+            stage="edges",
+            there=bool(config["a"]),
+            cores=0,
+            memory=350,
+            minutes=240,
+            work=len(config["a"]),
+        ),
+        Rule(
+            "edges",
+            "Merge the edge states of all friction laws.",
+            "edge states of all laws",
+            ("summary/edges.nc", "summary/edges.txt"),
+            "summaries.edges:make",
+            reads={"parts": "edges/{law}.nc"},
+            stage="edges",
+            shown={"summary/edges.txt": Shown("edge states in words", "Attractors", "edges_txt")},
+            group="summaries",
+        ),
+        Rule(
             "bifurcations",
             "Merge the bifurcations of all friction laws.",
             "bifurcations of all laws",
             ("summary/bifurcations.nc", "summary/bifurcations.txt"),
             "summaries.bifurcations:make",
-            reads={"parts": "bifurcations/{law}.nc"},
+            reads={"parts": "bifurcations/{law}.nc", "edges": "summary/edges.nc"},
+            if_there=True,
             stage="bifurcations",
             shown={"summary/bifurcations.txt": Shown("bifurcations in words", "Attractors", "bifurcations_txt")},
             group="summaries",

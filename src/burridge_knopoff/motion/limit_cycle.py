@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 import numpy as np
 
@@ -66,14 +66,31 @@ def orbit_of_motion(model: Model, state: ChainState, settling: float, window: fl
     if runner.run(settling + window) != Status.COMPLETED:
         raise OrbitError(f"a = {model.a!r}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
+    found = orbit_of_events(model, times, values, _stays)
+    if found is None:
+        raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found within {window:g}")
+    return found
+
+
+def orbit_of_events(
+    model: Model,
+    times: np.ndarray,
+    values: np.ndarray,
+    accepted: Callable[[PeriodicOrbit, float, float, float], bool],
+) -> PeriodicOrbit | None:
+    """Return the shortest periodic orbit on which a motion lies, by its events as the kernel keeps them; None if none.
+
+    accepted : takes an orbit, the distances of the first and of the last turn of the motion from it, and the one within
+        which the motion returned, all for v = 0.1 in the chain's own units, and returns whether the motion lies on it
+    """
     for start, time, symmetry, size in _returns(model, times, values):
         try:
             found = find_periodic_orbit(model, start, time, symmetry)
         except OrbitError:
             continue
-        if _stays(found, values, FARTHER * size):
+        if accepted(found, *_distances(found, values), size):
             return simplest(found, CLOSENESS[0])
-    raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found within {window:g}")
+    return None
 
 
 def _returns(
@@ -105,16 +122,18 @@ def _returns(
                 break
 
 
-def _stays(orbit: PeriodicOrbit, values: np.ndarray, reach: float) -> bool:
-    """Tell whether a motion, by its events, lies on an orbit: how far its first and its last turn are from it.
+def _stays(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:
+    """Return whether a motion stays on an orbit, or comes closer to it if the orbit attracts."""
+    return last <= (CLOSENESS[0] if multipliers(orbit).unstable else max(CLOSENESS[0], min(first, FARTHER * size)))
 
-    reach : for v = 0.1 in the chain's own units, as CLOSENESS is
-    """
+
+def _distances(orbit: PeriodicOrbit, values: np.ndarray) -> tuple[float, float]:
+    """Return how far the first and the last turn of a motion are from an orbit, by the events of the motion."""
     block = int(np.flatnonzero(orbit.stop_counts)[0]) + 1
     around, _ = flow(orbit.model, orbit.reference, orbit.period)
     own, seen = (_stops(events, block) / orbit.model.state_scale for events in (around.log.events.values(), values))
     first, last = (distance(turn, own, share=1.0) for turn in (seen[: len(own)], seen[-len(own) :]))
-    return last <= (CLOSENESS[0] if multipliers(orbit).unstable else max(CLOSENESS[0], min(first, reach)))
+    return first, last
 
 
 def _stops(values: np.ndarray, block: int) -> np.ndarray:

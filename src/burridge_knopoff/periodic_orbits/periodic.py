@@ -40,6 +40,9 @@ FIRST = 2
 # A larger correction, in units of v, for times in the chain's own unit, leads to another orbit, if to any.
 FARTHEST = 5.0
 
+# So does a return that takes this many times as long as the guess.
+LONGER = 2.0
+
 # A reference state closer than this, as a fraction of the longest time without events, to an event is moved to the
 # middle of that time.
 NEAR_EVENT = 0.2
@@ -184,7 +187,7 @@ def solve_return(
     own = units.state(model.blocks)
     phase = basis.T @ (rate(model, start) * units.time / own)
     count, unknowns = basis.shape[1], basis.shape[1] + (1 if constraint is None else 2)
-    first, last = start.vector(), np.inf
+    first, begun, last = start.vector(), time, np.inf
     state, blocks = first.copy(), model.blocks
     by_parameter: np.ndarray | None = None
     mapping = ReturnMap(model, symmetry)
@@ -225,7 +228,7 @@ def solve_return(
             break
         state = state + own * (basis @ step[:count])
         time += units.time * float(step[count])
-        if not time > 0.0:
+        if not 0.0 < time < LONGER * begun:
             break
         if constraint is not None:
             line = constraint.line

@@ -12,7 +12,7 @@ from dataclasses import replace
 from typing import Any
 
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.basins.settings import BasinSettings, PhaseSettings
+from burridge_knopoff.basins.settings import BasinSettings, EdgeSettings, PhaseSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.model.chain import Chain
@@ -132,6 +132,14 @@ PHASES = {
     ),
     **_part(PhaseSettings),
 }
+EDGES = {
+    "a": Field(
+        replace(VALUES, each=A, distinct=True),
+        "values of the grid at which the boundaries between basins are followed to edge states; by default all",
+        FOLLOWS,
+    ),
+    **_part(EdgeSettings),
+}
 CATALOGUE = {
     "a": Field(
         replace(VALUES, each=A, distinct=True),
@@ -212,6 +220,7 @@ CONFIG = Keys(
         "refine": _section(_part(Refine)),
         "basins": _section(BASINS),
         "phases": _section(PHASES),
+        "edges": _section(EDGES, FOLLOWS),
         "chains": _section(CHAINS),
         "catalogue": _section(CATALOGUE, FOLLOWS),
     }

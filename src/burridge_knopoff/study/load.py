@@ -87,6 +87,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
         settings_from(Sample, filled["chains"])
     rules.fill_values(filled, set(values), study.blocks, study.shown_a)
     rules.fill_catalogue(filled, values)
+    rules.fill_edges(filled, values)
     with rules.under("catalogue."):
         loading = settings_from(CatalogueSettings, filled.get("catalogue", {})).loading
         for law, name in product(study.laws, study.catalogue_a):

@@ -189,9 +189,20 @@ def fill_catalogue(config: dict[str, Any], grid: Collection[float]) -> None:
     for key, value in of_study.items():
         section.setdefault(key, value)
     OneOf(tuple(config["initial"])).form(section["initial"], "catalogue.initial")
+    _fill_grid(section, "catalogue", grid)
+
+
+def fill_edges(config: dict[str, Any], grid: Collection[float]) -> None:
+    """Check the values of a at which edge states are found, and fill in all of the grid, if they are."""
+    if "edges" in config:
+        _fill_grid(config["edges"], "edges", grid)
+
+
+def _fill_grid(section: dict[str, Any], name: str, grid: Collection[float]) -> None:
+    """Check that the values of a in a section are on the grid, and fill in all of the grid by default."""
     for a in section.setdefault("a", list(grid)):
         if a not in grid:
-            raise refusal("catalogue.a", a, "a value of the grid")
+            raise refusal(f"{name}.a", a, "a value of the grid")
     section["a"] = [a for a in grid if a in section["a"]]
 
 

@@ -4,6 +4,7 @@
 STAGES = {
     "attractors": "",
     "bifurcations": "attractors",
+    "edges": "attractors",
     "basins": "attractors",
     "phases": "attractors",
     "solvers": "",

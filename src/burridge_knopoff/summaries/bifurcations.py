@@ -28,6 +28,7 @@ from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.model import model_of
+from burridge_knopoff.summaries.edges import met_saddle
 
 PARTS = ("real", "imaginary")
 _AT, _ORBIT = ("bifurcation",), ("orbit",)
@@ -54,6 +55,7 @@ _BELOW, _ABOVE = (
 _TURNS = "whether the orbits on both sides of the bifurcation lie at a on one side of it"
 _LIFE = "lower end of the 95 % interval of the lifetime of chaos at grid_low or grid_high"
 _LONGER = "upper end of that interval; of the shorter life where both are chaotic"
+_SADDLE = "period of the saddle orbit on the basin boundary that the attractor meets at a crisis, NaN if none is known"
 _LARGEST = "Floquet multiplier of the largest modulus next to the bifurcation"
 #: Of an entry.
 BIFURCATIONS = {
@@ -105,6 +107,10 @@ BIFURCATIONS = {
     ),
     "lifetime_low": Column(_AT, "f8", _LIFE, value=lambda one: one.lifetime[0]),
     "lifetime_high": Column(_AT, "f8", _LONGER, value=lambda one: one.lifetime[1]),
+    # Known from the edge states.
+    "saddle_period": Column(_AT, "f8", _SADDLE),
+    "saddle_stops": Column((*_AT, "block"), "i4", "stops of each block in that period"),
+    "saddle_distance": Column(_AT, "f8", "how close the attractor comes to this orbit before the crisis"),
 }
 _SEGMENT = "number of the segment of orbits that were followed together, in this order"
 _STABLE = "whether all its multipliers but that of the flow lie inside the unit circle"
@@ -148,6 +154,11 @@ def make_of_law(given: Given, model: Mapping[str, Any], a: float) -> xarray.Data
 def make(given: Given) -> tuple[xarray.Dataset, str]:
     """Return the bifurcations under all laws, and the same in words."""
     dataset = merge(given.summaries("parts"))
+    for edges in given.summaries("edges"):
+        for k in np.flatnonzero(dataset["kind"].values == BifurcationKind.CRISIS):
+            saddle = met_saddle(edges, str(dataset["law"].values[k]), float(dataset["a"].values[k]))
+            for name, value in saddle.items():
+                dataset[f"saddle_{name}"].values[k] = value
     return dataset, digest(dataset)
 
 
@@ -206,6 +217,9 @@ def digest(dataset: xarray.Dataset) -> str:
         parts = [f"{one['law']}, a = {one['a']:.10g} +/- {one['a_error']:.2g}: {kind}", _happening(one)]
         if np.isfinite(one["lifetime_low"]):
             parts.append(f"chaos lasts for {one['lifetime_low']:g} to {one['lifetime_high']:g} in the mean")
+        if np.isfinite(one["saddle_period"]):
+            saddle = f"period {one['saddle_period']:.6g}, stops {_listed(one['saddle_stops'])}"
+            parts.append(f"the attractor meets the saddle orbit of {saddle} on its basin boundary")
         if np.isfinite(one["period"]):
             beyond = f", beyond {_listed(one['stops_beyond'])}" if (one["stops_beyond"] >= 0).all() else ""
             parts.append(f"period {one['period']:.6g}, stops {_listed(one['stops'])}{beyond}")

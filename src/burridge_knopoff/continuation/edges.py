@@ -1,0 +1,199 @@
+"""Edge states along a: those between the attractors at each a, their continuation, and those that crises meet."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import combinations, pairwise
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from burridge_knopoff.attractors.stored_returns import KnownAttractors
+from burridge_knopoff.basins.edge_state import EdgeState, edge_state
+from burridge_knopoff.basins.settings import EdgeSettings
+from burridge_knopoff.continuation.followed_orbits import FOLLOWING, LEAST_A, SAME_PERIOD
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.motion.section_returns import visit
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
+from burridge_knopoff.periodic_orbits.following import follow
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+from burridge_knopoff.periodic_orbits.return_map import mirror
+
+# Difference of ⟨J⟩, for v = 0.1, up to which two edge states of one kind between the same branches are one.
+SAME_MEAN = 1e-3
+
+# Time for which chaos next to a crisis is followed, to see how close it comes to a saddle.
+APPROACH = 100_000.0
+
+
+@dataclass(frozen=True, eq=False)
+class Edge:
+    """An edge state at one a.
+
+    reached : number of displaced states that reach each attractor of the table at this a, shape (2, slots)
+    branch, side : of the attractor that most of them reach on either side of the boundary, shape (2,)
+    """
+
+    state: EdgeState
+    reached: np.ndarray
+    branch: np.ndarray
+    side: np.ndarray
+
+    @property
+    def a(self) -> float:
+        """Friction parameter."""
+        return self.state.model.a
+
+    def is_same(self, other: Edge) -> bool:
+        """Return whether two edge states at one a are the same set, or mirror images of each other."""
+        mine, its = self.state.orbit, other.state.orbit
+        if mine is not None and its is not None:
+            return _is_similar(mine, its, its.period)
+        means = self.state.mean_distance - other.state.mean_distance
+        return (
+            mine is its
+            and self.state.kind == other.state.kind
+            and sorted(self.branch) == sorted(other.branch)
+            and abs(means) <= SAME_MEAN * self.state.model.scale
+        )
+
+
+@dataclass(frozen=True)
+class Approach:
+    """How close a chaotic attractor comes to a saddle orbit at the last a before a crisis.
+
+    edge : number of the edge state whose orbit is closest; −1 for none
+    distance : least difference between returns of the attractor and states of the orbit
+    size : largest extent of the returns
+    """
+
+    edge: int = -1
+    distance: float = np.nan
+    size: float = np.nan
+
+
+def edges_at(known: KnownAttractors, settings: EdgeSettings, time_limit: float) -> list[Edge]:
+    """Return the edge states between all pairs of branches, and of mirror images, at one a.
+
+    Chaos that ends is no attractor. A boundary that is lost is left out, with a line that says why.
+    """
+    lasting = [k for k, one in enumerate(known.attractors) if one.motion.kind != MotionKind.TRANSIENT_CHAOS]
+    places = {index: k for k, index in enumerate(lasting)}
+    attractors = [replace(one, partner=places[one.partner]) for one in (known.attractors[k] for k in lasting)]
+    branch, side = known.branch[lasting], known.side[lasting]
+    found: list[Edge] = []
+    for first, second in combinations(range(len(attractors)), 2):
+        # Of two mirror pairs one of each is enough.
+        if side[first] < 0 or (side[second] < 0 and branch[first] != branch[second]):
+            continue
+        one, other = (attractors[k].motion.state() for k in (first, second))
+        try:
+            state = edge_state(known.model, one, other, attractors, settings, time_limit=time_limit)
+        except ValueError as error:
+            print(f"{known.model.law.name}, branches {branch[first]} and {branch[second]}: {error}")
+            continue
+        reached = np.zeros((2, len(known.attractors)), dtype=int)
+        reached[:, lasting] = state.reached
+        largest = state.reached.argmax(axis=1)
+        edge = Edge(state, reached, branch[largest], side[largest])
+        if not any(edge.is_same(other) for other in found):
+            found.append(edge)
+    return found
+
+
+def followed_edges(edges: Sequence[Edge], largest: float) -> tuple[list[list[BranchOrbit]], list[int]]:
+    """Follow the saddle orbits in a, up to the largest a, for as long as they have exactly one unstable direction.
+
+    Return the segments, each from one end to the other, and the number of the segment of each edge state, −1 for none.
+    An orbit that has been followed is not followed again.
+    """
+    segments: list[list[BranchOrbit]] = []
+    numbers = []
+    for edge in edges:
+        orbit = edge.state.orbit
+        if orbit is None:
+            numbers.append(-1)
+            continue
+        number = next((k for k, segment in enumerate(segments) if _holds(segment, orbit)), len(segments))
+        if number == len(segments):
+            try:
+                segments.append(_segment(orbit, largest))
+            except OrbitError as error:
+                print(f"{edge.state.model.law.name}: {error}")
+                number = -1
+        numbers.append(number)
+    return segments, numbers
+
+
+def _segment(orbit: PeriodicOrbit, largest: float) -> list[BranchOrbit]:
+    def enough(points: list[BranchOrbit]) -> bool:
+        return points[-1].multipliers.unstable != 1
+
+    down, up = (follow(orbit, (LEAST_A, largest), FOLLOWING, upward=upward, enough=enough) for upward in (False, True))
+    segment = [*down[:0:-1], *up]
+    for point in segment:
+        _ = point.orbit.mean_distance
+        point.orbit.forget_events()
+    return segment
+
+
+def _holds(segment: Sequence[BranchOrbit], orbit: PeriodicOrbit) -> bool:
+    """Return whether an orbit lies on a segment, between two neighbours of which one has the same stops."""
+    for one, other in pairwise(segment):
+        low, high = sorted((one.orbit.a, other.orbit.a))
+        if low <= orbit.a <= high:
+            share = (orbit.a - one.orbit.a) / (other.orbit.a - one.orbit.a) if high > low else 0.0
+            period = (1.0 - share) * one.orbit.period + share * other.orbit.period
+            if any(_is_similar(orbit, point.orbit, period) for point in (one, other)):
+                return True
+    return False
+
+
+def _is_similar(orbit: PeriodicOrbit, other: PeriodicOrbit, period: float) -> bool:
+    """Return whether an orbit has the stops of another one, or of its mirror image, and this period."""
+    same_stops = other.stop_counts in (orbit.stop_counts, orbit.stop_counts[::-1])
+    return same_stops and orbit.symmetry == other.symmetry and abs(orbit.period - period) <= SAME_PERIOD * period
+
+
+def approach(model: Model, state: ChainState, edges: Sequence[Edge], branch: int) -> Approach:
+    """Return how close chaos comes to the saddle orbits on the boundaries of its basin.
+
+    model, state : next to a crisis, and a state on the attractor; branch : its branch
+    edges : at the nearest a at which the attractor exists
+    """
+    found = visit(model, state, 0.0, APPROACH)
+    if found is None:
+        return Approach()
+    size = float(np.ptp(found.returns, axis=0).max())
+    tree = cKDTree(found.returns)
+    nearest = Approach(size=size)
+    for number, edge in enumerate(edges):
+        if branch not in edge.branch or edge.state.orbit is None:
+            continue
+        try:
+            orbit = KnownOrbits(edge.state.orbit).at(model.a)
+        except OrbitError:
+            continue
+        distance = min(
+            (float(tree.query(one, p=np.inf)[0].min()) for one in _stops(orbit, found.block)), default=np.inf
+        )
+        if not distance >= nearest.distance:
+            nearest = Approach(number, distance, size)
+    return nearest
+
+
+def _stops(orbit: PeriodicOrbit, block: int) -> Iterator[np.ndarray]:
+    """Yield the states of an orbit at the stops of a block, and those of its mirror image, each if there are any."""
+    values = flow(orbit.model, orbit.reference, orbit.period)[0].log.events.values()
+    blocks = orbit.model.blocks
+    stops = values[:, 1] == 0
+    own = values[stops & (values[:, 0] == block), 2:]
+    if len(own):
+        yield own
+    image = values[stops & (values[:, 0] == blocks + 1 - block), 2:]
+    if orbit.model.chain.is_mirror_symmetric and len(image):
+        yield image[:, mirror(blocks)]

@@ -1,0 +1,330 @@
+"""The edge states of a study: on the boundaries between basins at each a, followed in a, and met by crises."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.attractors.settings import SearchSettings
+from burridge_knopoff.attractors.stored_returns import known_attractors
+from burridge_knopoff.basins.settings import EdgeSettings
+from burridge_knopoff.continuation.edges import Approach, Edge, approach, edges_at, followed_edges
+from burridge_knopoff.dataset.columns import Column, filled
+from burridge_knopoff.dataset.given import Given
+from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.motion.kind import CHAOS, MotionKind
+from burridge_knopoff.motion.section_returns import state_of
+from burridge_knopoff.motion.settings import EXPONENTS
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.study.model import model_of
+
+TITLE = "Edge states on the boundaries between basins"
+
+_EDGE, _ORBIT, _CRISIS = ("edge",), ("orbit",), ("crisis",)
+_BANKS = (*_EDGE, "bank")
+_LIFE = "mean time for which trajectories stay near the edge state"
+
+
+@dataclass(frozen=True, eq=False)
+class _Row:
+    """An edge state with the number of the segment of orbits that it lies on, −1 for none."""
+
+    edge: Edge
+    segment: int
+
+    @property
+    def stops(self) -> tuple[int, ...] | None:
+        orbit = self.edge.state.orbit
+        return None if orbit is None else orbit.stop_counts
+
+
+#: Of an edge state.
+EDGES = {
+    "a": Column(_EDGE, "f8", "friction parameter a", value=lambda one: one.edge.a),
+    "kind": Column(
+        _EDGE, "i1", "kind of motion on the edge state", flag("i1", MotionKind), value=lambda one: one.edge.state.kind
+    ),
+    "symmetry": Column(
+        _EDGE,
+        "i1",
+        "mirror symmetry of the edge state",
+        flag("i1", Symmetry),
+        value=lambda one: one.edge.state.symmetry,
+    ),
+    "has_crossing": Column(
+        _EDGE,
+        "i1",
+        "whether states displaced to one side reach an attractor of the other: the boundary is fractal",
+        YES_OR_NO,
+        value=lambda one: one.edge.state.has_crossing,
+    ),
+    "branch": Column(
+        _BANKS,
+        "i2",
+        "branch of attractors that most states displaced to this side reach",
+        value=lambda one: one.edge.branch,
+    ),
+    "side": Column(
+        _BANKS,
+        "i1",
+        "side of that branch: 1 and -1 for mirror images, 0 for its own mirror image",
+        nothing=0,
+        value=lambda one: one.edge.side,
+    ),
+    "reached_count": Column(
+        (*_BANKS, "attractor"),
+        "i4",
+        "displaced states that reach this attractor, by its number in attractors.nc; -1 where there is none",
+        value=lambda one: one.edge.reached,
+    ),
+    "period": Column(
+        _EDGE,
+        "f8",
+        "period of the saddle orbit; NaN for other edge states",
+        value=lambda one: one.edge.state.orbit and one.edge.state.orbit.period,
+    ),
+    "stops": Column((*_EDGE, "block"), "i4", "stops of each block in that period", value=lambda one: one.stops),
+    "multiplier": Column(
+        _EDGE,
+        "f8",
+        "modulus of the only Floquet multiplier of the saddle orbit outside the unit circle",
+        value=lambda one: abs(one.edge.state.multiplier[0]) if one.edge.state.orbit else None,
+    ),
+    "lyapunov_exponent": Column(
+        (*_EDGE, "exponent"),
+        "f8",
+        "Lyapunov exponents along the boundary, the largest first",
+        value=lambda one: one.edge.state.exponent,
+    ),
+    "lyapunov_error": Column(
+        (*_EDGE, "exponent"), "f8", "their standard errors", value=lambda one: one.edge.state.exponent_error
+    ),
+    "lifetime": Column(_EDGE, "f8", _LIFE, value=lambda one: one.edge.state.lifetime),
+    "lifetime_error": Column(_EDGE, "f8", "its standard error", value=lambda one: one.edge.state.lifetime_error),
+    "mean_distance": Column(_EDGE, "f8", "<J> along the edge state", value=lambda one: one.edge.state.mean_distance),
+    "duration": Column(
+        _EDGE, "f8", "time for which the boundary was followed", value=lambda one: one.edge.state.duration
+    ),
+    "segment": Column(
+        _EDGE, "i4", "number of the segment of orbits on which it lies, -1 for none", value=lambda one: one.segment
+    ),
+}
+#: Of an orbit of a segment.
+ORBITS = {
+    "orbit_segment": Column(
+        _ORBIT, "i4", "number of the segment of saddle orbits that were followed together", value=lambda one: one[0]
+    ),
+    "orbit_a": Column(_ORBIT, "f8", "friction parameter a of the orbit", value=lambda one: one[1].orbit.a),
+    "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda one: one[1].orbit.period),
+    "orbit_mean_distance": Column(
+        _ORBIT, "f8", "<J> over a period of the orbit", value=lambda one: one[1].orbit.mean_distance
+    ),
+    "orbit_multiplier": Column(
+        _ORBIT,
+        "f8",
+        "largest modulus of its Floquet multipliers",
+        value=lambda one: abs(one[1].multipliers.whole[0]),
+    ),
+    "orbit_unstable_count": Column(
+        _ORBIT,
+        "i4",
+        "multipliers outside the unit circle: 1 but at the ends",
+        value=lambda one: one[1].multipliers.unstable,
+    ),
+}
+#: Of a crisis, by its a and branch in bifurcations.nc.
+CRISES = {
+    "crisis_a": Column(_CRISIS, "f8", "friction parameter a of the crisis", value=lambda one: one[0]),
+    "crisis_branch": Column(_CRISIS, "i2", "branch of the chaotic attractor", value=lambda one: one[1]),
+    "crisis_edge": Column(
+        _CRISIS,
+        "i4",
+        "number of the edge state that this attractor comes closest to, along the dimension edge; -1 for none",
+        value=lambda one: one[2].edge,
+    ),
+    "crisis_distance": Column(
+        _CRISIS,
+        "f8",
+        "how close the attractor comes to its orbit at the value of refined.nc next to the crisis",
+        value=lambda one: one[2].distance,
+    ),
+    "crisis_size": Column(
+        _CRISIS, "f8", "extent of the section returns of the attractor", value=lambda one: one[2].size
+    ),
+}
+LAWS = {"law": _EDGE, "orbit_law": _ORBIT, "crisis_law": _CRISIS}
+VARIABLES: dict[str, Variable] = {
+    **{name: Variable(dimension, "U", "friction law") for name, dimension in LAWS.items()},
+    **EDGES,
+    **ORBITS,
+    **CRISES,
+}
+#: Variables that count edges or segments of one law from 0, and the dimension that they count.
+_NUMBERS = {"segment": "orbit_segment", "orbit_segment": "orbit_segment", "crisis_edge": "a"}
+
+#: A crisis meets a saddle if the attractor comes this close to it, as a share of the size of the attractor.
+MET = 0.02
+
+
+def make_of_law(
+    given: Given,
+    model: Mapping[str, Any],
+    grid: Sequence[float],
+    attractors: Mapping[str, Any],
+    edges: Mapping[str, Any],
+) -> xarray.Dataset:
+    """Return the edge states under one law; grid : values of a; the others as in a config."""
+    found, refined = given.summary("attractors"), given.summary("refined").sel(law=given.law)
+    returns = given.summary("returns")
+    known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
+    limit = SearchSettings(**attractors).label_limit
+    with shared_out(given.cores) as each:
+        at = each("edge states", partial(edges_at, settings=EdgeSettings(**edges), time_limit=limit), known)
+    states = [edge for one in at for edge in one]
+    segments, numbers = followed_edges(states, float(found["a"].max()))
+    crises = [
+        (a, branch, _approach(known[0].model.at(near), refined, states, branch))
+        for bifurcations in given.summaries("bifurcations")
+        for a, branch, near in _crises(bifurcations)
+    ]
+    return _of_law(known[0].model, states, numbers, segments, crises, found.sizes["attractor"])
+
+
+def make(given: Given) -> tuple[xarray.Dataset, str]:
+    """Return the edge states under all laws, and the same in words."""
+    dataset = merge(given.summaries("parts"))
+    return dataset, digest(dataset)
+
+
+def _crises(bifurcations: xarray.Dataset) -> list[tuple[float, int, float]]:
+    """Return a and branch of each crisis, and the nearest a of refined.nc at which the branch is chaotic."""
+    names = ("a", "from_branch", "to_branch", "motion_before", "motion_after", "grid_low", "grid_high")
+    found = []
+    for k in np.flatnonzero(bifurcations["kind"].values == BifurcationKind.CRISIS):
+        a, below, above, before, after, low, high = (bifurcations[name].values[k].item() for name in names)
+        if before in CHAOS and below >= 0:
+            found.append((a, below, low))
+        elif after in CHAOS and above >= 0:
+            found.append((a, above, high))
+    return found
+
+
+def _approach(model: Model, refined: xarray.Dataset, states: Sequence[Edge], branch: int) -> Approach:
+    """Return how close the chaos of a branch comes to the saddles at the nearest a with edge states."""
+    place = int(np.flatnonzero(refined["a"].values == model.a)[0])
+    slots = np.flatnonzero(refined["branch"].values[place] == branch)
+    near = [edge for edge in states if branch in edge.branch]
+    if not len(slots) or not near:
+        return Approach()
+    nearest = min((edge.a for edge in near), key=lambda a: abs(a - model.a))
+    position, velocity = (refined[name].values[place, slots[0]] for name in ("position", "velocity"))
+    state = state_of(np.concatenate([position - model.sliding_offset, velocity]))
+    chosen = [k for k, edge in enumerate(states) if edge.a == nearest]
+    found = approach(model, state, [states[k] for k in chosen], branch)
+    return Approach(chosen[found.edge] if found.edge >= 0 else -1, found.distance, found.size)
+
+
+def _of_law(
+    model: Model,
+    states: Sequence[Edge],
+    numbers: Sequence[int],
+    segments: Sequence[Sequence[BranchOrbit]],
+    crises: Sequence[tuple[float, int, Approach]],
+    slots: int,
+) -> xarray.Dataset:
+    """Return the edge states of one law."""
+    points = [(number, point) for number, segment in enumerate(segments) for point in segment]
+    sizes = {
+        "edge": len(states),
+        "orbit": len(points),
+        "crisis": len(crises),
+        "bank": 2,
+        "block": model.blocks,
+        "exponent": EXPONENTS,
+        "attractor": slots,
+    }
+    rows = [_Row(edge, number) for edge, number in zip(states, numbers, strict=True)]
+    values: dict[str, np.ndarray] = {}
+    for columns, things in ((EDGES, rows), (ORBITS, points), (CRISES, crises)):
+        values |= filled(columns, {(k,): one for k, one in enumerate(things)}, sizes)
+    values |= {name: np.repeat(model.law.name, sizes[dimension]) for name, (dimension,) in LAWS.items()}
+    return _dataset([model.law.name], values, {"v": model.v, "contact": model.contact})
+
+
+def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
+    """Return the edge states of several laws in one Dataset, one law after the other."""
+    values = {name: np.concatenate([part[name].values for part in parts]) for name in VARIABLES}
+    for name, counted in _NUMBERS.items():
+        shifted, before = [], 0
+        for part in parts:
+            own = part[name].values
+            shifted.append(np.where(own >= 0, own + before, own))
+            kept = part[counted].values
+            before += len(kept) if counted == "a" else int(kept.max(initial=-1)) + 1
+        values[name] = np.concatenate(shifted)
+    head = {name: parts[0].attrs[name] for name in ("v", "contact")}
+    return _dataset([part.attrs["laws"] for part in parts], values, head)
+
+
+def _dataset(names: Sequence[str], values: Mapping[str, np.ndarray], head: Mapping[str, Any]) -> xarray.Dataset:
+    blocks = values["stops"].shape[1]
+    coordinates = {
+        "block": ("block", np.arange(1, blocks + 1, dtype="i4"), {"long_name": "block number", "units": "1"}),
+        "bank": ("bank", np.array(["first", "second"], dtype=object), {"long_name": "side of the boundary"}),
+    }
+    about = {"laws": " ".join(names), **head, "history": "snakemake, from attractors.nc and the equations of motion"}
+    return summary(TITLE, VARIABLES, values, coordinates, about, module=__name__)
+
+
+def digest(dataset: xarray.Dataset) -> str:
+    """Return a line for each edge state: between which branches, what it is, and whether the boundary is crossed."""
+    lines = [f"{described}." for described in map(partial(_described, dataset), range(dataset.sizes["edge"]))]
+    return "\n".join(lines or ["No edge state was found."]) + "\n"
+
+
+def _described(dataset: xarray.Dataset, number: int) -> str:
+    one = {name: dataset[name].values[number] for name in ("law", *EDGES)}
+    branches = " and ".join(_named(*pair) for pair in zip(one["branch"], one["side"], strict=True))
+    motion = f"{Symmetry(one['symmetry']).name.lower()}, {MotionKind(one['kind']).words}"
+    if np.isfinite(one["period"]):
+        stops = " ".join(map(str, one["stops"]))
+        motion += f", period {one['period']:.6g}, stops {stops}, multiplier {one['multiplier']:.4g}"
+    states = int(np.maximum(one["reached_count"], 0).sum())
+    boundary = (
+        "fractal boundary" if one["has_crossing"] else f"no crossing of the boundary by {states} displaced states"
+    )
+    return (
+        f"{one['law']}, a = {one['a']:g}, between branches {branches}: {motion}; lifetime {one['lifetime']:.4g}; "
+        f"{boundary}"
+    )
+
+
+def _named(branch: int, side: int) -> str:
+    return f"{branch}{'+' if side > 0 else '-' if side < 0 else ''}"
+
+
+def met_saddle(edges: xarray.Dataset, law: str, a: float) -> dict[str, Any]:
+    """Return period, stops and distance of the saddle orbit that the attractor of a crisis meets; {} if none is known.
+
+    edges : as `merge` returns them; a : of the crisis in bifurcations.nc
+    """
+    for k in np.flatnonzero((edges["crisis_law"].values == law) & (edges["crisis_a"].values == a)):
+        number = int(edges["crisis_edge"].values[k])
+        distance, size = (float(edges[f"crisis_{name}"].values[k]) for name in ("distance", "size"))
+        if number >= 0 and distance <= MET * size:
+            return {
+                "period": edges["period"].values[number],
+                "stops": edges["stops"].values[number],
+                "distance": distance,
+            }
+    return {}

@@ -1,0 +1,206 @@
+"""Edge states: known saddle orbits, their multipliers from another integrator, lifetimes, and crossings."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import (
+    Chain,
+    EdgeSettings,
+    Following,
+    InitialState,
+    Model,
+    MotionKind,
+    Symmetry,
+    edge_state,
+    find_attractors,
+    follow,
+    label_states,
+    law_of,
+    limit_cycle,
+    synchronized_orbit,
+)
+from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
+from tests.scipy_flow import model_events
+
+FEW = EdgeSettings(samples=100)
+
+
+def coexisting(law, a, samples=24, starts=()):
+    """Return a model and its attractors, as far as sampled and given states reach them."""
+    model = Model(Chain(3), law_of(law, a))
+    return model, find_attractors(model, samples=samples, transient=1000, window=1000, starts=starts)[0]
+
+
+def is_periodic(attractor):
+    return attractor.motion.kind == MotionKind.PERIODIC and attractor.motion.period < 100.0
+
+
+def stops_of_first(orbit):
+    """Return the states at the stops of the first block in a period, shape (stops, 6), in an order of their own."""
+    values = flow(orbit.model, orbit.reference, orbit.period)[0].log.events.values()
+    states = values[(values[:, 0] == 1) & (values[:, 1] == 0), 2:]
+    return states[np.argsort(states[:, 0])]
+
+
+def check_same(orbit, other):
+    """Require two forms of one orbit, whatever their reference states."""
+    assert orbit.stop_counts == other.stop_counts
+    assert orbit.period == pytest.approx(other.period, rel=0, abs=1e-9)
+    assert stops_of_first(orbit) == pytest.approx(stops_of_first(other), rel=0, abs=1e-9)
+
+
+@pytest.fixture(scope="module")
+def between_mirror_images():
+    """Return the edge state between the two sides of a mirror pair, next to the loss of synchrony, and the pair."""
+    model, attractors = coexisting("nonlinear", 0.1)
+    first, second = (item for item in attractors if item.symmetry == Symmetry.ASYMMETRIC)
+    states = first.motion.state(), second.motion.state()
+    return edge_state(model, *states, attractors, FEW, time_limit=20_000), attractors
+
+
+def test_between_mirror_images_lies_the_synchronized_orbit(between_mirror_images):
+    found, _ = between_mirror_images
+    assert (found.kind, found.symmetry) == (MotionKind.SYNCHRONIZED, Symmetry.SYNCHRONIZED)
+    check_same(found.orbit, synchronized_orbit(found.model))
+    assert found.mean_distance == pytest.approx(0.0, abs=1e-12)
+
+
+def test_its_multipliers_are_those_of_another_integrator(between_mirror_images):
+    """The others are 0: perturbations that a stop takes away, and 1, that of the flow."""
+    found, _ = between_mirror_images
+    orbit, step = found.orbit, 1e-5
+    start = orbit.reference
+    columns = []
+    for k in range(6):
+        ends = []
+        for side in (step, -step):
+            vector = start.vector()
+            vector[k] += side
+            moved = replace(start, position=vector[:3], velocity=vector[3:])
+            ends.append(model_events(found.model, moved, orbit.period)[1])
+        columns.append((ends[0] - ends[1]) / (2.0 * step))
+    expected = np.sort(np.abs(np.linalg.eigvals(np.array(columns).T)))[::-1]
+    assert not start.stuck.any()
+    assert expected[1] == pytest.approx(1.0, abs=1e-6)
+    own = np.abs(found.multiplier)
+    assert own[:2] == pytest.approx(np.delete(expected, 1)[:2], abs=1e-6)
+    assert (own > 1.0).sum() == 1
+
+
+def test_exponents_along_the_boundary_are_those_of_the_orbit(between_mirror_images):
+    found, _ = between_mirror_images
+    rates = np.log(np.abs(found.multiplier[:2])) / found.orbit.period
+    assert found.exponent == pytest.approx([rates[0], 0.0, rates[1]], abs=0.01)
+    assert found.exponent[:2] == pytest.approx([rates[0], 0.0], abs=4.0 * found.exponent_error[:2].max())
+    assert found.lifetime == pytest.approx(1.0 / rates[0])
+
+
+def test_each_side_leads_to_one_of_the_two(between_mirror_images):
+    found, attractors = between_mirror_images
+    assert sorted(map(len, found.sides)) == [1, 1]
+    (first,), (second,) = found.sides
+    assert attractors[first].partner == second
+    assert found.reached.sum(axis=1).tolist() == [100, 100]
+    assert not found.has_crossing
+
+
+def test_states_exactly_between_mirror_images_reach_neither(between_mirror_images):
+    """The mean of a state and its mirror image stays symmetric, and reaches nothing: it is passed over."""
+    found, attractors = between_mirror_images
+    state = next(item for item in attractors if item.symmetry == Symmetry.ASYMMETRIC).motion.state()
+    other = edge_state(found.model, state, state.mirrored(), attractors, FEW, time_limit=5000)
+    check_same(other.orbit, found.orbit)
+
+
+@pytest.mark.parametrize(
+    ("a", "start", "stops", "saddle_stops", "crosses"),
+    [
+        # Stable and unstable orbits are born together at a grazing.
+        (0.1535, None, (8, 8, 5), (8, 8, 4), True),
+        (0.23, InitialState("near", (-0.707, -0.645, -0.74), (0.0, 0.04, 0.043)), (1, 2, 1), (1, 1, 1), False),
+    ],
+)
+def test_the_saddle_is_the_orbit_with_which_the_attractor_is_born(a, start, stops, saddle_stops, crosses):
+    """Continued downward, the stable orbit turns back and is a saddle from there on."""
+    model, attractors = coexisting("linearized", a, 60, [start] if start else [])
+    orbits = {k: limit_cycle(model, item.motion.state()) for k, item in enumerate(attractors) if is_periodic(item)}
+    index = next(k for k, orbit in orbits.items() if orbit.stop_counts == stops)
+    branch = follow(orbits[index], (0.15, a), Following(largest_step=2e-3, most_orbits=400), upward=False)
+    assert (branch[0].multipliers.unstable, branch[-1].multipliers.unstable) == (0, 1)
+    # The last orbit lies beyond a.
+    saddle = KnownOrbits(branch[-2].orbit).at(a)
+    assert saddle.stop_counts == saddle_stops
+    other = next(k for k, item in enumerate(attractors) if k != index and item.partner == k)
+    found = edge_state(model, *(attractors[k].motion.state() for k in (index, other)), attractors, FEW)
+    check_same(found.orbit, saddle)
+    assert (found.kind, found.symmetry) == (MotionKind.PERIODIC, Symmetry.ASYMMETRIC)
+    assert found.has_crossing == crosses
+
+
+def test_a_third_basin_between_two():
+    """The segment between the torus and the antiphase motion passes through the basin of synchrony."""
+    model, attractors = coexisting("linearized", 0.05, 60)
+    third, first, second = sorted(range(3), key=lambda k: attractors[k].motion.mean_distance)
+    found = edge_state(model, *(attractors[k].motion.state() for k in (first, second)), attractors, FEW)
+    assert found.sides == ({first}, {third})
+    assert (found.kind, found.orbit) == (MotionKind.QUASIPERIODIC, None)
+    assert found.exponent[0] > 10.0 * np.abs(found.exponent[1:]).max()
+    assert found.lifetime == pytest.approx(1.0 / found.exponent[0])
+
+
+@pytest.fixture(scope="module")
+def chaotic():
+    """Return the edge state between the torus and chaos at a = 0.2, and the attractors."""
+    model, attractors = coexisting("linearized", 0.2)
+    by_mean = sorted(attractors, key=lambda item: item.motion.mean_distance)
+    settings = EdgeSettings(samples=1000)
+    return edge_state(model, *(item.motion.state() for item in by_mean), attractors, settings), attractors
+
+
+def test_a_chaotic_saddle(chaotic):
+    found, _ = chaotic
+    assert (found.kind, found.symmetry, found.orbit) == (MotionKind.CHAOTIC, Symmetry.SYMMETRIC, None)
+    across, within, flow = found.exponent
+    assert across > 10.0 * within
+    assert within > 4.0 * found.exponent_error[1]
+    assert flow == pytest.approx(0.0, abs=1e-3)
+    # Much faster motion across the boundary than within it: the boundary is smooth.
+    assert not found.has_crossing
+
+
+def test_its_lifetime_is_that_of_states_around_it(chaotic):
+    """Uniformly in all directions within 1e-4: in proportion to exp(−τ/lifetime) they are left after τ."""
+    found, attractors = chaotic
+    generator = np.random.default_rng(3)
+    returns = found.returns[generator.integers(len(found.returns), size=3000)]
+    returns[:, :3] += generator.uniform(-1e-4, 1e-4, (3000, 3))
+    position, velocity = returns[:, :3] + found.model.sliding_offset, np.abs(returns[:, 3:])
+    labels, times = label_states(found.model, attractors, position, velocity, time_limit=20_000)
+    for side in (0, 1):
+        left = np.sort(times[labels == side])
+        tail = left[len(left) // 2 :] - left[len(left) // 2]
+        error = np.hypot(tail.mean() / np.sqrt(len(tail)), found.lifetime_error)
+        assert found.lifetime == pytest.approx(tail.mean(), abs=3.0 * error)
+    assert found.lifetime == pytest.approx(1.0 / found.exponent[0], rel=0.15)
+
+
+def test_labels_that_a_later_one_contradicts_are_made_with_smaller_radii():
+    model, attractors = coexisting("linearized", 0.08)
+    states = [item.motion.state() for item in attractors[:2]]
+    exact = edge_state(model, *states, attractors, FEW)
+    wide = [replace(item, radius=0.06) for item in attractors]
+    check_same(edge_state(model, *states, wide, FEW, time_limit=5000).orbit, exact.orbit)
+
+
+def test_states_that_have_no_boundary_between_them():
+    model, attractors = coexisting("linearized", 0.08)
+    first, second = (item.motion.state() for item in attractors[:2])
+    with pytest.raises(ValueError, match="state_b: got a state that reaches attractor 0, as state_a does"):
+        edge_state(model, first, first, attractors)
+    with pytest.raises(ValueError, match="state_b: got a state that reaches no attractor by 20000, expected one"):
+        edge_state(model, first, second, attractors[:1], time_limit=20_000)
+    with pytest.raises(OrbitError, match="by which no state between the basins reaches an attractor"):
+        edge_state(model, first, second, attractors, time_limit=400)

@@ -1,0 +1,139 @@
+"""Edge states along a: between which branches they lie, how far their orbits go, and which of them a crisis meets."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from burridge_knopoff import (
+    BifurcationKind,
+    Chain,
+    EdgeSettings,
+    Model,
+    MotionKind,
+    Symmetry,
+    find_attractors,
+    law_of,
+)
+from burridge_knopoff.attractors.stored_returns import KnownAttractors
+from burridge_knopoff.continuation.edges import approach, edges_at, followed_edges
+from burridge_knopoff.dataset.given import Given
+from burridge_knopoff.dataset.summary import open_summary, write_summary
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
+from burridge_knopoff.summaries import bifurcations, edges
+
+SETTINGS = EdgeSettings(duration=6000, samples=40)
+#: Where synchrony is lost, linearized.
+LOST = 0.0869729047
+
+
+def known_at(a, branches, samples=40):
+    """Return the attractors at an a, in the order of ⟨J⟩; branches : the number of each, by that order."""
+    model = Model(Chain(3), law_of("linearized", a))
+    found, _ = find_attractors(model, samples=samples, transient=1000, window=1000)
+    order = sorted(range(len(found)), key=lambda k: (round(found[k].motion.mean_distance, 6), k))
+    place = {k: number for number, k in enumerate(order)}
+    attractors = [replace(found[k], partner=place[found[k].partner]) for k in order]
+    side = [int(np.sign(one.partner - k)) for k, one in enumerate(attractors)]
+    return KnownAttractors(model, attractors, np.array(branches), np.array(side))
+
+
+@pytest.fixture(scope="module")
+def known():
+    return known_at(0.1, [3, 3, 1, 2])
+
+
+@pytest.fixture(scope="module")
+def found(known):
+    return edges_at(known, SETTINGS, 20_000)
+
+
+def test_an_edge_state_between_each_two_branches(found):
+    between = {tuple(sorted(zip(edge.branch.tolist(), edge.side.tolist(), strict=True))): edge.state for edge in found}
+    pair = between[(3, -1), (3, 1)]
+    assert (pair.kind, pair.orbit.stop_counts) == (MotionKind.SYNCHRONIZED, (1, 1, 1))
+    (two,) = [edge.state for edge in found if set(edge.branch) == {1, 2}]
+    assert two.orbit.stop_counts == (10, 0, 10)
+    # The same set is found from several pairs of attractors, and listed once.
+    assert len({(edge.state.kind, round(edge.state.mean_distance, 3)) for edge in found}) == len(found)
+    for edge in found:
+        assert (edge.reached.sum(axis=1) == 40).all()
+
+
+def test_chaos_that_ends_is_no_attractor(known):
+    ending = replace(known.attractors[3].motion, kind=MotionKind.TRANSIENT_CHAOS)
+    fewer = replace(known, attractors=[*known.attractors[:3], replace(known.attractors[3], motion=ending)])
+    assert not any(2 in edge.branch for edge in edges_at(fewer, SETTINGS, 20_000))
+
+
+def test_saddle_orbits_are_followed_to_where_their_stability_changes(known, found):
+    segments, numbers = followed_edges(found, 0.12)
+    at = next(k for k, edge in enumerate(found) if edge.state.symmetry == Symmetry.SYNCHRONIZED)
+    segment = segments[numbers[at]]
+    a = [point.orbit.a for point in segment]
+    assert [point.multipliers.unstable for point in segment] == [0] + [1] * (len(segment) - 1)
+    assert a[0] < LOST < a[1]
+    assert a[-1] >= 0.12
+    # An orbit of the same branch is not followed again; the torus has none.
+    other = replace(found[at], state=replace(found[at].state, orbit=KnownOrbits(found[at].state.orbit).at(0.11)))
+    again, same = followed_edges([found[at], other], 0.12)
+    assert (len(again), same) == (1, [0, 0])
+    assert [number < 0 for number in numbers] == [edge.state.orbit is None for edge in found]
+
+
+@pytest.fixture(scope="module")
+def merging():
+    """Return edge states of branch 3 where its two chaotic mirror images are about to merge, and one of its states."""
+    known = known_at(0.175, [3, 3, 1], samples=20)
+    return known, edges_at(known, SETTINGS, 20_000)
+
+
+def test_mirror_images_merge_where_both_meet_the_synchronized_orbit(merging):
+    known, found = merging
+    state = known.attractors[0].motion.state()
+    far, near = (approach(known.model.at(a), state, found, 3) for a in (0.175, 0.1772))
+    for one in (far, near):
+        assert found[one.edge].state.symmetry == Symmetry.SYNCHRONIZED
+        assert 0.05 < one.size < 0.1
+    assert near.distance < 0.02 * near.size < far.distance
+    assert approach(known.model, state, found, 7).edge == -1
+
+
+def test_the_crisis_names_the_saddle(merging, tmp_path: Path):
+    """In bifurcations.nc and in words; edges of another law come first, so that numbers are shifted."""
+    known, found = merging
+    segments, numbers = followed_edges(found, 0.18)
+    near = approach(known.model.at(0.1772), known.attractors[0].motion.state(), found, 3)
+    one = edges._of_law(known.model, found, numbers, segments, [(0.1773, 3, near)], 3)
+    other = Model(Chain(3), law_of("nonlinear", 0.175))
+    first = edges._of_law(other, found[:1], numbers[:1], segments, [], 3)
+    whole = edges.merge([first, one])
+    assert whole["crisis_edge"].values.tolist() == [1 + near.edge]
+    assert whole["segment"].values.tolist() == [numbers[0], *(n + len(segments) if n >= 0 else -1 for n in numbers)]
+    write_summary(whole, tmp_path / "edges.nc")
+    whole = open_summary(tmp_path / "edges.nc")
+    assert edges.digest(whole).count("\n") == 1 + len(found)
+    met = edges.met_saddle(whole, "linearized", 0.1773)
+    assert met["stops"].tolist() == [1, 1, 1]
+    assert met["distance"] == near.distance
+    assert edges.met_saddle(whole, "nonlinear", 0.1773) == {}
+
+    values = {
+        name: np.full(
+            [1] if len(item.dimensions) == 1 else [1, 3 if item.dimensions[1] == "block" else 2],
+            item.missing,
+            item.dtype,
+        )
+        for name, item in bifurcations.VARIABLES.items()
+    }
+    values |= {"law": np.array(["linearized"]), "a": np.array([0.1773]), "kind": np.array([BifurcationKind.CRISIS])}
+    values |= {"change": np.array([0]), "motion_before": np.array([3]), "motion_after": np.array([3])}
+    block = xr.Variable("block", [1, 2, 3])
+    part = bifurcations._dataset(["linearized"], values, block, {"v": 0.1, "contact": "one_sided"})
+    write_summary(part, tmp_path / "linearized.nc")
+    given = Given(tmp_path, {"parts": [tmp_path / "linearized.nc"], "edges": [tmp_path / "edges.nc"]})
+    dataset, text = bifurcations.make(given)
+    assert dataset["saddle_stops"].values.tolist() == [[1, 1, 1]]
+    assert "the attractor meets the saddle orbit of period 5.85325, stops 1 1 1 on its basin boundary" in text
