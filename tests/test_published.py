@@ -1,4 +1,4 @@
-"""Pages that recompute what others published print what they say and draw what they show, in the sections of seconds."""
+"""Pages on what others published print what they say and draw what they show, in the sections that take seconds."""
 
 import numpy as np
 import pytest
