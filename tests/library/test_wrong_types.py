@@ -72,6 +72,7 @@ def correct_calls():
             "return_time": orbit.return_time,
             "symmetry": Symmetry.ASYMMETRIC,
         },
+        "block_frequencies": {"model": MODEL, "state": STATE, "duration": 10.0},
         "fit_slope": {"magnitude": np.linspace(0.0, 1.0, 20), "low": 0.0, "high": 1.0},
         "follow": {"orbit": orbit, "interval": (0.0864, 0.0866), "settings": Following(), "parameter": "a"},
         "follow_bifurcation": {

@@ -37,12 +37,12 @@ def words_of(model: Model) -> str:
     return f"{' | '.join(names_of(model))}, or one block or spring, as mass[1]"
 
 
-def single_of(name: str) -> tuple[str, int] | None:
+def single_of(name: Any) -> tuple[str, int] | None:
     """Return the key of the chain and the number, from 1, of the spring or block that a name such as `mass[3]` means.
 
     None for any other name.
     """
-    found = _SINGLE.fullmatch(name)
+    found = _SINGLE.fullmatch(name) if isinstance(name, str) else None
     return (found[1], int(found[2])) if found else None
 
 
