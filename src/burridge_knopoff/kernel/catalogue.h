@@ -5,8 +5,8 @@
 // the driver there may be no moment at which all blocks rest, so connection decides, not rest.
 //
 // The energy that an event releases is the work of all springs on its blocks, ∫ Σ s_i U_i' dτ, which friction and
-// dashpots dissipate: the blocks rest before and after. Over a piece in which the same blocks slip this is exactly, with
-// y = U − U(0),
+// dashpots dissipate: the blocks rest before and after. Over a piece in which the same blocks slip this is exactly,
+// with y = U − U(0),
 //
 //     Σ ½ (s_i(0) + s_i(T) − D_i v T) y_i(T) + D_i v (T y_i(T) − ∫ y_i dτ).
 //

@@ -1,10 +1,10 @@
 // Taylor series of the motion between two events, with a step that leaves no remainder.
 //
-// Coefficients follow from x' = U' − v and m U'' = F − θ Φ by recursion, F the force of springs and dashpots, those of Φ from the operations of the law. The
-// step comes from the last two coefficients (Jorba and Zou): the last terms that are kept stay below TRUNCATION, and
-// those that are left out are smaller still. For the linearized law that is safe by a bound: all derivatives of the
-// motion obey the same linear equation, whose energy, with pairs of successive derivatives of all blocks in it, grows
-// at most like exp(2aτ) within a step.
+// Coefficients follow from x' = U' − v and m U'' = F − θ Φ by recursion, F the force of springs and dashpots, those of
+// Φ from the operations of the law. The step comes from the last two coefficients (Jorba and Zou): the last terms that
+// are kept stay below TRUNCATION, and those that are left out are smaller still. For the linearized law that is safe by
+// a bound: all derivatives of the motion obey the same linear equation, whose energy, with pairs of successive
+// derivatives of all blocks in it, grows at most like exp(2aτ) within a step.
 //
 // Reference: A. Jorba and M. Zou, "A software package for the numerical integration of ODEs by means of high-order
 // Taylor methods", Exp. Math. 14 (2005) 99-117.

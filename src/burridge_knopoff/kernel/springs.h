@@ -6,8 +6,8 @@
 //
 //     s_i = f_i − (K x)_i,    f_i = θ_i Φ(v),
 //
-// with K_ii the sum of all springs at block i and, off the diagonal, minus the springs to its neighbours. Dashpots beside
-// the springs add
+// with K_ii the sum of all springs at block i and, off the diagonal, minus the springs to its neighbours. Dashpots
+// beside the springs add
 //
 //     Σ_j c_ij (U_j' − U_i') + c_i (v − U_i') = c_i v − (C U')_i.
 //

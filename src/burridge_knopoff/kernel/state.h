@@ -57,7 +57,8 @@ struct State {
         touching.lane(k) = from.touching.lane(other);
     }
 
-    // The force of springs and dashpots on slipping and stuck blocks, and its rate. relative, slope : U_i' − v and U_i''
+    // The force of springs and dashpots on slipping and stuck blocks, and its rate. relative, slope : U_i' − v and
+    // U_i''
     BK_INLINE vec force(int c) const {
         vec made = layout.sliding_force[c] + (layout.pull(position.at(), c) - layout.diagonal[c] * position[c]);
         if (layout.damped) made += layout.damping_load[c] + damping(velocity.at(), c);
@@ -70,9 +71,7 @@ struct State {
     }
     vec force_rate(int c) const { return force_rate(relative.at(), slope.at(), c); }
     // −(C u)_i for velocities u, or their rates.
-    BK_INLINE vec damping(const vec *u, int c) const {
-        return layout.drag(u, c) - layout.damping_diagonal[c] * u[c];
-    }
+    BK_INLINE vec damping(const vec *u, int c) const { return layout.drag(u, c) - layout.damping_diagonal[c] * u[c]; }
 
     // Take what the rates of forces depend on.
     void measure() {
@@ -101,8 +100,8 @@ struct State {
         return select((touching[c] > 0.0), slip[c] * start_acceleration(c), made);
     }
 
-    // Where blocks change at this very instant: they are past their threshold, or within COINCIDENCE of it. To be called
-    // after `measure`.
+    // Where blocks change at this very instant: they are past their threshold, or within COINCIDENCE of it. To be
+    // called after `measure`.
     mask pending(int c) const {
         const auto coincidence = layout.coincidence;
         const vec zero{}, s = force(c);
@@ -139,7 +138,8 @@ struct State {
         const vec zero{}, own = slip[c] * velocity[c];
         const vec size = largest(layout.threshold[c], layout.diagonal[c] * magnitude(position[c]));
         const vec balance = force(c) - slip[c] * (layout.threshold[c] * friction(own));
-        return (slip[c] != zero) & (largest(magnitude(balance), layout.damping_diagonal[c] * own) <= AT_THRESHOLD * size);
+        return (slip[c] != zero) &
+               (largest(magnitude(balance), layout.damping_diagonal[c] * own) <= AT_THRESHOLD * size);
     }
     // The largest |U_i'| of all blocks.
     vec fastest() const {

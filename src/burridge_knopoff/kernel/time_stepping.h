@@ -184,7 +184,8 @@ class TimeStepping {
             auto damped = [&](const double *u) {
                 return model.springs.damping_load[i] * (model.v - 2.0 * u[i]) - u[i] * model.springs.drag(u, i);
             };
-            if (model.springs.damped) event->damped += 0.5 * h * (damped(old_u.data()) + damped(&state.velocity.lane(0)));
+            if (model.springs.damped)
+                event->damped += 0.5 * h * (damped(old_u.data()) + damped(&state.velocity.lane(0)));
         }
     }
 

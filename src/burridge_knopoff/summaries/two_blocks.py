@@ -121,7 +121,7 @@ def train(chain: Chain, blocks: int) -> Chain:
     first = 1.0 if isinstance(chain.pulling, str) else chain.pulling
     pulling = (first, *(blocks - 1) * (0.0,))
     given = {name: getattr(chain, name) for name in ("threshold", "mass", "damping", "pulling_damping")}
-    return Chain(blocks, chain.coupling, pulling, **given)
+    return Chain(blocks, chain.coupling, pulling, **given)  # type: ignore[arg-type]
 
 
 def run_settings(**settings: Any) -> Settings:
