@@ -68,6 +68,12 @@ def test_between_mirror_images_lies_the_synchronized_orbit(between_mirror_images
     assert found.mean_distance == pytest.approx(0.0, abs=1e-12)
 
 
+def test_attractors_are_searched_for_if_none_are_given(between_mirror_images):
+    found, attractors = between_mirror_images
+    states = [item.motion.state() for item in attractors if item.symmetry == Symmetry.ASYMMETRIC]
+    check_same(edge_state(found.model, *states, settings=FEW, time_limit=20_000).orbit, found.orbit)
+
+
 def test_its_multipliers_are_those_of_another_integrator(between_mirror_images):
     """The others are 0: perturbations that a stop takes away, and 1, that of the flow."""
     found, _ = between_mirror_images

@@ -20,6 +20,7 @@ import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED, label, label_together
+from burridge_knopoff.attractors.search import find_attractors
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.basins.edge_tracking import FAR, EdgeTrack, LabelError
 from burridge_knopoff.basins.settings import EDGES, EdgeSettings
@@ -41,8 +42,8 @@ from burridge_knopoff.values import each_instance_of, instance_of
 # A boundary is followed for this part of the longest time, and for twice as long, until an orbit is found.
 FIRST_PART = 8
 
-# A trajectory on the boundary lies on an orbit if its last turn is as close to it as the two sides are to each other,
-# within this factor, or this many times closer than its first turn.
+# A trajectory on the boundary lies on an orbit if its last return is as close to it as the two sides are to each other,
+# within this factor, or this many times closer than its first return.
 CLOSER = 10.0
 
 #: Displacements from an edge state, for v = 0.1 in the chain's own units: far beyond the distance of the two sides,
@@ -129,15 +130,15 @@ def edge_state(
     model: Model,
     state_a: ChainState,
     state_b: ChainState,
-    attractors: Sequence[Attractor],
+    attractors: Sequence[Attractor] | None = None,
     settings: EdgeSettings = EDGES,
     *,
     time_limit: float = SEARCH.label_limit,
 ) -> EdgeState:
     """Return the edge state on the boundary between the basins of two states, by edge tracking.
 
-    model, attractors : as `find_attractors` takes and returns them
     state_a, state_b : states that reach different attractors
+    attractors : those of the model, as `find_attractors` returns them; by default it is called
     settings : how long the boundary is followed, and how many displaced states are labelled
     time_limit : by which a state has to reach an attractor; between basins it takes longer than elsewhere
 
@@ -163,6 +164,7 @@ def edge_state(
     instance_of(model, Model, "model")
     for state in (state_a, state_b):
         check_state(model, state)
+    attractors = find_attractors(model)[0] if attractors is None else attractors
     attractors = each_instance_of(attractors, Attractor, "attractors")
     instance_of(settings, EdgeSettings, "settings")
     time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
