@@ -10,7 +10,7 @@ pytestmark = pytest.mark.slow
 
 SHORT = {
     "published.md": {"Huang and Turcotte: two unequal blocks", "De Sousa Vieira: chaos of equal blocks"},
-    "continuum.md": {"The size of the blocks, and dashpots that make it irrelevant"},
+    "continuum.md": {"The size of the blocks, and dashpots that remove most of its effect"},
 }
 
 

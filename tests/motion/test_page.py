@@ -6,7 +6,7 @@ from tests.pages import outputs
 
 pytestmark = pytest.mark.slow
 
-SHORT = {"Numbers of single blocks and springs", "Synchrony: a tongue that ends at grazings"}
+SHORT = {"Parameters of single blocks and springs", "Synchrony: a tongue that ends at grazings"}
 
 
 def test_short_sections(repository):

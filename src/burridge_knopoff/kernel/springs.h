@@ -28,7 +28,7 @@ struct Springs {
     std::vector<int64_t> start;
     std::vector<int> neighbour;
     std::vector<double> strength;
-    // Dashpots: c_ij beside each spring, C_ii = Σ_j c_ij + c_i, and c_i v.
+    // Dashpots: c_ij of each spring, C_ii = Σ_j c_ij + c_i, and c_i v.
     std::vector<double> damping, damping_diagonal, damping_load;
     bool damped;
     // Neighbours are the blocks before and after, in this order; in a ring the first and the last are neighbours too.

@@ -107,15 +107,16 @@ class Chain(Unchanging):
         str | None,
         SpringsFile(),
         "file of the springs between blocks, instead of a row: lines `block block strength`, blocks numbered from 1; a "
-        "fourth column is the dashpot beside each spring",
+        "fourth column is the dashpot in parallel with each spring",
     ] = None
     damping: Annotated[
         float | Sequence[float],
         _DAMPING,
-        "dashpots beside the springs between neighbours: one number for all, or one a spring of a row or a ring",
+        "dashpots in parallel with the springs between neighbours: one number for all, or one for each spring of a row "
+        "or a ring",
     ] = 0.0
     pulling_damping: Annotated[
-        float | Sequence[float], _DAMPING, "dashpots to the driver: one number for all, or one a block"
+        float | Sequence[float], _DAMPING, "dashpots to the driver: one number for all, or one for each block"
     ] = 0.0
 
     def __post_init__(self) -> None:

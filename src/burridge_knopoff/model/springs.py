@@ -104,7 +104,7 @@ def has_digest(springs: str) -> bool:
 
 @lru_cache(maxsize=4)
 def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return the springs of a file: the blocks (0 …) that each one joins, its strength and the dashpot beside it.
+    """Return the springs of a file: the blocks (0 …) that each one joins, its strength and its dashpot.
 
     springs : name of the file and digest, as `SpringsFile` returns it
 
