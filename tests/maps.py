@@ -37,7 +37,7 @@ class MapModel:
     def begin(self, state, start="moving"):
         return ChainState(np.array(state.position), np.full(1, 0.1), np.zeros(1, dtype=bool))
 
-    def starts_stuck(self, position, start):
+    def starts_stuck(self, position, velocity, start):
         return np.zeros(position.shape, dtype=bool)
 
     def orbit(self, x, steps):

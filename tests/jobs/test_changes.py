@@ -132,7 +132,7 @@ RESHAPED = [
 def test_every_key_is_there():
     """A key that is added to the config needs a row here, or a test of its own."""
     known = {key.split(".")[0] for key in (*(key for keys, _ in KEYS for key in keys), *(key for key, *_ in RESHAPED))}
-    elsewhere = {"study", "initial", "solver", "without", "grid", "catalogue"}
+    elsewhere = {"study", "initial", "solver", "without", "grid", "catalogue", "edges"}
     assert known | elsewhere == set(CONFIG.fields)
 
 

@@ -111,6 +111,19 @@ def test_runs_of_no_length_change_nothing(groups):
             assert np.array_equal(np.concatenate(parts, axis=axis), expected)
 
 
+def test_a_run_may_be_divided_within_its_first_piece():
+    """Where no side of the section is known yet."""
+    model = Model(Chain(3, 1.78, 1.0), law_of("linearized", 0.3), 0.056)
+    for seed in range(130):
+        ends, middle = np.random.default_rng(seed).uniform(-1.2, -0.9, 2)
+        position = np.array([ends, middle, ends]) - model.sliding_offset
+        start = ChainState(position, np.zeros(3), np.ones(3, dtype=bool))
+        crossings = followed(model, start, 5.0, None, "steady")[1][1]
+        first, before = followed(model, start, 0.484, None, "steady")
+        after = followed(model, first.final(), 5.0, None, "steady")[1][1]
+        assert np.array_equal(np.concatenate([before[1], after]), crossings)
+
+
 WAYS = ("whole", "groups", "exponents", "catalogue", "any")
 
 

@@ -127,7 +127,7 @@ def test_friction_pulls_a_block_forward_that_slips_backward(law):
         later.append(runner.after(BACKWARD, count * step).vector())
     first = (-3.0 * later[0] + 4.0 * later[1] - later[2]) / (2.0 * step)
     assert rate(model, BACKWARD) == pytest.approx(first, abs=1e-6)
-    derivatives = [_derivatives(model, state[None, :3], state[None, 3:]) for state in later[:2]]
+    derivatives = [_derivatives(model, state[None, :3], state[None, 3:], BACKWARD.stuck[None]) for state in later[:2]]
     assert derivatives[0][2][0, :2] == pytest.approx(first[3:5], abs=1e-6)
     for value, slope in ((0, 1), (2, 3)):
         change = (derivatives[1][value] - derivatives[0][value])[0, :2] / step

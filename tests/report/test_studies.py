@@ -63,7 +63,7 @@ def test_a_study_of_curves_alone(small_studies, tmp_path):
     study = load_study({**SMALL, **STUDIES["one_law"], "without": ["attractors", "claims"]}, "small.yaml")
     html = rendered(study, small.found, None, STORED[:5], tmp_path)
     text = Page(html).whole_text
-    assert "Left out by the config attractors, bifurcations, basins, phases, claims" in text
+    assert "Left out by the config attractors, bifurcations, edges, basins, phases, claims" in text
     assert "Attractors were not looked for" in text
     assert "No statement of the paper was judged." in text
     assert not re.search(r'href="summary/(attractors|basins|claims)', html)

@@ -65,7 +65,8 @@ def test_every_figure_and_text_has_its_category_and_caption(report, finished, re
     shown = " ".join(re.sub(r"<[^>]+>", "", html.unescape(" ".join(captions))).split())
     written = {path.stem: path.read_text() for path in (repository / "workflow" / "report").glob("*.rst")}
     unused = {name for name, text in written.items() if " ".join(text.split()[:6]) not in shown}
-    assert unused == {"figure", "workflow"}
+    # The stage of edge states is off.
+    assert unused == {"figure", "workflow", "edges_txt"}
 
 
 def test_every_caption_is_sound(repository):

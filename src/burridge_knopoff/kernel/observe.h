@@ -27,6 +27,8 @@ struct Observer {
     size_t batch = 0, next_distance = 0, next_trajectory = 0;
     Record crossings;
     int side = 0;
+    // Since when a run that this one continues has looked for crossings.
+    double section_from = UNKNOWN;
     double highest_speed[2] = {NOTHING, NOTHING}, lowest_force[2] = {-NOTHING, -NOTHING};
     Distance distance;
 
@@ -94,7 +96,7 @@ struct Observer {
     // rate(t) : W' = Σ (U_i' − v)
     template <class Rate>
     void cross(Polynomial &w, double crossing, const Clock &start, double from, double to, double reach, Rate &&rate) {
-        const double until_window = start.until(transient());
+        const double until_window = start.until(std::min(transient(), section_from));
         if (side != 0 && crossing != EventSearch<Blocks>::UNCERTAIN) {
             if (crossing >= from && crossing >= 0.0) turn(crossing, start, rate);
             return;

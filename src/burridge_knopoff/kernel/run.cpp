@@ -5,6 +5,7 @@ namespace bk {
 void Run::restart(double time) {
     now = load = {time, 0.0};
     observer.begin = time;
+    observer.section_from = NEVER;
     steps = 0;
     since_event = 0.0;
     log.restart(time);
@@ -32,7 +33,10 @@ void Run::resume(const Mark &mark, double time) {
     since_event = mark.since_event;
     if (catalogue && mark.catalogue) catalogue->resume(*mark.catalogue);
     // A section that is observed from now on is crossed from the side that the run was on.
-    if (observer.transient() <= time) observer.side = mark.side;
+    if (observer.transient() <= time) {
+        observer.side = mark.side;
+        observer.section_from = mark.section_from;
+    }
     settled = true;
     std::vector<std::vector<int>> members;
     for (int i = 0; i < blocks; i++) {
@@ -247,6 +251,7 @@ void Run::remember() {
     marked.since_event = since_event;
     if (catalogue) marked.catalogue = catalogue->open();
     marked.side = observer.side;
+    marked.section_from = std::min(observer.transient(), observer.section_from);
     marked.local = local;
     if (modes) {
         marked.origin = modes->origin;

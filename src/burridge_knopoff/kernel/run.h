@@ -42,14 +42,16 @@ struct Mark {
     // Slip events that had not ended.
     std::optional<Catalogue::Open> catalogue;
     double since_event = 0.0;
+    // The side of the section at the start of the piece, 0 if it was not known, and since when it was looked for.
     int side = 0;
+    double section_from = 0.0;
     // Whether the chain moved in groups.
     bool local = false;
 
     template <class A>
     void archive(A &values) {
         values(block, group, begins, sliding_force, drift, now, load, origin, origin_velocity, catalogue, since_event,
-               side, local);
+               side, section_from, local);
     }
 };
 

@@ -39,6 +39,7 @@ def point_lines(result: Result) -> list[str]:
 def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     attributes = point.attrs
     given = {key: attributes[name] for key in CHAIN_OPTIONS if key != "ends" and (name := f"chain_{key}") in attributes}
+    given = {key: value for key, value in given.items() if "damping" not in key or np.any(value)}
     chain = ", ".join(f"{key} {_text(value)}" for key, value in given.items())
     yield "chain", f"{point.sizes['block']} blocks, {attributes['chain_ends']}: {chain}"
     numbers = [
