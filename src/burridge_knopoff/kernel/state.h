@@ -31,9 +31,8 @@ struct State {
     explicit State(L &layout) : layout(layout) { widen(); }
 
     void widen() {
-        for (auto *row : {&position, &velocity, &acceleration, &age, &slip, &touching, &relative})
+        for (auto *row : {&position, &velocity, &acceleration, &age, &slip, &touching, &relative, &slope})
             row->reserve(layout.columns);
-        if (layout.damped) slope.reserve(layout.columns);
     }
 
     // Set one block, in lane k of all lanes: a stuck one has velocity 0.
