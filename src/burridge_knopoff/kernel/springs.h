@@ -7,7 +7,7 @@
 //     s_i = f_i − (K x)_i,    f_i = θ_i Φ(v),
 //
 // with K_ii the sum of all springs at block i and, off the diagonal, minus the springs to its neighbours. Dashpots
-// beside the springs add
+// in parallel with the springs add
 //
 //     Σ_j c_ij (U_j' − U_i') + c_i (v − U_i') = c_i v − (C U')_i.
 //
@@ -90,16 +90,15 @@ struct Springs {
     }
 
     // −(K x)_i for displacements x, or their rates. The neighbours are added first, as in Blocks and Trajectories.
-    double pull(const double *x, int i) const {
-        double total = 0.0;
-        for (int64_t k = start[i]; k < start[i + 1]; k++) total += strength[k] * x[neighbour[k]];
-        return total - diagonal[i] * x[i];
-    }
+    double pull(const double *x, int i) const { return pull(strength, diagonal, x, i); }
     // −(C u)_i for velocities u, or their rates.
-    double drag(const double *u, int i) const {
+    double drag(const double *u, int i) const { return pull(damping, damping_diagonal, u, i); }
+
+  private:
+    double pull(const std::vector<double> &joined, const std::vector<double> &own, const double *x, int i) const {
         double total = 0.0;
-        for (int64_t k = start[i]; k < start[i + 1]; k++) total += damping[k] * u[neighbour[k]];
-        return total - damping_diagonal[i] * u[i];
+        for (int64_t k = start[i]; k < start[i + 1]; k++) total += joined[k] * x[neighbour[k]];
+        return total - own[i] * x[i];
     }
 };
 

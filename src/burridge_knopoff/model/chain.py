@@ -350,16 +350,18 @@ class Chain(Unchanging):
     @property
     def highest_frequency(self) -> float:
         """Upper bound on the angular frequencies of slipping blocks: Gershgorin's, on the eigenvalues of M⁻¹K."""
-        bound = self.diagonal.copy()
-        np.add.at(bound, self.neighbours.block, self.neighbours.strength)
-        return math.sqrt(float((bound / self.masses).max()))
+        return math.sqrt(self._bound(self.diagonal, self.neighbours.strength))
 
     @property
     def highest_rate(self) -> float:
         """Upper bound on the rates |λ| at which slipping blocks oscillate and dashpots damp them, friction aside."""
-        bound = self.damping_diagonal.copy()
-        np.add.at(bound, self.neighbours.block, self.neighbours.damping)
-        return self.highest_frequency + float((bound / self.masses).max())
+        return self.highest_frequency + self._bound(self.damping_diagonal, self.neighbours.damping)
+
+    def _bound(self, diagonal: np.ndarray, joined: np.ndarray) -> float:
+        """Return Gershgorin's bound on the eigenvalues of M⁻¹ times the matrix of `_dense`."""
+        bound = diagonal.copy()
+        np.add.at(bound, self.neighbours.block, joined)
+        return float((bound / self.masses).max())
 
     @cached_property
     def own_units(self) -> OwnUnits:
@@ -374,8 +376,7 @@ class Chain(Unchanging):
     def force(self, position: np.ndarray) -> np.ndarray:
         """Return the spring forces −(K U) at τ = 0 for positions U, shape (…, blocks)."""
         if self.is_network:
-            flat = position.reshape(-1, self.blocks).T
-            return (self._matrix(self.neighbours.strength) @ flat).T.reshape(position.shape) - self.diagonal * position
+            return self._pulls(self.neighbours.strength, position) - self.diagonal * position
         block = np.arange(self.blocks)
         pull = self.before * position[..., block - 1] + self.after * position[..., (block + 1) % self.blocks]
         return pull - self.diagonal * position
@@ -384,9 +385,12 @@ class Chain(Unchanging):
         """Return the forces c_i v − (C U')_i of the dashpots for velocities U', shape (…, blocks)."""
         if not self.is_damped:
             return np.zeros(velocity.shape)
-        flat = velocity.reshape(-1, self.blocks).T
-        pulls = (self._matrix(self.neighbours.damping) @ flat).T.reshape(velocity.shape)
+        pulls = self._pulls(self.neighbours.damping, velocity)
         return self.driver_damping * v + (pulls - self.damping_diagonal * velocity)
+
+    def _pulls(self, joined: np.ndarray, values: np.ndarray) -> np.ndarray:
+        """Return Σ_j joined_ij values_j over the neighbours j of each block, shape (…, blocks)."""
+        return (self._matrix(joined) @ values.reshape(-1, self.blocks).T).T.reshape(values.shape)
 
     def sliding_offset(self, friction: float) -> np.ndarray:
         """Return e with K e = −friction · threshold, shape (blocks,).

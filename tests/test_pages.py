@@ -1,0 +1,35 @@
+"""Pages of docs/ print what they say and draw what they show, in the sections that take seconds."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from matplotlib.image import imread
+
+from tests.pages import outputs
+
+pytestmark = pytest.mark.slow
+
+#: Headings of these sections, and how many outputs there are below each.
+SHORT = {
+    "attractors.md": {"What lies on the boundaries": 1},
+    "bifurcations.md": {"In other parameters, and in two": 2},
+    "continuum.md": {"The size of the blocks, and dashpots that remove most of its effect": 1},
+    "published.md": {"Huang and Turcotte: two unequal blocks": 2, "De Sousa Vieira: chaos of equal blocks": 1},
+    "tongues.md": {"Parameters of single blocks and springs": 1, "Synchrony: a tongue that ends at grazings": 2},
+}
+
+
+@pytest.mark.parametrize("page", SHORT)
+def test_short_sections(repository, tmp_path, monkeypatch, page):
+    monkeypatch.chdir(tmp_path)
+    results = outputs((repository / "docs" / page).read_text(), f"docs/{page}", set(SHORT[page]))
+    assert Counter(block.heading for block, _, _ in results) == SHORT[page]
+    for _, said, printed in results:
+        assert printed == said
+    made = list(tmp_path.glob("docs/figures/*"))
+    assert len(made) == (page == "published.md")
+    for path in made:
+        mine, committed = (imread(one) for one in (path, repository / "docs" / "figures" / path.name))
+        assert mine.shape == committed.shape
+        assert np.abs(mine - committed).mean() < 0.001
