@@ -36,7 +36,7 @@ autodoc_member_order = "bysource"
 autodoc_typehints = "none"
 default_role = "py:obj"
 
-BOX = re.compile(r'^ *(\w+)[\[{]"(.*)"[\]}]$', re.MULTILINE)
+BOX = re.compile(r'^ *(?:subgraph )?(\w+)[\[{]"(.*)"[\]}]$', re.MULTILINE)
 ITEM = r"[a-zA-Z_][\w, ]* : "
 ARROW = re.compile(r"(\w+) -->(?:\|(.*?)\|)? (?=(\w+))")
 
@@ -69,7 +69,7 @@ def complete(app: Sphinx, page: str, source: list[str]) -> None:
 def table(chart: str) -> str:
     """Return a Mermaid chart as a table, because a browser would need an external program to draw it."""
     for line in chart.splitlines()[1:]:
-        if not (BOX.match(line) or ARROW.search(line)):
+        if not (BOX.match(line) or ARROW.search(line) or line.strip() == "end"):
             raise ValueError(f"{line.strip()}: neither a box nor an arrow of a chart")
     boxes = BOX.findall(chart)
     number = {name: count for count, (name, _) in enumerate(boxes, start=1)}

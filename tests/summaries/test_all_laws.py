@@ -3,8 +3,11 @@
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
 
 from burridge_knopoff import Chain, Model, law_of
+from burridge_knopoff.attractors.lookup import side_name
 from burridge_knopoff.report.tables import branch_table
 from burridge_knopoff.summaries import all_laws
 from burridge_knopoff.summaries.all_laws import named_alike, with_branches_between
@@ -50,6 +53,48 @@ def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law)
 
     monkeypatch.setattr(all_laws, "joined", joined)
     assert all_laws.branch_numbers(parts, models, SETTINGS) == [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
+
+
+def ranges(*branches, values=12):
+    """Return the attractors of one law: of each branch its number, its first value of a, how many values, and <J>."""
+    branch = np.full((values, len(branches)), -1)
+    for slot, (number, first, count, _) in enumerate(branches):
+        branch[first : first + count, slot] = number
+    distance = np.where(branch >= 0, [float(item[-1]) for item in branches], np.nan)
+    return xr.Dataset({"branch": (("a", "attractor"), branch), "mean_distance": (("a", "attractor"), distance)})
+
+
+def test_numbers_follow_the_order_in_which_branches_appear_under_the_first_law():
+    first = ranges((0, 1, 5, 0.0), (1, 1, 9, 0.3), (2, 1, 9, 0.2), (3, 8, 3, 0.1), (4, 5, 2, 0.4))
+    second = ranges((0, 0, 5, 0.0), (1, 0, 9, 0.3), (5, 0, 3, 0.1))
+    numbers = [{n: n for n in range(5)}, {0: 0, 1: 1, 5: 5}]
+    # Synchrony; 2 before 1, as its <J> is smaller; 3; the one of the second law alone; the short one.
+    assert all_laws.in_order([first, second], numbers) == {0: 0, 2: 1, 1: 2, 3: 3, 5: 4, 4: 5}
+    # Without synchrony no other branch is 0.
+    assert all_laws.in_order([ranges((3, 0, 4, 0.2), (7, 0, 4, 0.1))], [{3: 3, 7: 7}]) == {7: 1, 3: 2}
+
+
+@given(st.lists(st.tuples(st.integers(0, 8), st.integers(1, 2)), max_size=4))
+def test_what_a_deeper_search_finds_in_addition_leaves_the_numbers_of_lasting_branches(short):
+    lasting = (0, 0, 5, 0.0), (1, 3, 4, 0.2), (2, 1, 9, 0.3), (3, 6, 3, 0.4)
+    more = [(10 + k, first, count, 0.05 * k) for k, (first, count) in enumerate(short)]
+    numbers = [{number: number for number, *_ in (*lasting, *more)}]
+    found = all_laws.in_order([ranges(*lasting, *more)], numbers)
+    assert [found[number] for number, *_ in lasting] == [0, 2, 1, 3]
+    assert sorted(found.values()) == list(range(4 + len(more)))
+
+
+@pytest.mark.parametrize(
+    ("name", "side", "expected"),
+    [
+        ("synchronized", 0, "synchronized"),
+        ("alternating (7)", 0, "alternating (7)"),
+        ("alternating (7)", 1, "mirror pair (7+)"),
+        ("mirror pair, block 2 never sticks (12)", -1, "mirror pair, block 2 never sticks (12−)"),
+    ],
+)
+def test_on_a_side_the_motion_is_one_of_a_mirror_pair(name, side, expected):
+    assert side_name(name, side) == expected
 
 
 def test_the_digest_tells_each_branch(one_law):

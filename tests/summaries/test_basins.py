@@ -105,7 +105,7 @@ def test_maps_are_put_together_and_told(ruled):
     expected = {"v": 0.2, "contact": "symmetric", "start": "moving", "label_limit": 7.0}
     assert {key: found.attrs[key] for key in expected} == expected
     assert [found.attrs[f"{name}_range"].tolist() for name in ("first", "last")] == [[-1.0, 3.0], [0.0, 2.0]]
-    shares = "undetermined 25.00 %, synchronized 25.00 %, pair (5) (-) 50.00 %"
+    shares = "undetermined 25.00 %, synchronized 25.00 %, pair (5−) 50.00 %"
     decided = f"decided at tau = {np.nanmean(found['decision_time'].values[0]):.0f} in the mean"
     varying = "no single uncertainty exponent: it changes by 0.4375 +- 0.0625 over the separations"
     single = "uncertainty exponent 0.812 +- 0.025 (it changes by -0.250 +- 0.125 over the separations)"

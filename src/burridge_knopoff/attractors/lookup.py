@@ -21,6 +21,14 @@ def branch_names(dataset: xarray.Dataset) -> dict[int, str]:
     return dict(zip(dataset["branch_number"].values.tolist(), map(str, dataset["branch_name"].values), strict=True))
 
 
+def side_name(name: str, side: int) -> str:
+    """Return the name of a branch on one of its sides, 1 or −1: there the motion is one of a mirror pair.
+
+    "alternating (7)" becomes "mirror pair (7+)"; on side 0 the name remains.
+    """
+    return f"{name[:-1].replace('alternating', 'mirror pair', 1)}{' +−'[side]})" if side else name
+
+
 def largest_basin_fraction(attractors: xarray.Dataset, branch: int) -> tuple[float, float]:
     """Return (fraction, a) of the largest basin of a branch, its sides counted together; of equal ones the first.
 

@@ -9,7 +9,7 @@ from itertools import cycle
 import numpy as np
 import xarray
 
-from burridge_knopoff.attractors.lookup import branch_names
+from burridge_knopoff.attractors.lookup import branch_names, side_name
 from burridge_knopoff.model.sampling import fraction_interval
 
 OTHER_COLOR = "#999999"
@@ -110,7 +110,7 @@ def map_parts(one: xarray.Dataset, colors: Mapping[int, str], names: Mapping[int
         MapPart(
             b,
             s,
-            "undetermined" if b < 0 else names[b] + {1: " (+)", -1: " (−)", 0: ""}[s],
+            "undetermined" if b < 0 else side_name(names[b], s),
             UNDETERMINED_COLOR if b < 0 else side_color(colors[b], s),
             (branch == b) & (side == s),
         )

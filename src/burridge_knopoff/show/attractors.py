@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import xarray
 
-from burridge_knopoff.attractors.lookup import branch_names
+from burridge_knopoff.attractors.lookup import branch_names, side_name
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.show.formatting import table
 from burridge_knopoff.study.formatting import plain, with_error
 
 
 def called(found: xarray.Dataset, branch: int, side: int) -> str:
-    """Return the name of a branch, with + or - for its side if it has two."""
-    return f"{branch_names(found)[branch]} {' +-'[side]}".rstrip()
+    """Return the name of a branch on one of its sides."""
+    return side_name(branch_names(found)[branch], side)
 
 
 def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> list[str]:

@@ -6,6 +6,7 @@ grid.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -27,6 +28,9 @@ from burridge_knopoff.study.model import models_of
 from burridge_knopoff.summaries import refined, rotation
 from burridge_knopoff.summaries.attractors import VARIABLES
 from burridge_knopoff.summaries.branch_rows import branch_rows
+
+#: Values of the grid of a, under one law, from which on the number of a branch does not depend on what lasts shorter.
+LASTING = 3
 
 
 def make(
@@ -76,12 +80,13 @@ def merge(
 def branch_numbers(
     parts: Sequence[xarray.Dataset], models: Sequence[Model], settings: SearchSettings, processes: int = 1
 ) -> list[dict[int, int]]:
-    """Return, for each law, the numbers of its branches: what turns into a branch of the first law takes its number.
+    """Return, for each law, {number of a branch in its own part: the number that it gets}.
 
     parts : of the laws, see `one_law`; models : of each law, at any a
     settings : of the search; processes : that work at once
 
-    All others have a number of their own.
+    A branch that turns into a branch of the first law as one law is changed into the other shares its number. Numbers
+    follow `in_order`.
     """
     numbers = [{int(n): int(n) for n in np.unique(parts[0]["branch"].values) if n >= 0}]
     first = _states(parts[0], models[0])
@@ -90,7 +95,30 @@ def branch_numbers(
         firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
         renamed = joined(firsts, seconds, first, _states(part, model), settings, processes=processes)
         numbers.append(_with_others(renamed, part, numbers))
-    return numbers
+    order = in_order(parts, numbers)
+    return [{own: order[number] for own, number in renamed.items()} for renamed in numbers]
+
+
+def in_order(parts: Sequence[xarray.Dataset], numbers: Sequence[Mapping[int, int]]) -> dict[int, int]:
+    """Return {number of a branch: its place}, in the order in which branches appear along a, under the first law first.
+
+    parts : of the laws, see `one_law`; numbers : for each law {number of a branch in its part: common number}
+
+    The synchronized branch is 0, and branches that appear at the same a are ordered by ⟨J⟩ there. Branches that exist
+    at fewer than `LASTING` values of the grid come after all others, since a deeper search finds more of them.
+    """
+    first: dict[int, tuple[int, int, float]] = {}
+    values: Counter[int] = Counter()
+    for law, (part, renamed) in enumerate(zip(parts, numbers, strict=True)):
+        branch, distance = part["branch"].values, part["mean_distance"].values
+        for own, number in renamed.items():
+            slots = branch == own
+            there = np.flatnonzero(slots.any(axis=1))
+            if len(there):
+                values[number] = max(values[number], len(there))
+                first.setdefault(number, (law, int(there[0]), float(distance[there[0]][slots[there[0]]].min())))
+    ranked = sorted(first, key=lambda number: (number != 0, values[number] < LASTING, *first[number], number))
+    return {number: place for place, number in enumerate(ranked, start=0 if 0 in first else 1)}
 
 
 def _with_others(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import xarray
 
-from burridge_knopoff.attractors.lookup import branch_names
+from burridge_knopoff.attractors.lookup import branch_names, side_name
 
 #: What the branch of a state is called that reaches no known one; summaries have −1 for it.
 UNDETERMINED, _UNDETERMINED = "undetermined", -1
@@ -48,7 +48,7 @@ def map_rows(basins: xarray.Dataset) -> Iterator[MapRow]:
             one["a"].item(),
             one["branch"].size,
             {
-                names[branch] + {1: " (+)", -1: " (-)", 0: ""}[side]: count
+                side_name(names[branch], side): count
                 for (branch, side), count in zip(pairs.T.tolist(), counts.tolist(), strict=True)
             },
             undetermined_alike(one),

@@ -1,0 +1,53 @@
+"""Draw the rules of the default study as a chart in docs/results.md: `python docs/rules.py`."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from burridge_knopoff.provenance.files import write_text
+
+PAGE = Path(__file__).parent / "results.md"
+CHART = re.compile(r"```mermaid\n.*?```\n", re.DOTALL)
+#: Rules of one stage are one box.
+STAGES = {"basin_tile": "basins", "basin_pairs": "basins", "simulate_solver": "solvers"}
+#: What is not a summary.
+ENDS = ("simulate", "figures", "claims", "report")
+
+
+def stage(rule: str) -> str:
+    """Return the stage of a rule."""
+    return "figures" if rule.startswith("figure_") else STAGES.get(rule, rule.removesuffix("_of_law"))
+
+
+def arrows(graph: str) -> set[tuple[str, str]]:
+    """Return (from, to) of the stages in a graph of rules, as `snakemake --rulegraph mermaid-js` prints it."""
+    rules = dict(re.findall(r"(id\d+)\[(\w+)\]", graph))
+    found = {(stage(rules[one]), stage(rules[other])) for one, other in re.findall(r"(id\d+) --> (id\d+)", graph)}
+    return {(one, other) for one, other in found if one != other and other != "all"}
+
+
+def chart(graph: str) -> str:
+    """Return the stages and what they read, with all summaries in one box for figures, claims and report."""
+    found = arrows(graph)
+    summaries = sorted({name for pair in found for name in pair} - {*ENDS})
+    lines = ["flowchart LR", '  simulate["simulate: points"]']
+    lines += ['  subgraph summary["summaries"]', *(f'    {name}["{name}"]' for name in summaries), "  end"]
+    lines += [f"  {one} --> {other}" for one, other in sorted(found) if other in summaries]
+    lines += ['  figures["figures"]', '  claims["claims"]', '  report["report"]']
+    lines += ["  summary --> figures", "  summary --> claims"]
+    lines += [f"  {one} --> {other}" for one, other in sorted(found) if {one, other} < {*ENDS}]
+    return "```mermaid\n" + "\n".join(lines) + "\n```\n"
+
+
+def main() -> None:
+    """Replace the chart of the page."""
+    command = [sys.executable, "-m", "snakemake", "--rulegraph", "mermaid-js", "--quiet", "all"]
+    said = subprocess.run(command, check=True, capture_output=True, text=True, cwd=PAGE.parent.parent).stdout
+    write_text(PAGE, CHART.sub(lambda _: chart(said), PAGE.read_text(encoding="utf-8")))
+
+
+if __name__ == "__main__":
+    main()

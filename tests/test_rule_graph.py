@@ -1,0 +1,28 @@
+"""The chart of docs/results.md: that of Snakemake's own graph of rules; and every summary has its question there."""
+
+import re
+import runpy
+import subprocess
+import sys
+
+from burridge_knopoff.jobs.jobs import Jobs
+from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.yaml_file import read_yaml
+
+
+def test_the_chart_is_that_of_the_rules(repository):
+    rules = runpy.run_path(str(repository / "docs/rules.py"))
+    command = [sys.executable, "-m", "snakemake", "--rulegraph", "mermaid-js", "--quiet", "all"]
+    said = subprocess.run(command, check=True, capture_output=True, text=True, cwd=repository).stdout
+    page = (repository / "docs/results.md").read_text(encoding="utf-8")
+    assert rules["chart"](said) in page
+    # What it must not lose: the points lead to figures, and the attractors to the basins.
+    assert {("simulate", "figures"), ("attractors", "basins"), ("claims", "report")} <= rules["arrows"](said)
+
+
+def test_the_page_names_every_summary_of_the_default_study(repository):
+    study = load_study(read_yaml(repository / "config/paper.yaml"), "paper.yaml")
+    page = (repository / "docs/results.md").read_text(encoding="utf-8")
+    summaries = {name for name in Jobs(study).all_files if name.startswith("summary/")}
+    assert len(summaries) > 15
+    assert summaries <= set(re.findall(r"`(summary/[\w.]+)`", page))
