@@ -1,0 +1,52 @@
+"""README: the numbers of its table are those of the ledger of the default study, and what it shows exists."""
+
+import json
+import re
+
+import pytest
+
+NUMBERS = [
+    (
+        "Synchrony from",
+        "upper_edge",
+        "a_c, at which the synchronized orbit loses stability, linearized",
+        "0.0869729047",
+    ),
+    ("Synchrony", "upper_edge", "a_c, at which the synchronized orbit loses stability, nonlinear", "0.0887172230"),
+    ("⟨J⟩ from", "plus_mean_distance", "⟨J⟩, linearized", "0.14064"),
+    ("J from", "minus_distance_vanishes", "time τ from which on J < 2e-15", "3815"),
+    ("Frequency of", "half_frequency", "frequency of the velocity of block 1 over that of block 2", "0.648"),
+    ("Chaos begins", "transition", "smallest a with a chaotic attractor, linearized", "0.1323"),
+    ("Chaos begins", "transition", "smallest a with a chaotic attractor, nonlinear", "0.1367"),
+]
+
+
+@pytest.fixture(scope="module")
+def claims(repository) -> dict:
+    content = json.loads((repository / "docs/claims.json").read_text(encoding="utf-8"))
+    return {claim["name"]: claim for claim in content["claims"]}
+
+
+@pytest.mark.parametrize(("row", "claim", "quantity", "printed"), NUMBERS)
+def test_the_numbers_are_those_of_the_ledger(repository, claims, row, claim, quantity, printed):
+    text = (repository / "README.md").read_text(encoding="utf-8")
+    [line] = re.findall(rf"^\| {row}.*$", text, re.MULTILINE)
+    [value] = [item["value"] for item in claims[claim]["measured"] if item["quantity"] == quantity]
+    digits = len(printed.partition(".")[2])
+    assert f"{value:.{digits}f}" == printed
+    assert printed in line.split("|")[3]
+
+
+def test_the_times_of_a_cycle_are_those_of_the_ledger(repository, claims):
+    reason = claims["cycle_time"]["reason"]
+    one, *_ = re.findall(r"([\d.]+) to ([\d.]+) from stop to stop of one block", reason)
+    both, *_ = re.findall(r"([\d.]+) to ([\d.]+) from a stop of any block to the next", reason)
+    text = (repository / "README.md").read_text(encoding="utf-8")
+    ours = "{:.1f} to {:.1f} for one block; {:.1f} to {:.1f} between stops of any blocks"
+    assert ours.format(*map(float, (*one, *both))) in text
+
+
+def test_what_it_shows_and_links_exists(repository):
+    text = (repository / "README.md").read_text(encoding="utf-8")
+    for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
+        assert (repository / target).exists(), target
