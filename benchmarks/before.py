@@ -2,7 +2,7 @@
 
     python benchmarks/before.py ../before           # a checkout in which `make kernel` has been run
 
-Both are measured in turn, each in a process of its own; a ratio is that of the least CPU times. For each width of
+Both are measured in turn, each in a process of its own; ratios are those of the smallest CPU times. For each width of
 vectors compile both with `BURRIDGE_KNOPOFF_LANES=2`, 4 or 8.
 """
 
@@ -36,7 +36,7 @@ def starts(blocks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def measured() -> dict[str, float]:
-    """Return least CPU times in ms, by what was run."""
+    """Return the smallest CPU times in ms, by what was run."""
     from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, Settings, law_of, simulate
     from burridge_knopoff.kernel._core import Clouds
     from burridge_knopoff.laws import LAWS as BUILT_IN

@@ -5,7 +5,7 @@ First, chains that start near uniform sliding, which is unstable, with all event
 moving blocks that it meets; from N = 64 on that is a large part of these short runs.
 
 Then chains of the earthquake literature (Carlson and Langer): stiff springs, friction that drops at the start of a slip
-and weakens with speed. They start at rest, nearly in line. After the first slips, both ways go on from the same state,
+and weakens with speed. They start at rest, nearly in line. After the first slips, both continue from the same state,
 in turn and without observables; a figure is the CPU time of a run divided by its number of events. So do a run that
 records the catalogue of its slip events, and one under quasi-static loading.
 """

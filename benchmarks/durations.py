@@ -2,7 +2,7 @@
 
     python benchmarks/durations.py config/paper.yaml config/smoke.yaml
 
-For each rule: the mean CPU time and size of a job, at the least and at the largest work of these studies. Rules that
+For each rule: the mean CPU time and size of a job, at the smallest and at the largest work in these studies. Rules that
 did not run keep what they have.
 """
 

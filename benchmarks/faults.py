@@ -163,7 +163,7 @@ def jobs_killed(trials: Trials) -> None:
 
 
 def disks(trials: Trials) -> None:
-    """Fill the disk of each folder, and make results read-only while a run goes on."""
+    """Fill the disk of each folder, and make results read-only during a run."""
     for folder, free in (("points", 200_000), ("summary", 60_000), ("figures", 900_000)):
         study = trials.copy()
         path = study.folder / "results" / "tiny" / folder
@@ -203,7 +203,7 @@ def damages(trials: Trials) -> None:
 
 
 def clones(trials: Trials) -> None:
-    """Run a clone with a kernel compiled anew, on one core and on two."""
+    """Run a clone with a freshly compiled kernel, on one core and on two."""
     clone = trials.folder / "clone"
     subprocess.run(["git", "clone", "--quiet", str(REPOSITORY), str(clone)], check=True)
     build = [sys.executable, "setup.py", "--quiet", "build_ext", "--inplace"]

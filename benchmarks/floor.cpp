@@ -25,7 +25,7 @@ constexpr double H = 0.1;           // interval of samples
 constexpr double LOW = 2e-3;        // gaps that stay above this in all samples have no event
 constexpr double DIP = 1e-3;        // a gap whose parabola through three samples falls below this may have two
 constexpr double NEAR = 1e-3;       // distance from a guess up to which a reverted series gives the root to rounding
-constexpr int CELLS = 90;           // intervals after which the closed form is started anew
+constexpr int CELLS = 90;           // intervals after which the closed form is restarted
 constexpr double PANEL = 5 * H;     // longest interval over which 8 Gauss nodes integrate J
 constexpr double SLOW = 1e-9;       // last coefficient of a nonlinear series up to which a step may be 6 H, else 2 H
 constexpr double TOGETHER = 1e-13;  // blocks with gaps below this at an event change state with it
@@ -335,7 +335,7 @@ template <Law LAW> void advance(Run &run, double until) {
 
 }  // namespace
 
-// Run from x and w, all blocks slipping; return <J> from `transient` to `end`, and the numbers of rows written.
+// Run from x and w, all blocks slipping; return <J> from `transient` to `end`, and the number of rows written.
 extern "C" double run_floor(int nonlinear, const double *x, const double *w, double transient, double end,
                             Row *event, Row *crossing, long *count) {
     Run run{{vec{x[0], x[1], x[2], 0}, vec{w[0], w[1], w[2], 0}, 7}, event, crossing};

@@ -3,7 +3,7 @@
     python benchmarks/floor.py
 
 The floor is compiled into a temporary folder. It runs in this process, in turn with the kernel; a ratio is that of the
-least CPU times. Both record all events, <J> and the section crossings of a run to τ = 10⁴ at a = 0.08; without
+smallest CPU times. Both record all events, <J> and the section crossings of a run to τ = 10⁴ at a = 0.08; without
 observables (bare) the kernel only moves the blocks from event to event. The floor has no exponents: its time is the
 same in every row of a run. A member of an ensemble is compared with one run of the floor.
 
@@ -76,7 +76,7 @@ class Floor:
 def agreement(floor: FloorRun, ours: Trajectory) -> float:
     """Return the largest difference of event times while the motion is regular; raises RuntimeError if runs differ.
 
-    Compared block by block: events that are simultaneous but for rounding may come in either order.
+    Compared block by block: events that are simultaneous up to rounding may come in either order.
     """
     for what, theirs, own in (
         ("crossings", len(floor.crossing), len(ours.crossing_time)),

@@ -1,6 +1,6 @@
 """Runs in lockstep, a lane of vectors each, against the same runs one by one.
 
-CPU times of a run to τ = 10⁴ with its observables, the least of alternated calls; a ratio is that of both. For each
+CPU times of a run to τ = 10⁴ with its observables: the smallest of alternated calls, and their ratio. For each
 width of vectors compile with `BURRIDGE_KNOPOFF_LANES=2`, 4 or 8: single runs use four lanes at most.
 """
 

@@ -1,4 +1,4 @@
-"""CPU time of Lyapunov exponents beside a trajectory against the trajectory alone.
+"""CPU time of a trajectory with Lyapunov exponents, relative to the trajectory alone.
 
 The perturbations are carried along the whole run, transient and window; the default of the study carries them along
 four fifths of it. One thread, process CPU time of `simulate`, median of runs in alternation.

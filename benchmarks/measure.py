@@ -25,7 +25,7 @@ def cpu_times(contestants: Mapping[str, Callable[[], object]], rounds: int) -> d
 
 
 def least(call: Callable[[], object], repeats: int = 3) -> float:
-    """Return the least CPU time of a call, in ms."""
+    """Return the smallest CPU time of a call, in ms."""
     times = []
     for _ in range(repeats):
         begin = time.process_time()

@@ -148,7 +148,7 @@ def changes_of_python(text: str) -> dict[object, list[Callable[[], str]]]:
 
 
 def is_used(name: str) -> bool:
-    """Tell whether an operator of Cosmic Ray says something about tests."""
+    """Return whether an operator of Cosmic Ray is a useful test of the tests."""
     kind, *operators = name.split("/")[1].split("_")
     if kind == "ReplaceBinaryOperator":
         return set(operators) <= set(ARITHMETIC)
@@ -244,13 +244,13 @@ def equivalents() -> list[tuple[str, str, str]]:
 
 
 def is_equivalent(mutant: Mutant, listed: list[tuple[str, str, str]]) -> bool:
-    """Tell whether a change is among those listed; in a pattern … is any text."""
+    """Return whether a change is listed; … in a pattern stands for any text."""
     texts = (mutant.file, mutant.before, mutant.after)
     return any(all(map(matches, item, texts)) for item in listed)
 
 
 def matches(pattern: str, text: str) -> bool:
-    """Tell whether a text is that of a pattern."""
+    """Return whether a text matches a pattern."""
     return re.fullmatch(".*".join(map(re.escape, pattern.split("…"))), text) is not None
 
 

@@ -5,7 +5,7 @@ What makes it fast:
 - one integrator for all phases of motion; which blocks move is a set of parameters, changed in place;
 - one terminal event for each block, the speed of a moving and the missing force of a stuck one; with two events a
   block, the run takes about 20 % longer;
-- one call for the whole run: callbacks let the integration go on, and the samples come from the dense output inside
+- one call for the whole run: callbacks let the integration continue, and the samples come from the dense output inside
   heyoka; continuous output, with J integrated afterwards by Gauss quadrature, is slower than J as one more ODE;
 - callbacks work on plain floats and on views of the integrator's memory made once.
 """
@@ -18,7 +18,7 @@ from peer_run import PeerRun
 
 from burridge_knopoff import Chain, InitialState
 
-# A block that has just started has U' = 0 and U'' = 0 but for rounding, and must not stop again at once. Slips last
+# A block that has just started has U' = 0 and U'' = 0 up to rounding, and must not stop again at once. Slips last
 # about a time unit and the shortest sticks are 1e-3, so this hides no event.
 COOLDOWN = 1e-6
 # Blocks start at spring force 1 and stop well below it: that tells a stop from a start that has just been handled.
@@ -64,7 +64,7 @@ class HeyokaPeer:
             fast_math=True,
             slp_vectorize=True,
         )
-        # Views of the integrator's memory: fetching them anew in each of 12,000 callbacks is measurably slower.
+        # Views of the integrator's memory: fetching them again in each of 12,000 callbacks is measurably slower.
         self.state = self.integrator.state
         self.slip = self.integrator.pars
         self.dense = self.integrator.d_output

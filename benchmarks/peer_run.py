@@ -27,7 +27,7 @@ class PeerRun:
 def event_time_difference(run: PeerRun, ours) -> str:
     """Return the largest difference of event times up to the horizon, or what is wrong with the events.
 
-    Compared block by block: events that are simultaneous but for rounding may come in either order.
+    Compared block by block: events that are simultaneous up to rounding may come in either order.
     """
     difference = 0.0
     for block in (1, 2, 3):

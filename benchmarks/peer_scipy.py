@@ -1,4 +1,4 @@
-"""The chain of three blocks with SciPy: `solve_ivp` from event to event, started anew after each."""
+"""The chain of three blocks with SciPy: `solve_ivp` from event to event, restarted after each."""
 
 from __future__ import annotations
 

@@ -1,9 +1,9 @@
 """What studies of many points take of Snakemake, Slurm and the disk: the planning figures of docs/cluster.md.
 
 For each number of points a config is written and planned (`snakemake -n`), and one of its points is planned alone, as
-every submitted job does before it begins. Numbers of points above `--largest` are not planned but reckoned: a straight
-line through the last two that were measured, which is the least. The size of a point file is the mean over a sample of
-runs with the default settings.
+every submitted job does before it begins. Numbers of points above `--largest` are not planned but extrapolated: a
+straight line through the last two that were measured, which is the least. The size of a point file is the mean over a
+sample of runs with the default settings.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def point_size() -> float:
 
 
 def main() -> None:
-    """Measure, reckon, and print the table."""
+    """Measure, extrapolate, and print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
     parser.add_argument("--points", type=int, nargs="+", default=[100, 1000, 10_000, 1_000_000])
     parser.add_argument("--largest", type=int, default=10_000, help="planned in earnest (default: %(default)s)")
@@ -79,7 +79,7 @@ def main() -> None:
             (first, low), (second, high) = measured[-2:]
             share = (points - first) / (second - first)
             figures = [begin + share * (end - begin) for begin, end in zip(low, high, strict=True)]
-            how = f"reckoned from {first} and {second}"
+            how = f"extrapolated from {first} and {second}"
         rows.append(
             [
                 points,

@@ -21,7 +21,7 @@ AS_TYPED = {key: value for key, value in os.environ.items() if key != "OPENBLAS_
 #: Without those threads, as `bk` runs itself.
 ONE_THREAD = AS_TYPED | {"OPENBLAS_NUM_THREADS": "1"}
 
-#: The least that a Python job writing netCDF can do.
+#: The minimum that a Python job that writes netCDF has to do.
 IMPORTS = "import numpy, netCDF4"
 
 

@@ -2,9 +2,9 @@
 
     python benchmarks/random_runs.py [SECONDS] [FIRST_SEED]
 
-Chains, rings, grids under all laws, contacts and loadings go on as a whole, in groups, in closed form, by fixed steps,
-with and without exponents, catalogue and observer; ensembles are moved and labelled. A sanitizer ends the process at
-the first error; the seed before it is on the last line.
+Chains, rings, grids under all laws, contacts and loadings are continued as a whole, in groups, in closed form, by fixed
+steps, with and without exponents, catalogue and observer; ensembles are moved and labelled. A sanitizer ends the
+process at the first error; the seed before it is on the last line.
 """
 
 import sys

@@ -1,10 +1,10 @@
-"""A study that ran in this folder, replayed: how good is the time left that is told, and what more cores would give.
+"""Replays a study that ran in this folder: the error of the estimated time left, and the gain of more cores.
 
     python benchmarks/replay.py config/paper.yaml config/smoke.yaml [--cores 1]
 
 It is replayed from its benchmark files as if it had never run, each job with its CPU time: what other programs took
-does not count. Printed: what is told at the beginning, and the largest ratio of what is told and what is left, from a
-minute on (or a tenth of a shorter run); both count as 10 s at least, as the display tells no less.
+does not count. Printed: the estimate at the beginning, and the largest ratio between estimated and true time left, from
+a minute on (or a tenth of a shorter run); both count as 10 s at least, as the display tells no less.
 
 Then what it would take on 1, 2, 4 … 256 cores, and the longest chain of jobs that need each other. The long jobs of a
 law share their parts out among processes, the cores divided by the laws; what each part took stands in their logs.
@@ -27,7 +27,7 @@ from snakemake_logger_plugin_study.durations import Durations, work_of
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING, schedule
 
-#: Moments of a run that are looked at, and the least time that the display tells.
+#: Moments of a run at which the estimate is compared, and the smallest time that the display prints.
 MOMENTS, LEAST = 400, 10.0
 
 LONG = re.compile(r"(.+)_of_law law=(\w+)")
@@ -112,7 +112,7 @@ def on(cores, jobs, seconds, parts):
 
 
 def on_other_cores(config):
-    """Print what a study would take on other numbers of cores, and its longest chain of jobs."""
+    """Print what a study would take on other numbers of cores, and its critical path."""
     run, took = recorded(config)
     jobs, seconds = run.jobs, {number: wall for number, (wall, _) in took.items()}
     parts = {number: parts_of(run.results, job) for number, job in jobs.items()}
@@ -133,7 +133,7 @@ def on_other_cores(config):
 
 
 def main():
-    """Print what is told of each study, and what it would take on other cores."""
+    """Print the estimate for each study, and what it would take on other numbers of cores."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("configs", nargs="+")
     parser.add_argument("--cores", type=int, default=2)

@@ -1,8 +1,8 @@
 """Large studies: what a run of many points costs, point by point, and how much memory it takes.
 
-Studies of several numbers of points, alike but for their grid of a, are run from nothing to their reports on two
+Studies of several numbers of points, identical except for their grid of a, are run from nothing to their reports on two
 cores, each in an empty folder. The cost of a point is the CPU time of Snakemake and all jobs over the number of points:
-the wall time would tell of other programs too. A second run has nothing to do; `bk check` then looks at every file.
+the wall time would depend on other programs. A second run has nothing to do; `bk check` then reads every file.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ attractors: {{samples: 4, transient: 300, window: 300, time_limit: 2000, pushes:
 basins: {{a: {{linearized: [], nonlinear: []}}}}
 chains: {{two_blocks: {{a: [0.02, 0.15], samples: 2}}}}
 """
-#: The paper's positions but for that of the first block.
+#: The paper's positions, except that of the first block.
 STATE = "  {name}: {{position: [{first}, -0.993, -0.991], velocity: [0.099, 0.1012, 0.1023]}}"
 
 

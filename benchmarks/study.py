@@ -4,7 +4,7 @@ The baseline is a copy of the workflow with one line changed: instead of `bk sim
 netCDF4 and links to the point file made by the first run of the study. Jobs, dependencies, scheduler and all other
 rules are the same, so the ratio is what the simulations add to a workflow of that many Python processes. The two run
 in alternation, each in an empty folder; the ratio is the median over the pairs. It needs an otherwise idle machine:
-where other programs take cores away, only the ratio of CPU times, given beside it, says something.
+where other programs take cores away, only the ratio of CPU times, which is also printed, is meaningful.
 """
 
 from __future__ import annotations

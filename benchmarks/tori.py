@@ -1,10 +1,10 @@
-"""How far torus and chaos are told apart: once more in windows of 2.4 million time units, fifty times as long.
+"""Tests how well torus and chaos are distinguished: again in windows of 2.4 million time units, fifty times as long.
 
     python benchmarks/tori.py results/paper
 
-A torus that proves to be chaos there, or a closed orbit that attracts slowly, and chaos that proves to be regular,
+A torus that proves to be chaos there, or a periodic orbit that attracts slowly, and chaos that proves to be regular,
 would have another kind in the study's files if the search looked so long. All tori and chaotic attractors of the grid
-are looked at, and every eighth at the values of a between: the thresholds of the search were chosen without these.
+are tested, and every eighth at the values of a between: the thresholds of the search were chosen without these.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ OPTIONS = Settings(
 def resolved(study: Study, law: str, places: list[xarray.Dataset]) -> list[object]:
     """Return how many attractors there are, and what they prove to be in the longer window.
 
-    That is how many are chaos, how many are not, and how many are closed orbits, with their values of a.
+    That is how many are chaos, how many are not, and how many are periodic orbits, with their values of a.
     """
     chaotic, closed = 0, []
     for one in places:
@@ -79,7 +79,7 @@ def main() -> None:
             "attractors",
             "chaos",
             "no chaos",
-            "of these closed orbits",
+            "of these periodic orbits",
             "at a",
         ]
         print_table(head, rows)
