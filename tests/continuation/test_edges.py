@@ -73,7 +73,7 @@ def test_saddle_orbits_are_followed_to_where_their_stability_changes(known, foun
     at = next(k for k, edge in enumerate(found) if edge.state.symmetry == Symmetry.SYNCHRONIZED)
     segment = segments[numbers[at]]
     a = [point.orbit.a for point in segment]
-    assert [point.multipliers.unstable for point in segment] == [0] + [1] * (len(segment) - 1)
+    assert [point.multipliers.unstable_count for point in segment] == [0] + [1] * (len(segment) - 1)
     assert a[0] < LOST < a[1]
     assert a[-1] >= 0.12
     # An orbit of the same branch is not followed again; the torus has none.

@@ -9,7 +9,7 @@ import pytest
 from burridge_knopoff import Chain, ChainState, OrbitError, Symmetry
 from burridge_knopoff.model.own_units import OwnUnits
 from burridge_knopoff.periodic_orbits import border_collision
-from burridge_knopoff.periodic_orbits.parameter_line import along_a
+from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from tests.periodic_orbits.stand_in import only
 
@@ -27,9 +27,11 @@ from tests.periodic_orbits.stand_in import only
 def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(values, length, expected):
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC)
     way = [SimpleNamespace(orbit=orbit, multipliers=only(1.0 + value), length=length) for value in values]
-    assert border_collision._joint_ahead(way) == pytest.approx(expected)
+    assert border_collision._distance_to_branch_point(way) == pytest.approx(expected)
     # A longer way has the same end.
-    ahead = border_collision._joint_ahead([SimpleNamespace(orbit=orbit, multipliers=only(10.0), length=9.0), *way])
+    ahead = border_collision._distance_to_branch_point(
+        [SimpleNamespace(orbit=orbit, multipliers=only(10.0), length=9.0), *way]
+    )
     assert ahead == pytest.approx(expected) or len(way) == 1
 
 
@@ -46,7 +48,7 @@ def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(values, length, expect
     ],
 )
 def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
-    found = BranchOrbit(SimpleNamespace(stop_counts=stop_counts), np.zeros(4), along_a(Chain(1)))
+    found = BranchOrbit(SimpleNamespace(stop_counts=stop_counts), np.zeros(4), line_along_a(Chain(1)))
 
     def step(point, length):
         if stop_counts is None:
@@ -54,13 +56,13 @@ def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
         return found
 
     monkeypatch.setattr(border_collision, "step_along", step)
-    monkeypatch.setattr(border_collision, "simpler_orbit", lambda orbit: simpler)
-    monkeypatch.setattr(border_collision, "_joint_ahead", lambda way: ahead)
+    monkeypatch.setattr(border_collision, "reduced_orbit", lambda orbit: simpler)
+    monkeypatch.setattr(border_collision, "_distance_to_branch_point", lambda way: ahead)
     taken = border_collision.smooth_step([SimpleNamespace(orbit=SimpleNamespace(stop_counts=(1, 2)))], 0.1)
     assert (taken is not None) == made
     if made:
         assert taken.orbit is found.orbit
-        assert taken.joined == simpler
+        assert taken.reduced_orbit == simpler
 
 
 @pytest.mark.parametrize(
@@ -76,10 +78,10 @@ def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
 )
 def test_a_grazing_is_ahead_where_what_is_0_there_falls(before, here, expected):
     points = [
-        SimpleNamespace(contacts=SimpleNamespace(values=lambda told=told: np.array(told)), length=0.1)
+        SimpleNamespace(grazing_distances=SimpleNamespace(values=lambda told=told: np.array(told)), length=0.1)
         for told in (before, here)
     ]
-    assert border_collision.corner_ahead(*points) == pytest.approx(expected)
+    assert border_collision.distance_to_grazing(*points) == pytest.approx(expected)
 
 
 @dataclass(frozen=True)
@@ -88,13 +90,13 @@ class Place:
 
     orbit: float
     length: float = 1e-3
-    joined: str | None = None
-    remaining: float = np.nan
+    reduced_orbit: str | None = None
+    distance_to_grazing: float = np.nan
     power: int = 1
     corner: float = 8e-4
 
     @property
-    def contacts(self):
+    def grazing_distances(self):
         return SimpleNamespace(values=lambda: np.array([(self.corner - self.orbit) ** self.power, np.inf]))
 
 
@@ -111,10 +113,10 @@ def approach(monkeypatch):
             place = way[-1].orbit + length
             if place > way[-1].corner or fails(len(tried)):
                 return None
-            return replace(way[-1], orbit=place, length=length, joined="simpler" if place > joint else None)
+            return replace(way[-1], orbit=place, length=length, reduced_orbit="simpler" if place > joint else None)
 
         monkeypatch.setattr(border_collision, "smooth_step", step)
-        way = border_collision.come_to_corner([Place(place, **told) for place in (-2e-3, -1e-3, 0.0)], length)
+        way = border_collision.approach_grazing([Place(place, **told) for place in (-2e-3, -1e-3, 0.0)], length)
         return way, tried
 
     return come
@@ -126,8 +128,8 @@ def test_a_corner_is_come_to_by_steps_that_leave_three_hundredths_of_the_way(app
     left = 7.9e-4 * 0.03 ** np.arange(6)
     assert tried == pytest.approx([1e-5, *(0.97 * left[:-1])], rel=1e-4, abs=0.0)
     assert [point.orbit for point in way] == pytest.approx(8e-4 - left, rel=1e-9)
-    assert np.isnan([point.remaining for point in way[:-1]]).all()
-    assert way[-1].remaining == pytest.approx(1.92e-11, rel=1e-2, abs=0.0)
+    assert np.isnan([point.distance_to_grazing for point in way[:-1]]).all()
+    assert way[-1].distance_to_grazing == pytest.approx(1.92e-11, rel=1e-2, abs=0.0)
 
 
 def test_steps_that_fail_are_made_again_shorter(approach):
@@ -151,7 +153,7 @@ def test_a_corner_that_comes_no_nearer_is_given_up(approach):
     """What falls like a fourth power foretells a quarter of the way."""
     way, tried = approach(1e-3, power=4)
     assert len(tried) == len(way) == 32
-    assert not [point for point in way if point.remaining > 0.0]
+    assert not [point for point in way if point.distance_to_grazing > 0.0]
 
 
 def test_no_corner_is_looked_for_beyond_the_length_within_which_it_lies(approach):
@@ -162,7 +164,7 @@ def test_no_corner_is_looked_for_beyond_the_length_within_which_it_lies(approach
 
 def test_the_way_to_a_corner_ends_where_the_branch_joins_another_one(approach):
     way, tried = approach(1e-3, joint=5e-4)
-    assert [point.joined for point in way] == [None, "simpler"]
+    assert [point.reduced_orbit for point in way] == [None, "simpler"]
     assert len(tried) == 2
 
 
@@ -186,19 +188,21 @@ def turn(monkeypatch):
                 raise OrbitError("none")
             return SimpleNamespace(orbit=SimpleNamespace(stop_counts=stop_counts))
 
-        monkeypatch.setattr(border_collision, "drops", lambda model: drops)
+        monkeypatch.setattr(border_collision, "has_friction_drop", lambda model: drops)
         monkeypatch.setattr(border_collision, "orbit_of", orbit_of)
         monkeypatch.setattr(border_collision, "tangent_of", lambda number, line: np.array([number, 0.0]))
         monkeypatch.setattr(border_collision, "step_along", step)
         monkeypatch.setattr(
-            border_collision, "simpler_orbit", lambda orbit: "one" if orbit.stop_counts in simple else None
+            border_collision, "reduced_orbit", lambda orbit: "one" if orbit.stop_counts in simple else None
         )
         reference = ChainState(np.array([0.5, 0.25]), np.zeros(2), np.zeros(2, dtype=bool))
         known = {"model": SimpleNamespace(blocks=2), "return_time": 1.0, "symmetry": None}
         orbit = SimpleNamespace(reference=reference, stop_counts=here, **known)
-        line = SimpleNamespace(coordinate=lambda model: 2e-6, model=lambda model, a: a, least=0.0, units=OwnUnits())
+        line = SimpleNamespace(
+            coordinate=lambda model: 2e-6, model=lambda model, a: a, lower_bound=0.0, units=OwnUnits()
+        )
         point = SimpleNamespace(orbit=orbit, line=line, tangent=np.array([4.0, -2.0, 0.0, 0.0, 0.0, -1.0]))
-        found = border_collision.turn_corner(point)
+        found = border_collision.switch_branch(point)
         return found and found.orbit.stop_counts, tried, tangents
 
     return turned

@@ -18,11 +18,11 @@ from burridge_knopoff import (
     simulate,
     synchronized_orbit,
 )
-from burridge_knopoff.periodic_orbits.following import Following
+from burridge_knopoff.periodic_orbits.following import ContinuationSettings
 from tests.refused import refused
 from tests.scipy_flow import model_events
 
-WIDE = Following(first_step=1e-3, largest_step=1e-2)
+WIDE = ContinuationSettings(first_step=1e-3, largest_step=1e-2)
 MODEL = Model(Chain(3), law_of("linearized", 0.06))
 
 
@@ -34,7 +34,7 @@ def end_of_synchrony(parameter, upward=True, model=MODEL):
         WIDE,
         parameter=parameter,
         upward=upward,
-        enough=lambda points: points[-1].multipliers.unstable > 0,
+        is_complete=lambda points: points[-1].multipliers.unstable_count > 0,
     )
     return next(one for one in locate_bifurcations(branch) if one.loses_stability or not one.keeps_stability)
 
@@ -64,7 +64,7 @@ def test_synchrony_ends_where_the_stick_of_the_lighter_block_vanishes(grazing):
     assert grazing.before.orbit.stop_counts == (1, 1, 1)
     assert grazing.after.orbit.stop_counts == (0, 1, 1)
     assert grazing.loses_stability
-    assert not grazing.turns
+    assert not grazing.is_turning_point
     # The same chain from its other end.
     mirrored = end_of_synchrony("mass[1]")
     assert mirrored.value == pytest.approx(grazing.value, abs=1e-9)
@@ -105,14 +105,14 @@ def test_a_fold_in_the_mass_of_one_end_begins_at_the_pitchfork():
     pair = limit_cycle(model, start, settling=6000.0)
     assert pair.symmetry == Symmetry.ASYMMETRIC
     # Longer steps would jump over the fold to the other one of the pair.
-    short = Following(first_step=1e-5)
+    short = ContinuationSettings(first_step=1e-5)
     (fold,) = [
         one
         for upward in (True, False)
         for one in locate_bifurcations(follow(pair, (0.999, 1.001), short, parameter="mass[3]", upward=upward))
         if one.kind == BifurcationKind.FOLD and one.loses_stability
     ]
-    steps = Following(first_step=1e-4, largest_step=1e-3, least_step=1e-7)
+    steps = ContinuationSettings(first_step=1e-4, largest_step=1e-3, smallest_step=1e-7)
     mass, a = follow_bifurcation(fold, ("mass[3]", "a"), (0.086, 0.092), steps).values.T
     assert a.min() == pytest.approx(0.08697290467, abs=1e-6)
     assert mass[a.argmin()] == pytest.approx(1.0, abs=1e-8)

@@ -17,7 +17,13 @@ from burridge_knopoff import (
     simulate,
 )
 from burridge_knopoff.periodic_orbits.flow import flow, rate
-from burridge_knopoff.periodic_orbits.grazing_distances import Contacts, _derivatives, _root, contacts, drops
+from burridge_knopoff.periodic_orbits.grazing_distances import (
+    GrazingDistances,
+    _derivatives,
+    _root,
+    grazing_distances,
+    has_friction_drop,
+)
 from burridge_knopoff.periodic_orbits.periodic import orbit_of
 from burridge_knopoff.running.runner import Runner
 
@@ -55,7 +61,7 @@ def six():
 
 
 def test_contacts_are_what_dense_samples_show(six):
-    found = contacts(six)
+    found = grazing_distances(six)
     position, velocity, stuck = sampled(six, 40_000)
     step, model = six.period / 40_000, six.model
     for block in range(3):
@@ -82,10 +88,10 @@ def test_half_an_orbit_that_is_its_own_mirror_image_shows_all():
     )
     whole = find_periodic_orbit(model, half.reference, half.period, Symmetry.ASYMMETRIC)
     assert (half.symmetry, whole.symmetry) == (Symmetry.SYMMETRIC, Symmetry.ASYMMETRIC)
-    for name, values in vars(contacts(whole)).items():
-        assert getattr(contacts(half), name) == pytest.approx(values, abs=1e-9), name
+    for name, values in vars(grazing_distances(whole)).items():
+        assert getattr(grazing_distances(half), name) == pytest.approx(values, abs=1e-9), name
     # In the first half one of the end blocks comes nearer to a grazing than the other.
-    first = contacts(replace(half, symmetry=Symmetry.ASYMMETRIC))
+    first = grazing_distances(replace(half, symmetry=Symmetry.ASYMMETRIC))
     assert np.abs(first.speed[0] - first.speed[2]) > 1e-3
 
 
@@ -93,8 +99,8 @@ def test_half_an_orbit_that_is_its_own_mirror_image_shows_all():
 def test_contacts_do_not_depend_on_where_the_orbit_begins(six, share):
     """Wherever the last of the intervals lies in which they are looked for."""
     moved = replace(six, reference=flow(six.model, six.reference, share * six.period)[0].state())
-    for name, values in vars(contacts(six)).items():
-        assert getattr(contacts(moved), name) == pytest.approx(values, abs=1e-7), name
+    for name, values in vars(grazing_distances(six)).items():
+        assert getattr(grazing_distances(moved), name) == pytest.approx(values, abs=1e-7), name
 
 
 def test_contacts_are_those_of_the_same_motion_in_other_units(six):
@@ -103,15 +109,17 @@ def test_contacts_are_those_of_the_same_motion_in_other_units(six):
     stiff = Chain(3, coupling=900.0 * chain.coupling, pulling=tuple(900.0 * chain.driving))
     model = Model(stiff, law_of("linearized", 30.0 * six.a), six.model.v / 30.0)
     moved = ChainState(start.position / 900.0, start.velocity / 30.0, start.stuck)
-    found = contacts(find_periodic_orbit(model, moved, six.return_time / 30.0, six.symmetry))
-    told = contacts(six)
+    found = grazing_distances(find_periodic_orbit(model, moved, six.return_time / 30.0, six.symmetry))
+    told = grazing_distances(six)
     for name, scale in {"stick": 30.0, "slip": 30.0, "speed": 30.0, "force": 1.0}.items():
         assert scale * getattr(found, name) == pytest.approx(getattr(told, name), rel=1e-5), name
 
 
 def test_all_that_falls_to_0_in_proportion(six):
     told = [np.array([2.0, 3.0, np.inf]), *(np.full(3, value) for value in (0.5, 0.2, 0.1, 0.3))]
-    assert Contacts(*told).values().tolist() == [4.0, 9.0, np.inf] + 3 * [0.25] + 3 * [0.2] + 3 * [0.1] + 3 * [0.3**2]
+    assert GrazingDistances(*told).values().tolist() == [4.0, 9.0, np.inf] + 3 * [0.25] + 3 * [0.2] + 3 * [0.1] + 3 * [
+        0.3**2
+    ]
 
 
 BACKWARD = ChainState(np.array([1.7, 0.4, 0.3]), np.array([-0.6, 0.3, 0.0]), np.array([False, False, True]))
@@ -164,7 +172,7 @@ def test_where_friction_drops_slips_end_with_a_deceleration(dropping, contact):
             before = [runner.after(orbit.reference, time - step).velocity[block] for step in (1e-4, 2e-4)]
             along = np.sign(before[0])
             least[block] = min(least[block], along * (before[1] - before[0]) / 1e-4)
-    found = contacts(orbit).deceleration
+    found = grazing_distances(orbit).deceleration
     assert np.isfinite(found).any()
     assert found == pytest.approx(least, abs=1e-3)
 
@@ -175,7 +183,7 @@ def test_where_a_block_turns_round_no_stick_shrinks():
     time, kind = orbit.events_of(1)
     sticks = np.diff(time, append=time[:1] + orbit.period)[kind == 0]
     assert sorted(sticks == 0.0) == [False] * 3 + [True]
-    assert contacts(orbit).stick[1] == sticks[sticks > 0.0].min() > 1.0
+    assert grazing_distances(orbit).stick[1] == sticks[sticks > 0.0].min() > 1.0
 
 
 def test_a_deceleration_grows_with_the_threshold(dropping):
@@ -183,8 +191,8 @@ def test_a_deceleration_grows_with_the_threshold(dropping):
     law, start = dropping.model.law, dropping.reference
     model = Model(Chain(3, threshold=3.0), law.at(law.a / 3.0), 3.0 * dropping.model.v)
     moved = ChainState(3.0 * start.position, 3.0 * start.velocity, start.stuck)
-    found = contacts(find_periodic_orbit(model, moved, dropping.return_time, dropping.symmetry)).deceleration
-    assert found == pytest.approx(3.0 * contacts(dropping).deceleration, rel=1e-6)
+    found = grazing_distances(find_periodic_orbit(model, moved, dropping.return_time, dropping.symmetry)).deceleration
+    assert found == pytest.approx(3.0 * grazing_distances(dropping).deceleration, rel=1e-6)
 
 
 @pytest.mark.parametrize(
@@ -199,7 +207,7 @@ def test_a_deceleration_grows_with_the_threshold(dropping):
 )
 def test_rounding_is_no_drop_of_friction(law, told):
     assert float(law(0.0)) < 1.0 or law.name == "linearized"
-    assert drops(Model(Chain(3), law)) is told
+    assert has_friction_drop(Model(Chain(3), law)) is told
 
 
 def peaks(values, among):
@@ -224,7 +232,7 @@ def test_what_slips_backward_or_is_pulled_back_is_as_near_to_grazing(threshold, 
     motion = orbit_of(model, ChainState(*map(np.array, (position, velocity, stuck))), 6.0, Symmetry.ASYMMETRIC)
     at, rate, still = sampled(motion, 3000)
     force = chain.thresholds * float(model.law(model.v)) - at @ chain.stiffness.T
-    found = contacts(motion)
+    found = grazing_distances(motion)
     for k in range(chain.blocks):
         slow = [peaks(-side * rate[:, k], ~still[:, k] & (side * rate[:, k] > 0.0)) for side in (1.0, -1.0)]
         pulled = [peaks(side * force[:, k], still[:, k]) for side in (1.0, -1.0)]

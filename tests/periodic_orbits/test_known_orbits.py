@@ -8,7 +8,7 @@ import pytest
 from burridge_knopoff import Chain, InitialState, Model, law_of, limit_cycle, synchronized_orbit
 from burridge_knopoff.periodic_orbits import known_orbits as orbits_over_a
 from burridge_knopoff.periodic_orbits.flow import OrbitError
-from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, beside
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, nearby_orbit
 
 
 @pytest.fixture
@@ -32,9 +32,9 @@ def test_steps_are_halved_until_the_orbit_is_found(known, monkeypatch):
         tried.append(a)
         if a - max(known.known) > 0.003:
             raise OrbitError("too far")
-        return beside(orbit, a)
+        return nearby_orbit(orbit, a)
 
-    monkeypatch.setattr(orbits_over_a, "beside", near_only)
+    monkeypatch.setattr(orbits_over_a, "nearby_orbit", near_only)
     found = known.at(here + 0.02)
     assert found.model.a == here + 0.02
     assert tried[:3] == pytest.approx([here + 0.02, here + 0.01, here + 0.005])
@@ -55,7 +55,7 @@ def test_where_it_is_lost_the_error_is_told_after_the_least_step(asymmetric):
     assert steps == pytest.approx(np.round(steps), abs=1e-6)
     assert (np.diff(steps) > 0.5).all()
     tried = float(re.search(r"0\.1324\d+", str(lost.value))[0])
-    assert 1.0 <= (tried - found[-1]) / orbits_over_a.LEAST_STEP < 2.0
+    assert 1.0 <= (tried - found[-1]) / orbits_over_a.SMALLEST_STEP < 2.0
 
 
 def test_steps_become_as_short_as_the_stick_is(known, monkeypatch):
@@ -65,18 +65,18 @@ def test_steps_become_as_short_as_the_stick_is(known, monkeypatch):
     def near_only(orbit, a):
         if min(abs(a - other) for other in known.known) > 3e-7:
             raise OrbitError("too far")
-        return beside(orbit, a)
+        return nearby_orbit(orbit, a)
 
-    monkeypatch.setattr(orbits_over_a, "beside", near_only)
+    monkeypatch.setattr(orbits_over_a, "nearby_orbit", near_only)
     assert known.at(0.99e-4).model.a == 0.99e-4
 
 
 def test_an_orbit_of_another_period_is_not_on_the_branch(known):
     """Newton's method comes to the orbit gone round twice from a guess that is one."""
     (orbit,) = known.known.values()
-    assert beside(orbit, orbit.a + 1e-3).period == pytest.approx(orbit.period, rel=1e-2)
+    assert nearby_orbit(orbit, orbit.a + 1e-3).period == pytest.approx(orbit.period, rel=1e-2)
     with pytest.raises(OrbitError, match="no periodic orbit found near the guess"):
-        beside(orbit, 0.3)
+        nearby_orbit(orbit, 0.3)
 
 
 def test_orbits_of_any_symmetry_are_continued_to_where_runs_settle(asymmetric):

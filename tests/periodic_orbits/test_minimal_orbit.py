@@ -7,7 +7,7 @@ import pytest
 
 from burridge_knopoff import Chain, ChainState, Model, Symmetry, law_of
 from burridge_knopoff.periodic_orbits import minimal_orbit
-from burridge_knopoff.periodic_orbits.minimal_orbit import simplest
+from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 
 STILL = np.zeros(2, dtype=bool)
 #: No mirror image of itself.
@@ -47,4 +47,4 @@ def test_twice_a_simpler_orbit_is_near_it_with_its_stops_in_its_time(monkeypatch
     orbit, single = an_orbit(2.0, (2, 4)), an_orbit(time, stops)
     monkeypatch.setattr(minimal_orbit, "ReturnMap", lambda *_: SimpleNamespace(end=lambda start, after: end))
     monkeypatch.setattr(minimal_orbit, "find_periodic_orbit", lambda *_: single)
-    assert simplest(orbit, 1e-4) is (single if told else orbit)
+    assert minimal_form(orbit, 1e-4) is (single if told else orbit)

@@ -13,7 +13,7 @@ from burridge_knopoff import (
     BifurcationKind,
     Chain,
     ChainState,
-    Following,
+    ContinuationSettings,
     Model,
     follow,
     follow_bifurcation,
@@ -44,7 +44,7 @@ SCALED = {
 def bifurcation_near(orbit, a, reach=2e-3):
     """Return the bifurcation at an a, on the branch of an orbit near by."""
     for upward in (True, False):
-        branch = follow(orbit, (a - reach, a + reach), upward=upward, enough=lambda points: len(points) > 60)
+        branch = follow(orbit, (a - reach, a + reach), upward=upward, is_complete=lambda points: len(points) > 60)
         for bifurcation in locate_bifurcations(branch):
             if abs(bifurcation.a - a) < 1e-8:
                 return bifurcation
@@ -138,7 +138,10 @@ def test_the_curve_of_synchrony_in_a_and_coupling(families):
     """Against a_c found at single couplings; it turns back in the coupling."""
     pitchfork = bifurcation_near(near(families["linearized"], CRITICAL), CRITICAL)
     curve = follow_bifurcation(
-        pitchfork, ("a", "coupling"), (0.9, 1.3), Following(first_step=4e-3, largest_step=2e-2, least_step=1e-4)
+        pitchfork,
+        ("a", "coupling"),
+        (0.9, 1.3),
+        ContinuationSettings(first_step=4e-3, largest_step=2e-2, smallest_step=1e-4),
     )
     a, coupling = curve.values.T
     last = int(coupling.argmax())
@@ -158,7 +161,7 @@ def test_a_long_orbit_meets_the_same_grazings_along_the_threshold():
     model = MODEL.at(0.0813)
     orbit = limit_cycle(model, simulate(model, initial="plus", transient=0, window=1000).final)
     assert orbit.period > 157.0
-    few = Following(most_orbits=40)
+    few = ContinuationSettings(max_orbits=40)
     along_a = next(locate_bifurcations(follow(orbit, settings=few)))
     branch = follow(orbit, settings=few, parameter="threshold")
     assert all(abs(point.orbit.period - orbit.period) < 0.1 for point in branch)

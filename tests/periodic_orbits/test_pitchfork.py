@@ -5,7 +5,7 @@ import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, OrbitError, Symmetry, law_of, multipliers, simulate
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
-from burridge_knopoff.periodic_orbits.pitchfork import asymmetry_of, branching_orbit
+from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit, end_block_asymmetry
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
 from burridge_knopoff.study.paper import PAPER_LAWS
 from tests.periodic_orbits.exact import slipping_state
@@ -24,7 +24,7 @@ def test_the_branch_is_the_attractor_beyond(families, critical, law):
     assert a > critical[law].a
     assert orbit.symmetry == Symmetry.ASYMMETRIC
     assert orbit.reference.stuck[[0, 2]].all()
-    assert asymmetry_of(orbit) == pytest.approx(1e-2, abs=1e-14)
+    assert end_block_asymmetry(orbit) == pytest.approx(1e-2, abs=1e-14)
     assert orbit.residual <= 1e-14
     position, velocity = slipping_state(families[law].at(a))
     position[0] += 1e-3

@@ -21,7 +21,7 @@ from burridge_knopoff import (
 )
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.flow import flow
-from burridge_knopoff.periodic_orbits.synchronized_bifurcations import differenced_multiplier
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import finite_difference_multiplier
 from burridge_knopoff.running.runner import Runner
 from tests.periodic_orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
@@ -46,12 +46,12 @@ def test_the_state_returns_and_its_multiplier_in_closed_form(families, law, a):
     assert (orbit.stop_counts[0], orbit.stop_counts[2]) == (1, 1)
     found = multipliers(orbit)
     # Those of the end blocks' velocities, which a stop takes away.
-    assert abs(found.breaking[1]) < 1e-12
-    assert np.abs(found.keeping).min() < 1e-12
+    assert abs(found.symmetry_breaking[1]) < 1e-12
+    assert np.abs(found.symmetry_preserving).min() < 1e-12
     if law == "linearized":
         time, omega = orbit.period - orbit.stick_time(0), np.sqrt(2.0 - 0.25 * a * a)
         closed = np.exp(0.5 * a * time) * (np.cos(omega * time) - 0.5 * a / omega * np.sin(omega * time))
-        assert found.breaking[0] == pytest.approx(closed, abs=1e-12)
+        assert found.symmetry_breaking[0] == pytest.approx(closed, abs=1e-12)
 
 
 @pytest.mark.parametrize("a", [0.02, 0.08, 0.15])
@@ -149,7 +149,7 @@ def test_chains_of_any_length_have_the_orbit(law, blocks):
     assert orbit.symmetry == Symmetry.SYNCHRONIZED
     assert orbit.residual <= 1e-14
     found = multipliers(orbit)
-    assert differenced_multiplier(orbit) == pytest.approx(found.transverse, abs=1e-9)
+    assert finite_difference_multiplier(orbit) == pytest.approx(found.transverse, abs=1e-9)
     shift = np.zeros(2 * blocks)
     shift[0] = 1e-7
     start = ChainState(*np.split(orbit.reference.vector() + shift, 2), orbit.reference.stuck)
@@ -175,7 +175,7 @@ def test_any_law_has_an_orbit_that_runs_end_on(law):
     model = Model(Chain(3, threshold=(1.0, 0.8, 1.0)), law)
     orbit = synchronized_orbit(model)
     assert orbit.residual <= 1e-14
-    assert transverse(orbit) == pytest.approx(differenced_multiplier(orbit), abs=1e-7)
+    assert transverse(orbit) == pytest.approx(finite_difference_multiplier(orbit), abs=1e-7)
     position, velocity = slipping_state(orbit)
     position[0] += 1e-4
     settings = Settings(transient=4000.0, window=100.0, batches=2, events="all")
@@ -189,7 +189,7 @@ def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(
     doubling = {"linearized": 0.27232, "nonlinear": 0.29093}[law]
     for a, doubled in ((doubling - 0.002, False), (doubling + 0.002, True)):
         orbit = families[law].at(a)
-        assert (multipliers(orbit).keeping[0].real < -1.0) == doubled
+        assert (multipliers(orbit).symmetry_preserving[0].real < -1.0) == doubled
         position, velocity = slipping_state(orbit)
         position[1] += 1e-4
         initial = InitialState("near", position, velocity)

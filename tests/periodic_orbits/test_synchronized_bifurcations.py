@@ -11,15 +11,15 @@ from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits import synchronized_bifurcations
 from burridge_knopoff.periodic_orbits.flow import flow
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
-from burridge_knopoff.periodic_orbits.pitchfork import apart
+from burridge_knopoff.periodic_orbits.pitchfork import displace_end_blocks
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
+    a_unit,
     bifurcations_of,
     critical_a,
     critical_a_error,
-    differenced_multiplier,
+    finite_difference_multiplier,
     grazing_a,
     symmetric_period_doubling_a,
-    unit,
 )
 from burridge_knopoff.study.paper import PAPER_LAWS
 from tests.periodic_orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
@@ -76,7 +76,7 @@ def test_grazing_a_in_exact_arithmetic(families, bifurcations, law):
 
 def test_symmetric_multiplier_at_the_flip(families, bifurcations, law):
     a = symmetric_period_doubling_a(bifurcations[law])
-    assert multipliers(families[law].at(a)).keeping[0] == pytest.approx(-1.0, abs=1e-12)
+    assert multipliers(families[law].at(a)).symmetry_preserving[0] == pytest.approx(-1.0, abs=1e-12)
 
 
 def test_no_change_is_told():
@@ -117,14 +117,15 @@ def test_bifurcations_beside_a_range_in_which_the_orbit_is_lost_are_found(famili
 @pytest.mark.parametrize("a", [0.02, 0.09, 0.2])
 def test_finite_differences_agree_with_the_tangent_map(families, law, a):
     orbit = families[law].at(a)
-    assert differenced_multiplier(orbit) == pytest.approx(transverse(orbit), abs=1e-9)
+    assert finite_difference_multiplier(orbit) == pytest.approx(transverse(orbit), abs=1e-9)
 
 
 def test_differences_of_blocks_1_and_3_fade_below_and_grow_above(families, critical, law):
     for offset in (-0.002, 0.002):
         orbit = families[law].at(critical[law] + offset)
         start, end = (
-            flow(orbit.model, apart(orbit.reference, 1e-8), turns * orbit.period)[0].state() for turns in (1, 101)
+            flow(orbit.model, displace_end_blocks(orbit.reference, 1e-8), turns * orbit.period)[0].state()
+            for turns in (1, 101)
         )
         first, last = (state.position[0] - state.position[2] for state in (start, end))
         assert last / first == pytest.approx(transverse(orbit) ** 100, rel=1e-5)
@@ -147,7 +148,7 @@ def test_transitions_are_found_on_the_scale_of_the_chain(critical, bifurcations,
     springs = {"coupling": strength, "pulling": (strength, 2.0 * strength, strength)}
     orbits = synchronized_orbits(Model(Chain(3, threshold=threshold, **springs), law_of("linearized", 0.0)))
     factor = strength**0.5 / threshold
-    assert unit(orbits.model.chain) == pytest.approx(factor)
+    assert a_unit(orbits.model.chain) == pytest.approx(factor)
     found = bifurcations_of(orbits)
     assert critical_a(found) == pytest.approx(factor * critical["linearized"], rel=1e-9)
     assert grazing_a(found, block=1) == pytest.approx(factor * grazing_a(bifurcations["linearized"], block=1), rel=1e-9)
@@ -175,6 +176,6 @@ def test_the_error_of_critical_a_is_how_far_a_multiplier_that_is_off_moves_it(mo
     monkeypatch.setattr(
         synchronized_bifurcations, "multipliers", lambda a: SimpleNamespace(transverse=1.0 + 5.0 * (a - 0.2))
     )
-    monkeypatch.setattr(synchronized_bifurcations, "differenced_multiplier", lambda a: 0.99 + 5.0 * (a - 0.2))
+    monkeypatch.setattr(synchronized_bifurcations, "finite_difference_multiplier", lambda a: 0.99 + 5.0 * (a - 0.2))
     orbits = SimpleNamespace(model=families["linearized"].model, at=lambda a: a)
     assert critical_a_error(orbits, 0.2) == pytest.approx(0.002, rel=1e-9)

@@ -23,7 +23,7 @@ from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
     bifurcations_of,
     critical_a,
-    differenced_multiplier,
+    finite_difference_multiplier,
     grazing_a,
 )
 from burridge_knopoff.running.runner import Runner
@@ -77,7 +77,7 @@ def test_the_synchronized_orbit_scales(time, length, law):
     assert other.period / time == pytest.approx(one.period, abs=1e-11)
     assert other.reference.position / length == pytest.approx(one.reference.position, abs=1e-11)
     assert abs(multipliers(other).whole) == pytest.approx(abs(multipliers(one).whole), abs=1e-10)
-    assert differenced_multiplier(other) == pytest.approx(multipliers(one).transverse, abs=1e-9)
+    assert finite_difference_multiplier(other) == pytest.approx(multipliers(one).transverse, abs=1e-9)
 
 
 def test_a_chain_a_thousand_times_as_slow_has_its_orbit():
@@ -117,8 +117,8 @@ def test_a_branch_scales(branch, time, length):
     for first, second in zip(one, other, strict=True):
         assert second.orbit.a * length / time == pytest.approx(first.orbit.a, abs=1e-9)
         assert second.orbit.period / time == pytest.approx(first.orbit.period, abs=1e-9)
-        assert second.contacts.shares(second.orbit.model.chain.own_units) == pytest.approx(
-            first.contacts.values(), rel=1e-6
+        assert second.grazing_distances.in_own_units(second.orbit.model.chain.own_units) == pytest.approx(
+            first.grazing_distances.values(), rel=1e-6
         )
     (pitchfork,), (found,) = locate_bifurcations(one), locate_bifurcations(other)
     assert found.kind == pitchfork.kind

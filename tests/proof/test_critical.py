@@ -75,7 +75,7 @@ def test_the_family_holds_the_orbits_of_the_double_code(branch, family):
         assert piece.orbit.period.contains(arb(orbit.period))
         found = multipliers(orbit)
         assert piece.orbit.multiplier.contains(arb(found.transverse.real))
-        assert piece.orbit.symmetric_multiplier.contains(arb(float(found.keeping[0].real)))
+        assert piece.orbit.symmetric_multiplier.contains(arb(float(found.symmetry_preserving[0].real)))
         with arithmetic():
             piece.check_holds(prove_orbit(orbit, arb(a)).enclosure, arb(a))
         assert piece.orbit.slope > 0

@@ -54,7 +54,7 @@ def test_enclosures_hold_the_orbit_of_the_double_code(family, a):
     assert [float(time) for time in proved.event_times] == pytest.approx(expected, abs=1e-13)
     found = multipliers(orbit)
     assert float(proved.multiplier) == pytest.approx(found.transverse.real, abs=1e-11)
-    assert float(proved.symmetric_multiplier) == pytest.approx(found.keeping[0].real, abs=1e-11)
+    assert float(proved.symmetric_multiplier) == pytest.approx(found.symmetry_preserving[0].real, abs=1e-11)
     assert (proved.arcs[0].ends == LATERAL) == (a > 0.0757)
 
 

@@ -168,7 +168,7 @@ def test_a_c_of_the_nonlinear_law(found, family):
     orbit = family.at(float(found.a))
     assert float(found.orbit.period) == pytest.approx(orbit.period, abs=1e-13)
     assert float(found.orbit.symmetric_multiplier) == pytest.approx(
-        float(multipliers(orbit).keeping[0].real), abs=1e-11
+        float(multipliers(orbit).symmetry_preserving[0].real), abs=1e-11
     )
 
 

@@ -174,7 +174,7 @@ def test_a_motion_that_attracts_lies_on_an_orbit_that_attracts():
     with pytest.raises(OrbitError, match="no periodic orbit found"):
         limit_cycle(model, ChainState(position, start.velocity, start.stuck))
     orbit = _closed(model, position + model.sliding_offset, start.velocity)
-    assert multipliers(orbit).unstable == 0
+    assert multipliers(orbit).unstable_count == 0
     assert orbit.mean_distance == pytest.approx(0.0154, abs=1e-4)
 
 

@@ -43,7 +43,7 @@ def test_the_curve_is_that_of_the_orbits(found):
             expected = multipliers(orbit)
             assert values[0] == pytest.approx(expected.transverse, abs=1e-12)
             assert values[1] == pytest.approx(1.0, abs=1e-12)
-            assert values[2:4] == pytest.approx(expected.keeping[:2], abs=1e-12)
+            assert values[2:4] == pytest.approx(expected.symmetry_preserving[:2], abs=1e-12)
             assert values[4:].tolist() == [0.0, 0.0]
             assert values[0] == point["transverse_multiplier"].item()
             assert point["period"].item() == pytest.approx(orbit.period, abs=1e-13)

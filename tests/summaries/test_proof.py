@@ -44,7 +44,7 @@ def test_every_interval_is_about_the_number_of_the_double_code(found, model):
         times = [*((at[event] - first) % orbit.period for event in ((0, 1), (0, 0), (1, 0))), orbit.period]
         assert one["event_time"].values == pytest.approx(np.stack([times] * 2, axis=1), abs=TOLD)
         multiplier = multipliers(orbit)
-        expected = [multiplier.transverse.real, multiplier.keeping[0].real]
+        expected = [multiplier.transverse.real, multiplier.symmetry_preserving[0].real]
         assert one["multiplier"].values == pytest.approx(np.stack([expected] * 2, axis=1), abs=1e-11)
     assert of_law["critical_a"].values == pytest.approx([a_c] * 2, abs=2e-15)
 

@@ -55,7 +55,7 @@ class MultiplierTest:
     """A kind of bifurcation as a root of a smooth function of the multipliers along a branch of orbits.
 
     value : returns the function of some multipliers, complex, shape (n,)
-    part : of the perturbations whose multipliers it is of: `keeping` the symmetry of the orbit, `breaking` it, or both
+    part : of the perturbations whose multipliers it is of: `symmetry_preserving`, `symmetry_breaking`, or both
     symmetric : whether it is of orbits that are their own mirror image half a period later, of others, or None of all
     is_root : returns whether a root is the bifurcation, from the multipliers there; None if every root is
     """
@@ -66,10 +66,10 @@ class MultiplierTest:
     symmetric: bool | None = None
     is_root: Callable[[np.ndarray], bool] | None = None
 
-    def belongs(self, part: str, symmetry: Symmetry) -> bool:
+    def is_applicable(self, part: str, symmetry: Symmetry) -> bool:
         """Return whether it is a test of these perturbations of orbits of a symmetry."""
         other = self.symmetric not in (None, symmetry == Symmetry.SYMMETRIC)
-        return self.part in ("both", part) and not (part == "keeping" and other)
+        return self.part in ("both", part) and not (part == "symmetry_preserving" and other)
 
 
 def _pairs(own: np.ndarray) -> np.ndarray:
@@ -85,9 +85,9 @@ def _is_complex(own: np.ndarray) -> bool:
 
 #: The kinds that multipliers tell. Each has one test in the same part of the perturbations.
 MULTIPLIER_TESTS = (
-    MultiplierTest(BifurcationKind.FOLD, lambda own: np.prod(own - 1.0), "keeping"),
-    MultiplierTest(BifurcationKind.PITCHFORK, lambda own: np.prod(own - 1.0), "breaking"),
-    MultiplierTest(BifurcationKind.PITCHFORK, lambda own: np.prod(own + 1.0), "keeping", symmetric=True),
+    MultiplierTest(BifurcationKind.FOLD, lambda own: np.prod(own - 1.0), "symmetry_preserving"),
+    MultiplierTest(BifurcationKind.PITCHFORK, lambda own: np.prod(own - 1.0), "symmetry_breaking"),
+    MultiplierTest(BifurcationKind.PITCHFORK, lambda own: np.prod(own + 1.0), "symmetry_preserving", symmetric=True),
     MultiplierTest(BifurcationKind.PERIOD_DOUBLING, lambda own: np.prod(own + 1.0), symmetric=False),
     # Also 0 if the product of two real multipliers is 1, at an ordinary saddle.
     MultiplierTest(BifurcationKind.NEIMARK_SACKER, lambda own: np.prod(_pairs(own) - 1.0), is_root=_is_complex),

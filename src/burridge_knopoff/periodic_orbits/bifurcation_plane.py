@@ -14,17 +14,17 @@ import numpy as np
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.parameters import value_of
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
-from burridge_knopoff.periodic_orbits.bifurcations import ROUNDING, SIDES, Bifurcation, kind_at
-from burridge_knopoff.periodic_orbits.border_collision import CAUTIOUS, REACHED, SHORTER
+from burridge_knopoff.periodic_orbits.bifurcations import BRACKETS, ROUNDING, Bifurcation, kind_at
+from burridge_knopoff.periodic_orbits.border_collision import CORNER_DISTANCE, LARGEST_SHARE, STEP_REDUCTION
 from burridge_knopoff.periodic_orbits.floquet import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
-from burridge_knopoff.periodic_orbits.following import FASTER
-from burridge_knopoff.periodic_orbits.grazing_distances import contacts
+from burridge_knopoff.periodic_orbits.following import STEP_GROWTH
+from burridge_knopoff.periodic_orbits.grazing_distances import grazing_distances
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, safe_offset
 from burridge_knopoff.periodic_orbits.pseudo_arclength import (
     BranchOrbit,
-    in_symmetry_of,
+    adapt_symmetry,
     line_of,
     solve_ahead,
     tangent_of,
@@ -62,13 +62,13 @@ class BifurcationPlane:
     def __init__(self, bifurcation: Bifurcation, names: tuple[str, str]) -> None:
         orbit = bifurcation.at.orbit
         for name in names:
-            orbit = in_symmetry_of(line_of(orbit, name), orbit)
+            orbit = adapt_symmetry(line_of(orbit, name), orbit)
         self.orbit, self.kind, self.names = orbit, bifurcation.kind, names
         self.units = np.array([line_of(orbit, name).rates[0] for name in names])
         self.own_units = orbit.model.chain.own_units
         self.symmetry, self.stops = orbit.symmetry, orbit.stop_counts
         if self.kind == BifurcationKind.GRAZING:
-            self.contact = int(bifurcation.at.contacts.shares(self.own_units).argmin())
+            self.component = int(bifurcation.at.grazing_distances.in_own_units(self.own_units).argmin())
         else:
             values = {key: abs(value) for key, value in critical_values(orbit).items() if key[0] == self.kind}
             if not values:
@@ -101,7 +101,7 @@ class BifurcationPlane:
         tangent = tangent_of(near, self.line(near.model, direction))
 
         def orbit_at(distance: float) -> PeriodicOrbit:
-            found = solve_ahead(model, guess, time, self.symmetry, line, tangent, distance, enough=0.0)
+            found = solve_ahead(model, guess, time, self.symmetry, line, tangent, distance, target_residual=0.0)
             if abs(found.return_time - time) > CHANGE * time or not any(found.stop_counts):
                 raise OrbitError(f"{line.place(model)}: no orbit found near the guess")
             return found
@@ -127,7 +127,7 @@ class BifurcationPlane:
             if abs(distance) > longest:
                 raise OrbitError(f"{line.place(orbit.model)}: no bifurcation found near the guess")
             start = orbit.model, orbit.reference, orbit.return_time
-            return solve_ahead(*start, self.symmetry, line, tangent, distance, enough=0.0)
+            return solve_ahead(*start, self.symmetry, line, tangent, distance, target_residual=0.0)
 
         def value(distance: float) -> float:
             return critical_values(orbit_at(distance))[self.key]
@@ -139,7 +139,7 @@ class BifurcationPlane:
                 break
             before, here = here, here - values[1] * (here - before) / (values[1] - values[0])
             values = values[1], value(here)
-        for side in SIDES:
+        for side in BRACKETS:
             low, high = orbit_at(here - side), orbit_at(here + side)
             if critical_values(low)[self.key] * critical_values(high)[self.key] < 0.0:
                 return orbit_at(here), 0.5 * np.abs(self.place(high.model) - self.place(low.model))
@@ -157,21 +157,21 @@ class BifurcationPlane:
                 if found.stop_counts != self.stops:
                     raise OrbitError(f"stops: got {found.stop_counts}, expected {self.stops}")
             except OrbitError:
-                length *= SHORTER
+                length *= STEP_REDUCTION
                 continue
             left = self._distance(found)
             if left == distance:
                 break
             ahead = length * left / (distance - left)
-            if abs(ahead) < REACHED:
+            if abs(ahead) < CORNER_DISTANCE:
                 return found, np.abs(self.place(found.model) - self.place(orbit.model)) * abs(ahead / length)
             following = tangent_of(found, line)
             tangent = following if following @ (weights(found.model, line) * tangent) > 0.0 else -following
-            orbit, distance, length = found, left, CAUTIOUS * ahead
+            orbit, distance, length = found, left, LARGEST_SHARE * ahead
         raise OrbitError(f"{line.place(orbit.model)}: no grazing found near the guess")
 
     def _distance(self, orbit: PeriodicOrbit) -> float:
-        return float(contacts(orbit).values()[self.contact])
+        return float(grazing_distances(orbit).values()[self.component])
 
 
 def _first_with(stops: tuple[int, ...], orbit_at: Callable[[float], PeriodicOrbit], longest: float) -> PeriodicOrbit:
@@ -185,5 +185,5 @@ def _first_with(stops: tuple[int, ...], orbit_at: Callable[[float], PeriodicOrbi
                 continue
             if orbit.stop_counts == stops:
                 return orbit
-        distance = max(FASTER * distance, PROBE)
+        distance = max(STEP_GROWTH * distance, PROBE)
     raise OrbitError(f"stops: got others, expected {stops}")

@@ -22,37 +22,37 @@ from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.floquet import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
-from burridge_knopoff.periodic_orbits.grazing_distances import drops
-from burridge_knopoff.periodic_orbits.minimal_orbit import simpler_orbit
+from burridge_knopoff.periodic_orbits.grazing_distances import has_friction_drop
+from burridge_knopoff.periodic_orbits.minimal_orbit import reduced_orbit
 from burridge_knopoff.periodic_orbits.periodic import orbit_of
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_along, tangent_of
 
 # A corner is reached at this distance from it; limits on the number of steps, and on failed steps.
-REACHED = 1e-10
+CORNER_DISTANCE = 1e-10
 STEPS = 32
 FAILURES = 14
 
 # First step towards a corner, as a fraction of the length within which it lies. Later steps are at most this fraction
 # of the predicted length; a factor applies after a successful and after a failed step.
 PROBE = 1e-2
-CAUTIOUS = 0.97
-LONGER = 2.0
-SHORTER = 0.4
+LARGEST_SHARE = 0.97
+SHARE_GROWTH = 2.0
+STEP_REDUCTION = 0.4
 
 # Number of steps ahead within which a branch may join a branch of simpler orbits.
-STEPS_TO_JOINT = 2.0
+STEPS_TO_BRANCH_POINT = 2.0
 
 # Distance beyond a corner at which the tangent of the other side is taken, and lengths of the first steps to try.
-BEYOND = (1e-5, 1e-4, 1e-6)
+OFFSETS_BEYOND = (1e-5, 1e-4, 1e-6)
 FIRST_STEPS = (1e-5, 1e-4, 1e-6, 1e-7)
 
 
-def corner_ahead(before: BranchOrbit, point: BranchOrbit) -> float:
+def distance_to_grazing(before: BranchOrbit, point: BranchOrbit) -> float:
     """Return the length to the next grazing after two neighbouring points of a branch; infinite if none is ahead.
 
     The grazing distance falls in proportion to the length.
     """
-    last, here = before.contacts.values(), point.contacts.values()
+    last, here = before.grazing_distances.values(), point.grazing_distances.values()
     with np.errstate(invalid="ignore", divide="ignore"):
         ahead = here * point.length / (last - here)
     ahead = ahead[np.isfinite(ahead) & (ahead > 0.0)]
@@ -62,9 +62,9 @@ def corner_ahead(before: BranchOrbit, point: BranchOrbit) -> float:
 def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None:
     """Return the orbit at a length from the end of a path along a branch; None if none with the same stops is found.
 
-    If it is a simpler orbit, traversed several times or seen without its symmetry, `joined` is that orbit. This counts
-    only if the path approaches it, as the multiplier that equals 1 there shows. A long step may jump to such an orbit,
-    which is not on the branch.
+    If it is a simpler orbit, traversed several times or described without its symmetry, `reduced_orbit` is that orbit.
+    It is accepted only if the path approaches it: the multiplier that equals 1 there then approaches 1. A long step may
+    jump to such an orbit without being on the branch.
     """
     point = way[-1]
     try:
@@ -73,31 +73,33 @@ def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None
         return None
     if found.orbit.stop_counts != point.orbit.stop_counts:
         return None
-    simpler = simpler_orbit(found.orbit)
-    if simpler is not None and not _joint_ahead(way) <= STEPS_TO_JOINT * length:
+    simpler = reduced_orbit(found.orbit)
+    if simpler is not None and not _distance_to_branch_point(way) <= STEPS_TO_BRANCH_POINT * length:
         return None
-    return replace(found, joined=simpler)
+    return replace(found, reduced_orbit=simpler)
 
 
-def _joint_ahead(way: Sequence[BranchOrbit]) -> float:
+def _distance_to_branch_point(way: Sequence[BranchOrbit]) -> float:
     """Return the length from the end of a path to where an approaching multiplier reaches 1; else infinite.
 
     There a branch of orbits with less symmetry, or with twice the period, joins one of simpler orbits.
     """
     if len(way) < 2:
         return np.inf
-    before, here = (critical_values(one.orbit, one.multipliers)[BifurcationKind.FOLD, "keeping"] for one in way[-2:])
+    before, here = (
+        critical_values(one.orbit, one.multipliers)[BifurcationKind.FOLD, "symmetry_preserving"] for one in way[-2:]
+    )
     nearer = abs(before) - abs(here)
     return abs(here) * way[-1].length / nearer if nearer > 0.0 else np.inf
 
 
-def come_to_corner(before: Sequence[BranchOrbit], length: float) -> list[BranchOrbit]:
+def approach_grazing(before: Sequence[BranchOrbit], length: float) -> list[BranchOrbit]:
     """Return orbits ahead of a path up to the one next to the grazing that lies within about a length.
 
     Near a corner that turns back, a step may end on its other side, with other stops; it is repeated shorter.
     """
     way: list[BranchOrbit] = []
-    step, share, failures = PROBE * length, CAUTIOUS, 0
+    step, share, failures = PROBE * length, LARGEST_SHARE, 0
     for _ in range(STEPS):
         if sum(point.length for point in way) > length or failures > FAILURES:
             break
@@ -105,36 +107,36 @@ def come_to_corner(before: Sequence[BranchOrbit], length: float) -> list[BranchO
         found = smooth_step(known, step)
         if found is None:
             failures += 1
-            share *= SHORTER
-            step *= SHORTER
-            if step < REACHED:
+            share *= STEP_REDUCTION
+            step *= STEP_REDUCTION
+            if step < CORNER_DISTANCE:
                 break
             continue
-        ahead = corner_ahead(known[-1], found)
+        ahead = distance_to_grazing(known[-1], found)
         way.append(found)
-        if found.joined is not None:
+        if found.reduced_orbit is not None:
             break
-        if ahead < REACHED:
-            return [*way[:-1], replace(found, remaining=ahead)]
-        share = min(LONGER * share, CAUTIOUS)
+        if ahead < CORNER_DISTANCE:
+            return [*way[:-1], replace(found, distance_to_grazing=ahead)]
+        share = min(SHARE_GROWTH * share, LARGEST_SHARE)
         step = min(share * ahead, length)
     return way
 
 
-def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
+def switch_branch(point: BranchOrbit) -> BranchOrbit | None:
     """Return an orbit on the other side of the grazing that a branch has reached; None if the branch ends there."""
     orbit, line = point.orbit, point.line
-    if drops(orbit.model):
+    if has_friction_drop(orbit.model):
         return None
     blocks = orbit.model.blocks
     own = line.units.state(blocks)
     change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2] / own).max()), 1e-3)
-    for beyond in BEYOND:
+    for beyond in OFFSETS_BEYOND:
         vector = orbit.reference.vector() + beyond * change
         state = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
         try:
             there = line.coordinate(orbit.model) + beyond * float(point.tangent[-1])
-            model = line.model(orbit.model, max(there, line.least))
+            model = line.model(orbit.model, max(there, line.lower_bound))
             tangent = tangent_of(orbit_of(model, state, orbit.return_time, orbit.symmetry), line)
         except OrbitError:
             continue
@@ -151,7 +153,7 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
                 if (
                     signature not in (orbit.stop_counts, orbit.stop_counts[::-1])
                     and any(signature)
-                    and simpler_orbit(found.orbit) is None
+                    and reduced_orbit(found.orbit) is None
                 ):
                     return found
     return None

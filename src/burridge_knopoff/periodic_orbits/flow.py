@@ -34,11 +34,11 @@ def flow(model: Model, start: ChainState, time: float) -> tuple[Runner, tuple[tu
     Raises OrbitError if the run does not complete.
     """
     runner = Runner(model, keep_events=True)
-    after(runner, start, time)
+    state_after(runner, start, time)
     return runner, tuple(zip(*(values.tolist() for values in runner.events()), strict=True))
 
 
-def after(runner: Runner, start: ChainState, time: float) -> ChainState:
+def state_after(runner: Runner, start: ChainState, time: float) -> ChainState:
     """Return the state of a runner a time after a given state.
 
     Raises OrbitError if the run does not complete.
@@ -52,7 +52,7 @@ def after(runner: Runner, start: ChainState, time: float) -> ChainState:
 def mean_distance(model: Model, start: ChainState, period: float) -> float:
     """Return ⟨J⟩ over one period, starting from a state on an orbit."""
     observer = new_observer(model, [0.0, period])
-    after(Runner(model, observer=observer), start, period)
+    state_after(Runner(model, observer=observer), start, period)
     return float(observer.results()["batch_integral"][0]) / period
 
 

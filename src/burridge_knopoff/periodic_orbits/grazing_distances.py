@@ -20,7 +20,7 @@ import numpy as np
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.own_units import OwnUnits
-from burridge_knopoff.periodic_orbits.flow import after
+from burridge_knopoff.periodic_orbits.flow import state_after
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner, new_observer
@@ -32,7 +32,7 @@ SPACING = 0.1
 LARGEST_PHASE = 0.245
 
 # Number of instants of least speed of a block that are refined, the slowest ones.
-SLOWEST = 2
+REFINED_MINIMA = 2
 
 # Number of samples whose derivatives are computed at a time: few enough for a fast cache.
 CHUNK = 4096
@@ -41,11 +41,11 @@ CHUNK = 4096
 ROUNDING = 1e-12
 
 # Directions in which a block can slip, by contact.
-SIDES = {"one_sided": (1.0,), "symmetric": (1.0, -1.0)}
+SLIP_DIRECTIONS = {"one_sided": (1.0,), "symmetric": (1.0, -1.0)}
 
 
 @dataclass(frozen=True, eq=False)
-class Contacts:
+class GrazingDistances:
     """The grazing distances of each block, shape (blocks,); infinite if the orbit has no such piece.
 
     stick, slip : length of its shortest stick and slip
@@ -63,13 +63,13 @@ class Contacts:
         """Return the quantities that fall to 0 in proportion to the distance from a grazing, shape (5 blocks,)."""
         return np.concatenate([self.stick**2, self.slip**2, self.speed, self.force, self.deceleration**2])
 
-    def shares(self, units: OwnUnits) -> np.ndarray:
+    def in_own_units(self, units: OwnUnits) -> np.ndarray:
         """Return these quantities in a chain's own units, in which they can be compared."""
         of = [units.time**2, units.time**2, units.velocity, units.force, units.acceleration**2]
         return self.values() / np.repeat(of, len(self.stick))
 
 
-def drops(model: Model) -> bool:
+def has_friction_drop(model: Model) -> bool:
     """Tell whether friction drops at the start of a slip."""
     return float(model.law(0.0)) < 1.0 - ROUNDING
 
@@ -79,7 +79,7 @@ def longest_spacing(chain: Chain) -> float:
     return min(SPACING * chain.own_units.time, LARGEST_PHASE / chain.highest_rate)
 
 
-def contacts(orbit: PeriodicOrbit) -> Contacts:
+def grazing_distances(orbit: PeriodicOrbit) -> GrazingDistances:
     """Return the grazing distances of an orbit; raises OrbitError if the orbit cannot be integrated."""
     model, units = orbit.model, orbit.model.chain.own_units
     slow, slack = ROUNDING * units.acceleration, ROUNDING * units.force / units.time
@@ -102,15 +102,15 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     parts = [_derivatives(model, position[chunk], velocity[chunk], stuck[chunk]) for chunk in chunks]
     derivatives = [np.concatenate(values) for values in zip(*parts, strict=True)]
     # Backward slip and backward pull are treated as their mirror images.
-    for side in SIDES[model.contact]:
+    for side in SLIP_DIRECTIONS[model.contact]:
         force, force_rate, acceleration, jerk = (side * values for values in derivatives)
         moving = side * velocity
         for block in range(model.blocks):
             slips = whole[:, block] & ~stuck[:-1, block] & (moving[:-1, block] > 0.0) & (moving[1:, block] > 0.0)
             turns = slips & (acceleration[:-1, block] < -slow) & (acceleration[1:, block] > slow)
-            for k in sorted(np.flatnonzero(turns), key=lambda k: moving[k, block])[:SLOWEST]:
+            for k in sorted(np.flatnonzero(turns), key=lambda k: moving[k, block])[:REFINED_MINIMA]:
                 share = _root(acceleration[k : k + 2, block], jerk[k : k + 2, block] * spacing)
-                at = after(again, ChainState(position[k], velocity[k], stuck[k]), share * spacing)
+                at = state_after(again, ChainState(position[k], velocity[k], stuck[k]), share * spacing)
                 here = _derivatives(model, at.position[None], at.velocity[None], at.stuck[None])
                 change, second = float(here[2][0, block]), float(here[3][0, block])
                 speed[block] = min(speed[block], side * (at.velocity[block] - 0.5 * change**2 / second))
@@ -123,16 +123,16 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     if orbit.symmetry == Symmetry.SYMMETRIC:
         speed, gap = (np.minimum(least, least[::-1]) for least in (speed, gap))
     blocks = model.blocks
-    return Contacts(np.array(lengths[:blocks]), np.array(lengths[blocks:]), speed, gap, _decelerations(orbit))
+    return GrazingDistances(np.array(lengths[:blocks]), np.array(lengths[blocks:]), speed, gap, _decelerations(orbit))
 
 
 def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
     """Return the least deceleration at the stops of each block; infinite where friction does not drop."""
     model = orbit.model
     least = np.full(model.blocks, np.inf)
-    if drops(model):
+    if has_friction_drop(model):
         runner = Runner(model, keep_events=True)
-        after(runner, orbit.reference, orbit.period)
+        state_after(runner, orbit.reference, orbit.period)
         events = runner.log.events.values()
         for number, threshold in enumerate(model.chain.thresholds):
             own = events[events[:, 0] == number + 1]

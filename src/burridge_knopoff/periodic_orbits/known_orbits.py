@@ -9,14 +9,14 @@ import math
 
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
-from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit, refined
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit, refine_orbit
 
 # Steps in a of the continuation, in the chain's own unit of it; sticks vanish as the square root of a as a falls to 0.
 LARGEST_STEP = 0.02
-LEAST_STEP = 1e-5
+SMALLEST_STEP = 1e-5
 
 # Largest relative change of the period in a step: a larger change means another orbit.
-FARTHEST = 0.1
+LARGEST_PERIOD_CHANGE = 0.1
 
 
 class KnownOrbits:
@@ -26,7 +26,7 @@ class KnownOrbits:
     """
 
     def __init__(self, first: PeriodicOrbit) -> None:
-        self.known: dict[float, PeriodicOrbit] = {first.a: refined(first)}
+        self.known: dict[float, PeriodicOrbit] = {first.a: refine_orbit(first)}
 
     @property
     def model(self) -> Model:
@@ -46,23 +46,23 @@ class KnownOrbits:
             reach = min(step, 0.5 * here) if a < here else step
             there = a if abs(a - here) <= reach else here + math.copysign(reach, a - here)
             try:
-                self.known[there] = beside(self.known[here], there)
+                self.known[there] = nearby_orbit(self.known[here], there)
             except OrbitError as error:
                 step = 0.5 * abs(there - here)
-                if step < unit * LEAST_STEP * min(1.0, here / largest):
+                if step < unit * SMALLEST_STEP * min(1.0, here / largest):
                     raise OrbitError(f"{error}, on the way to a = {a!r}") from None
                 continue
             here = there
         return self.known[a]
 
 
-def beside(orbit: PeriodicOrbit, a: float) -> PeriodicOrbit:
+def nearby_orbit(orbit: PeriodicOrbit, a: float) -> PeriodicOrbit:
     """Return the continuation of an orbit to a nearby a, solved to rounding.
 
     Raises OrbitError if it is not found.
     """
     model = model_at(orbit.model, a)
-    found = refined(find_periodic_orbit(model, orbit.reference, orbit.return_time, orbit.symmetry))
-    if abs(found.period - orbit.period) > FARTHEST * orbit.period:
+    found = refine_orbit(find_periodic_orbit(model, orbit.reference, orbit.return_time, orbit.symmetry))
+    if abs(found.period - orbit.period) > LARGEST_PERIOD_CHANGE * orbit.period:
         raise OrbitError(f"a = {a!r}: no periodic orbit found near the guess")
     return found

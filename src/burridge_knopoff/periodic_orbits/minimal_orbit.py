@@ -14,13 +14,13 @@ from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
 # Distance, for v = 0.1 in the chain's own units, within which an orbit counts as more symmetric, or of a shorter
 # period.
-SAME = 1e-8
+SAME_STATE = 1e-8
 
 # Relative time within which the simpler orbit has to return; otherwise Newton's method has reached another orbit.
 SAME_TIME = 0.05
 
 
-def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
+def minimal_form(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
     """Return the most symmetric form of an orbit with the shortest return; the orbit itself if there is no simpler one.
 
     The simpler orbit has the same stops, traversed as often as necessary.
@@ -28,7 +28,7 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
     tolerance : largest distance, for v = 0.1 in the chain's own units, of its state from that of the simpler orbit; a
         branch of orbits of less symmetry, or of twice the period, begins at such orbits
     """
-    for time, symmetry in _simpler(orbit):
+    for time, symmetry in _reduced_forms(orbit):
         if time > 0.0:
             end = ReturnMap(orbit.model, symmetry).end(orbit.reference, time)
         else:
@@ -43,20 +43,20 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
             continue
         turns = round(orbit.period / found.period)
         if tuple(turns * stops for stops in found.stop_counts) == orbit.stop_counts:
-            return simplest(found, tolerance)
+            return minimal_form(found, tolerance)
     return orbit
 
 
-def simpler_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
+def reduced_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
     """Return the more symmetric or shorter form that an orbit has up to rounding; None if there is none."""
     mirrored = orbit.symmetry == Symmetry.ASYMMETRIC and orbit.stop_counts == orbit.stop_counts[::-1]
     if not mirrored and gcd(*orbit.stop_counts) == 1:
         return None
-    found = simplest(orbit, SAME)
+    found = minimal_form(orbit, SAME_STATE)
     return None if found is orbit else found
 
 
-def _simpler(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:
+def _reduced_forms(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:
     """Yield the return times and symmetries that simpler forms could have; a time of 0 means the state itself."""
     if orbit.symmetry != Symmetry.SYNCHRONIZED and orbit.model.chain.is_mirror_symmetric:
         yield 0.0, Symmetry.SYNCHRONIZED

@@ -26,14 +26,14 @@ class ParameterLine:
 
     names : the first one tells the coordinate of a model
     units : in which changes of states and times are measured, the same all along the line
-    least : the least coordinate at which there is a model, if known
+    lower_bound : the smallest coordinate at which there is a model, if known
     """
 
     names: tuple[str, ...]
     origins: tuple[float, ...]
     rates: tuple[float, ...]
     units: OwnUnits
-    least: float = float("-inf")
+    lower_bound: float = float("-inf")
 
     @property
     def parameter(self) -> str:
@@ -58,7 +58,7 @@ class ParameterLine:
         return ", ".join(f"{name} = {value_of(model, name)!r}" for name in self.names)
 
 
-def along_a(chain: Chain) -> ParameterLine:
+def line_along_a(chain: Chain) -> ParameterLine:
     """Return the line along a, with coordinates in the chain's own unit of it."""
     units = chain.own_units
-    return ParameterLine(("a",), (0.0,), (units.slope,), units, least=0.0)
+    return ParameterLine(("a",), (0.0,), (units.slope,), units, lower_bound=0.0)

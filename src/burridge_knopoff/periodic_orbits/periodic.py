@@ -21,8 +21,8 @@ import numpy as np
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distance, rate
-from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, along_a
-from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions, mirror
+from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, line_along_a
+from burridge_knopoff.periodic_orbits.return_map import ReturnMap, allowed_directions, mirror_order
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import check_state
 from burridge_knopoff.running.settings import LONGEST
@@ -31,17 +31,17 @@ from burridge_knopoff.values import instance_of
 #: Largest difference of a position or velocity after a return, times v if v > 1, all in the chain's own units. Below it
 #: Newton's method continues as long as it gains, down to rounding.
 TOLERANCE = 1e-10
-ENOUGH = 1e-12
+TARGET_RESIDUAL = 1e-12
 ITERATIONS = 10
 
 # From this iteration on, each iteration has to improve the solution, or the method fails.
-FIRST = 2
+FREE_ITERATIONS = 2
 
 # A larger correction, in units of v, for times in the chain's own unit, leads to another orbit, if to any.
-FARTHEST = 5.0
+LARGEST_CORRECTION = 5.0
 
 # So does a return that takes this many times as long as the guess.
-LONGER = 2.0
+LARGEST_TIME_RATIO = 2.0
 
 # A reference state closer than this, as a fraction of the longest time without events, to an event is moved to the
 # middle of that time.
@@ -174,26 +174,26 @@ def solve_return(
     time: float,
     symmetry: Symmetry,
     constraint: Constraint | None = None,
-    enough: float = ENOUGH,
+    target_residual: float = TARGET_RESIDUAL,
 ) -> PeriodicOrbit:
     """Return the orbit that solves the equations, by Newton's method from a guess of its reference state.
 
     constraint : makes the coordinate on its line another unknown
-    enough : residual at which the iteration ends; 0 iterates to rounding
+    target_residual : residual at which the iteration ends; 0 iterates to rounding
 
     Raises OrbitError if Newton's method does not converge.
     """
-    units, basis = model.chain.own_units, directions(start.stuck, symmetry)
+    units, basis = model.chain.own_units, allowed_directions(start.stuck, symmetry)
     own = units.state(model.blocks)
     phase = basis.T @ (rate(model, start) * units.time / own)
     count, unknowns = basis.shape[1], basis.shape[1] + (1 if constraint is None else 2)
-    first, begun, last = start.vector(), time, np.inf
+    first, initial_time, last = start.vector(), time, np.inf
     state, blocks = first.copy(), model.blocks
     by_parameter: np.ndarray | None = None
     mapping = ReturnMap(model, symmetry)
     for iteration in range(ITERATIONS):
         here = ChainState(state[:blocks], state[blocks:], start.stuck)
-        end, changed = mapping.with_tangent(here, time)
+        end, changed = mapping.end_and_tangent(here, time)
         apart = (end.vector() - state) / own
         values = np.zeros(unknowns)
         values[:count] = basis.T @ apart
@@ -213,34 +213,34 @@ def solve_return(
             jacobian[:count, -1] = by_parameter
             jacobian[-1] = np.concatenate([(vector[:-2] * own) @ basis, [vector[-2] * units.time, vector[-1]]])
         size, speed = float(np.abs(values).max()), model.v / units.velocity
-        if size <= enough or (size <= TOLERANCE * max(1.0, speed) and size > 0.25 * last):
+        if size <= target_residual or (size <= TOLERANCE * max(1.0, speed) and size > 0.25 * last):
             if np.abs(apart).max() > TOLERANCE * max(1.0, speed) or (end.stuck != start.stuck).any():
                 break
             return PeriodicOrbit(model, symmetry, here, time, end, changed, _event_rows(mapping, time))
-        if iteration > FIRST and size > last:
+        if iteration > FREE_ITERATIONS and size > last:
             break
         last = size
         try:
             step = np.linalg.solve(jacobian, -values)
         except np.linalg.LinAlgError:
             break
-        if not np.abs(step[:count]).max() < FARTHEST * speed:
+        if not np.abs(step[:count]).max() < LARGEST_CORRECTION * speed:
             break
         state = state + own * (basis @ step[:count])
         time += units.time * float(step[count])
-        if not 0.0 < time < LONGER * begun:
+        if not 0.0 < time < LARGEST_TIME_RATIO * initial_time:
             break
         if constraint is not None:
             line = constraint.line
             model = line.model(model, line.coordinate(model) + float(step[-1]))
             mapping = ReturnMap(model, symmetry)
-    line = along_a(model.chain) if constraint is None else constraint.line
+    line = line_along_a(model.chain) if constraint is None else constraint.line
     raise OrbitError(f"{line.place(model)}: no periodic orbit found near the guess")
 
 
-def refined(orbit: PeriodicOrbit) -> PeriodicOrbit:
+def refine_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit:
     """Return an orbit solved to rounding, as a root of its multipliers requires."""
-    return solve_return(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, enough=0.0)
+    return solve_return(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, target_residual=0.0)
 
 
 def orbit_of(model: Model, state: ChainState, time: float, symmetry: Symmetry) -> PeriodicOrbit:
@@ -249,7 +249,7 @@ def orbit_of(model: Model, state: ChainState, time: float, symmetry: Symmetry) -
     Raises OrbitError if the run does not complete.
     """
     mapping = ReturnMap(model, symmetry)
-    end, changed = mapping.with_tangent(state, time)
+    end, changed = mapping.end_and_tangent(state, time)
     return PeriodicOrbit(model, symmetry, state, time, end, changed, _event_rows(mapping, time))
 
 
@@ -293,7 +293,7 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
     times = sorted([*events[:, 0].tolist(), return_time, period])
     guess = flow(model, guess, _safe_offset(times, period))[0].state()
     if symmetry == Symmetry.SYNCHRONIZED:
-        vector = 0.5 * (guess.vector() + guess.vector()[mirror(model.blocks)])
+        vector = 0.5 * (guess.vector() + guess.vector()[mirror_order(model.blocks)])
         guess = ChainState(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
     found = solve_return(model, guess, return_time, symmetry)
     if not any(found.stop_counts):

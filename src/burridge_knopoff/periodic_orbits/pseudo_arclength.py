@@ -1,7 +1,7 @@
 """Pseudo-arclength continuation of periodic orbits in a parameter: through folds, up to grazings.
 
 A step follows the tangent of the branch in (state, return time, parameter) and is corrected perpendicular to it. No
-step passes a grazing: there the branch has a corner (`corner`), which `follow` goes around.
+step passes a grazing: there the branch has a corner (`is_grazing`), which `follow` goes around.
 
 Reference: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 and 745.
 """
@@ -17,17 +17,17 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.parameters import at, value_of
 from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, rate
-from burridge_knopoff.periodic_orbits.grazing_distances import Contacts, contacts
-from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, along_a
+from burridge_knopoff.periodic_orbits.grazing_distances import GrazingDistances, grazing_distances
+from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, line_along_a
 from burridge_knopoff.periodic_orbits.periodic import (
-    ENOUGH,
+    TARGET_RESIDUAL,
     Constraint,
     PeriodicOrbit,
     orbit_of,
     safe_offset,
     solve_return,
 )
-from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
+from burridge_knopoff.periodic_orbits.return_map import ReturnMap, allowed_directions
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
 # Length along a branch is mostly length in the parameter: positions, in units of 0.1 v, and times have smaller weights,
@@ -53,15 +53,15 @@ class BranchOrbit:
 
     line : the parameter along which the branch is followed, in units in which it is measured
     length : from the previous orbit, along its tangent
-    joined : the simpler form of this orbit, more symmetric or of half the period, if the branch has reached another
-        branch; the branch ends before it
-    remaining : length from here to the corner of the branch where the orbit grazes; NaN unless the corner is next
+    reduced_orbit : if the branch has reached a branch of simpler orbits, this orbit in its simpler form, more symmetric
+        or of half the period; the branch ends before it
+    distance_to_grazing : length from here to the corner of the branch where the orbit grazes; NaN unless it is next
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
     >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
     >>> branch = follow(orbit, (0.086, 0.0875))
-    >>> branch[1].tangent.shape, branch[1].corner, branch[1].joined
+    >>> branch[1].tangent.shape, branch[1].is_grazing, branch[1].reduced_orbit
     ((8,), False, None)
     """
 
@@ -69,8 +69,8 @@ class BranchOrbit:
     tangent: np.ndarray
     line: ParameterLine
     length: float = 0.0
-    joined: PeriodicOrbit | None = None
-    remaining: float = np.nan
+    reduced_orbit: PeriodicOrbit | None = None
+    distance_to_grazing: float = np.nan
 
     def __repr__(self) -> str:
         return f"<BranchOrbit: {self.orbit!r}>"
@@ -81,14 +81,14 @@ class BranchOrbit:
         return self.line.value(self.orbit.model)
 
     @property
-    def corner(self) -> bool:
+    def is_grazing(self) -> bool:
         """Whether the orbit grazes, up to rounding."""
-        return not np.isnan(self.remaining)
+        return not np.isnan(self.distance_to_grazing)
 
     @cached_property
-    def contacts(self) -> Contacts:
+    def grazing_distances(self) -> GrazingDistances:
         """The grazing distances of the orbit."""
-        return contacts(self.orbit)
+        return grazing_distances(self.orbit)
 
     @cached_property
     def multipliers(self) -> Multipliers:
@@ -106,7 +106,7 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
     """
     value = value_of(orbit.model, parameter)
     if parameter == "a":
-        return along_a(orbit.model.chain)
+        return line_along_a(orbit.model.chain)
     units = orbit.model.chain.own_units
     own = units.state(orbit.model.blocks)
     size, change = abs(value) or 1.0, 0.0
@@ -135,7 +135,7 @@ def weights(model: Model, line: ParameterLine) -> np.ndarray:
 def tangent_of(orbit: PeriodicOrbit, line: ParameterLine) -> np.ndarray:
     """Return the unit tangent of the branch at an orbit, of either sign."""
     model, start, time = orbit.model, orbit.reference, orbit.return_time
-    basis, units = directions(start.stuck, orbit.symmetry), line.units
+    basis, units = allowed_directions(start.stuck, orbit.symmetry), line.units
     own = units.state(model.blocks)
     count = basis.shape[1]
     mapping, end = ReturnMap(model, orbit.symmetry), orbit.returned
@@ -150,7 +150,7 @@ def tangent_of(orbit: PeriodicOrbit, line: ParameterLine) -> np.ndarray:
     return vector / np.sqrt(weights(model, line) @ vector**2)
 
 
-def in_symmetry_of(line: ParameterLine, orbit: PeriodicOrbit) -> PeriodicOrbit:
+def adapt_symmetry(line: ParameterLine, orbit: PeriodicOrbit) -> PeriodicOrbit:
     """Return an orbit as one of the symmetry that all models on a line have: none, if the line breaks the mirror's."""
     model, here = orbit.model, line.coordinate(orbit.model)
     if orbit.symmetry == Symmetry.ASYMMETRIC:
@@ -166,7 +166,7 @@ def in_symmetry_of(line: ParameterLine, orbit: PeriodicOrbit) -> PeriodicOrbit:
 
 def begin_branch(orbit: PeriodicOrbit, upward: bool, line: ParameterLine) -> BranchOrbit:
     """Return an orbit with the tangent along which the parameter grows or falls."""
-    orbit = in_symmetry_of(line, orbit)
+    orbit = adapt_symmetry(line, orbit)
     tangent = tangent_of(orbit, line)
     return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent, line)
 
@@ -179,11 +179,11 @@ def solve_ahead(
     line: ParameterLine,
     tangent: np.ndarray,
     length: float,
-    enough: float = ENOUGH,
+    target_residual: float = TARGET_RESIDUAL,
 ) -> PeriodicOrbit:
     """Return the orbit at a length along a tangent from a state, its return time and its model.
 
-    enough : residual at which Newton's method ends; 0 iterates to rounding
+    target_residual : residual at which Newton's method ends; 0 iterates to rounding
 
     Raises OrbitError if none is found.
     """
@@ -193,7 +193,7 @@ def solve_ahead(
     start = ChainState(guess[:blocks], guess[blocks:], reference.stuck)
     constraint = Constraint(weights(there, line) * tangent, length, (base, time, here), line)
     after = time + length * float(tangent[-2])
-    return solve_return(there, start, after, symmetry, constraint, enough)
+    return solve_return(there, start, after, symmetry, constraint, target_residual)
 
 
 def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = None) -> BranchOrbit:
@@ -215,7 +215,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     offset = safe_offset(found)
     if offset == 0.0:
         return BranchOrbit(found, following, line, length)
-    carried = _carried(found, following, offset, line)
+    carried = _carry_tangent(found, following, offset, line)
     there = flow(model, found.reference, offset)[0].state()
     moved = orbit_of(model, there, found.return_time, orbit.symmetry)
     following = tangent_of(moved, line)
@@ -223,7 +223,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     return BranchOrbit(moved, following if side > 0.0 else -following, line, length)
 
 
-def _carried(orbit: PeriodicOrbit, tangent: np.ndarray, time: float, line: ParameterLine) -> np.ndarray:
+def _carry_tangent(orbit: PeriodicOrbit, tangent: np.ndarray, time: float, line: ParameterLine) -> np.ndarray:
     """Return a tangent carried to the state a time after the reference, perpendicular to the flow there."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + PART * tangent[:-2]

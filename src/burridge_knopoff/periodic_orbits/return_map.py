@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.periodic_orbits.flow import OrbitError, after, rate
+from burridge_knopoff.periodic_orbits.flow import OrbitError, rate, state_after
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
@@ -23,7 +23,7 @@ from burridge_knopoff.running.runner import Runner
 # Step for the derivative of a return. The error is of the same order, small enough for Newton's method and
 # tangents.
 STEP = 1e-7
-LEAST_STEP = 1e-13
+SMALLEST_STEP = 1e-13
 
 
 class ReturnMap:
@@ -44,9 +44,9 @@ class ReturnMap:
 
     def end(self, start: ChainState, time: float) -> ChainState:
         """Return the end of a return from a state; raises OrbitError if the run does not complete."""
-        return self._mirrored(after(self._runner, start, time))
+        return self._mirrored(state_after(self._runner, start, time))
 
-    def with_tangent(self, start: ChainState, time: float) -> tuple[ChainState, np.ndarray]:
+    def end_and_tangent(self, start: ChainState, time: float) -> tuple[ChainState, np.ndarray]:
         """Return the end of a return and the linearized return map, shape (2 blocks, 2 blocks).
 
         Velocities of stuck blocks cannot be perturbed: their columns are 0.
@@ -70,14 +70,14 @@ class ReturnMap:
         where two blocks stop at one instant and one of them becomes the first. Raises OrbitError if there is none.
         """
         step, here = STEP, line.coordinate(self.model)
-        while step > LEAST_STEP:
+        while step > SMALLEST_STEP:
             for there in (here + step, here - step):
                 try:
                     model = line.model(self.model, there)
                 except OrbitError:
                     continue
                 runner = Runner(model, keep_events=True)
-                moved = self._mirrored(after(runner, start, time))
+                moved = self._mirrored(state_after(runner, start, time))
                 if np.array_equal(_by_block(np.stack(runner.events()[1:], axis=1)), _by_block(events)):
                     return (moved.vector() - end.vector()) / (there - here)
             step *= 0.1
@@ -91,7 +91,7 @@ class ReturnMap:
         return instant.mirrored() if self.symmetry == Symmetry.SYMMETRIC else instant
 
     def _mirrored_rows(self, matrix: np.ndarray) -> np.ndarray:
-        return matrix[mirror(self.model.blocks)] if self.symmetry == Symmetry.SYMMETRIC else matrix
+        return matrix[mirror_order(self.model.blocks)] if self.symmetry == Symmetry.SYMMETRIC else matrix
 
 
 def _by_block(events: np.ndarray) -> np.ndarray:
@@ -99,13 +99,13 @@ def _by_block(events: np.ndarray) -> np.ndarray:
     return events[np.argsort(events[:, 0], kind="stable")]
 
 
-def mirror(blocks: int) -> np.ndarray:
+def mirror_order(blocks: int) -> np.ndarray:
     """Return the order of positions and velocities in the mirror image of a state."""
     order = np.arange(blocks)[::-1]
     return np.concatenate([order, blocks + order])
 
 
-def directions(stuck: np.ndarray, symmetry: Symmetry) -> np.ndarray:
+def allowed_directions(stuck: np.ndarray, symmetry: Symmetry) -> np.ndarray:
     """Return an orthonormal basis of the allowed changes of a state as columns, shape (2 blocks, free).
 
     Velocities of stuck blocks do not change. If mirror blocks move synchronously, changes are mirror-symmetric.
@@ -114,14 +114,14 @@ def directions(stuck: np.ndarray, symmetry: Symmetry) -> np.ndarray:
     basis = np.eye(2 * len(stuck))
     if symmetry != Symmetry.SYNCHRONIZED:
         return basis[:, free]
-    order = mirror(len(stuck))
+    order = mirror_order(len(stuck))
     together = (basis + basis[order])[:, free & (order >= np.arange(2 * len(stuck)))]
     return together / np.linalg.norm(together, axis=0)
 
 
-def parting(stuck: np.ndarray) -> np.ndarray:
+def symmetry_breaking_directions(stuck: np.ndarray) -> np.ndarray:
     """Return an orthonormal basis of symmetry-breaking changes as columns, without velocities of stuck blocks."""
     count = 2 * len(stuck)
     free = np.concatenate([np.ones(len(stuck), dtype=bool), ~stuck])
-    order, basis = mirror(len(stuck)), np.eye(count)
+    order, basis = mirror_order(len(stuck)), np.eye(count)
     return (basis - basis[order])[:, free & (order > np.arange(count))] / np.sqrt(2.0)

@@ -8,9 +8,9 @@ import numpy as np
 import scipy
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.periodic_orbits.flow import OrbitError, after, model_at
+from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at, state_after
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
-from burridge_knopoff.periodic_orbits.pitchfork import apart
+from burridge_knopoff.periodic_orbits.pitchfork import displace_end_blocks
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
@@ -51,7 +51,7 @@ def sweep(orbits: KnownOrbits, values: np.ndarray) -> np.ndarray:
     state = orbits.at(float(values[0])).reference
     for k, a in enumerate(values):
         try:
-            state = _settled(model_at(orbits.model, float(a)), apart(state, SEED * orbits.model.v))
+            state = _settled(model_at(orbits.model, float(a)), displace_end_blocks(state, SEED * orbits.model.v))
         except OrbitError:
             break
         found[k] = abs(state.position[0] - state.position[-1])
@@ -61,7 +61,7 @@ def sweep(orbits: KnownOrbits, values: np.ndarray) -> np.ndarray:
 def _settled(model: Model, state: ChainState) -> ChainState:
     """Return the first state after a time in which the end blocks have both just come to stick."""
     runner, last = Runner(model), model.blocks - 1
-    after(runner, state, SWEEP_TIME)
+    state_after(runner, state, SWEEP_TIME)
     for block in (0, last, 0, last):
         if runner.run(2.0 * SWEEP_TIME, halting_block=block) != Status.HALTED:
             break

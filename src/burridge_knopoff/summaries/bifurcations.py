@@ -77,7 +77,7 @@ BIFURCATIONS = {
     ),
     "motion_before": Column(_AT, "i1", "kind of motion at grid_low", _MOTION, value=lambda one: one.motion[0]),
     "motion_after": Column(_AT, "i1", "kind of motion at grid_high", _MOTION, value=lambda one: one.motion[1]),
-    "turns": Column(_AT, "i1", _TURNS, ANSWER, value=_located(lambda at: at.turns)),
+    "turns": Column(_AT, "i1", _TURNS, ANSWER, value=_located(lambda at: at.is_turning_point)),
     "period": Column(_AT, "f8", "period of the orbit at the bifurcation", value=_located(lambda at: at.period)),
     "stops": Column(
         (*_AT, "block"),
@@ -119,7 +119,7 @@ ORBITS = {
     "orbit_segment": Column(_ORBIT, "i4", _SEGMENT, value=lambda one: one[0]),
     "orbit_branch": Column(_ORBIT, "i2", "branch of most of the attractors that lie on them", value=lambda one: one[1]),
     "orbit_a": Column(_ORBIT, "f8", "friction parameter a of the periodic orbit", value=lambda one: one[2].orbit.a),
-    "orbit_stable": Column(_ORBIT, "i1", _STABLE, ANSWER, value=lambda one: one[2].multipliers.unstable == 0),
+    "orbit_stable": Column(_ORBIT, "i1", _STABLE, ANSWER, value=lambda one: one[2].multipliers.unstable_count == 0),
     "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda one: one[2].orbit.period),
     "orbit_stops": Column(
         (*_ORBIT, "block"),
@@ -181,7 +181,7 @@ def one_law(
     orbits = followed(model, one, changes, processes, folder)
     found = list(entries(one, changes, orbits))
     segments = enumerate(zip(_branches_of_segments(orbits, one["branch"].values), orbits.segments, strict=True))
-    points = [(number, branch, point) for number, (branch, segment) in segments for point in segment.shown]
+    points = [(number, branch, point) for number, (branch, segment) in segments for point in segment.drawn_orbits]
     sizes = {"bifurcation": len(found), "orbit": len(points), "block": model.blocks, "part": len(PARTS)}
     values = filled(BIFURCATIONS, {(k,): one for k, one in enumerate(found)}, sizes)
     rounded = {name: _rounded(value, DIGITS.get(name, 10)) for name, value in values.items()}

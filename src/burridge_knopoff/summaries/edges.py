@@ -139,7 +139,7 @@ ORBITS = {
         _ORBIT,
         "i4",
         "multipliers outside the unit circle: 1 but at the ends",
-        value=lambda one: one[1].multipliers.unstable,
+        value=lambda one: one[1].multipliers.unstable_count,
     ),
 }
 #: Of a crisis, by its a and branch in bifurcations.nc.

@@ -20,12 +20,12 @@ from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
+    a_unit,
     bifurcations_of,
     critical_a,
     critical_a_error,
     grazing_a,
     symmetric_period_doubling_a,
-    unit,
 )
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.amplitude import fit_power_law, sweep
@@ -195,7 +195,7 @@ def modes(orbit: PeriodicOrbit) -> np.ndarray:
     """
     found, flow = multipliers(orbit), rate(orbit.model, orbit.reference)
     returned = flow @ orbit.monodromy @ flow / (flow @ flow)
-    return np.array([found.transverse, returned, *found.keeping[:2], 0.0, 0.0], dtype=complex)
+    return np.array([found.transverse, returned, *found.symmetry_preserving[:2], 0.0, 0.0], dtype=complex)
 
 
 def _is_constant(law: Law) -> bool:
@@ -217,7 +217,7 @@ def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None,
     values["critical_a_error"][i] = critical_a_error(orbits, critical)
     kind = BifurcationKind.PITCHFORK if transverse(orbits, critical) > 0.0 else BifurcationKind.PERIOD_DOUBLING
     values["bifurcation_kind"][i] = kind
-    runs = critical + unit(orbits.model.chain) * np.array(OFFSETS)
+    runs = critical + a_unit(orbits.model.chain) * np.array(OFFSETS)
     values["sweep_asymmetry"][i] = sweep(orbits, runs), sweep(orbits, runs[::-1])[::-1]
     values["hysteresis"][i] = np.abs(np.diff(values["sweep_asymmetry"][i], axis=0)).max()
     if kind == BifurcationKind.PITCHFORK:
