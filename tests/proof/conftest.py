@@ -12,7 +12,7 @@ from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.proof.arcs import State
 from burridge_knopoff.proof.balls import arithmetic
 from burridge_knopoff.proof.krawczyk import Enclosure
-from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit
+from burridge_knopoff.proof.orbit import POSITIONS, ProvedOrbit
 
 #: Whether blocks 1 and 3 slip, and whether block 2 does.
 SLIPS = list(product((False, True), repeat=2))
@@ -42,5 +42,5 @@ def state_of(slips):
 def changed(orbit, arc, late):
     """Return an orbit that is none, unless it is late by 0: one arc takes another time."""
     times = [time + (late if k == arc else 0) for k, time in enumerate(orbit.times)]
-    inner = (*orbit.enclosure.inner[:PLACES], *times)
+    inner = (*orbit.enclosure.inner[:POSITIONS], *times)
     return ProvedOrbit(orbit.arcs, orbit.a, Enclosure(inner, inner))

@@ -25,7 +25,7 @@ def test_an_arc_is_the_matrix_exponential(slips, a, time):
         state, numbers = state_of(slips)
         exact = three_blocks(numbers)
         arc = Arc(slips, LATERAL, Linearized())
-        end = arc.after(state, arb(a), arb(time))
+        end = arc.state_after(state, arb(a), arb(time))
         three = (slips[0], slips[1], slips[0])
         exact = mp.expm(matrix(three, mpf(a)) * mpf(time), method="taylor") * exact
         for k in (LATERAL, CENTER):
@@ -56,9 +56,9 @@ def test_an_event_takes_the_velocity_away_only_where_a_block_stops():
     state, _ = state_of((True, True))
     center = State(state.position, (state.velocity[0], -1), state.difference)
     lateral = State(state.position, (-1, state.velocity[1]), (state.difference[0], 0))
-    assert Arc((True, True), CENTER, Linearized()).last(state) == center
-    assert Arc((True, True), LATERAL, Linearized()).last(state) == lateral
-    assert Arc((True, False), CENTER, Linearized()).last(state) is state
+    assert Arc((True, True), CENTER, Linearized()).state_after_event(state) == center
+    assert Arc((True, True), LATERAL, Linearized()).state_after_event(state) == lateral
+    assert Arc((True, False), CENTER, Linearized()).state_after_event(state) is state
 
 
 def test_arcs_are_named_by_what_ends_them():

@@ -38,9 +38,9 @@ def started(t):
 
 
 def test_known_roots_at_the_ends_are_no_events():
-    check_positive(started, arb(2), starts=True, ends=True)
-    check_positive(started, arb(1.99), starts=True)
-    check_positive(lambda t: 2 - t, arb(2), ends=True)
+    check_positive(started, arb(2), root_at_start=True, root_at_end=True)
+    check_positive(started, arb(1.99), root_at_start=True)
+    check_positive(lambda t: 2 - t, arb(2), root_at_end=True)
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def test_the_proof_is_for_all_lengths_of_a_ball():
     with arithmetic():
         near, wide = arb(2, 1e-9), arb(2, 0.5)
     # Wherever the true end is, the function falls to 0 there.
-    check_positive(started, near, starts=True, ends=True)
+    check_positive(started, near, root_at_start=True, root_at_end=True)
     with pytest.raises(ProofError):
         check_positive(touching(-1e-9, 2.4), wide)
 

@@ -48,8 +48,8 @@ def test_the_multiplier_is_1_there_and_passes_it(found, family):
             assert bool(multiplier < 1) == below
             assert bool(multiplier > 1) != below
             assert abs((multiplier - 1) / arb(side) - found.orbit.slope) < 1e-9
-    assert found.unique.contains(found.a)
-    assert width(found.unique) > 2e-4
+    assert found.uniqueness_range.contains(found.a)
+    assert width(found.uniqueness_range) > 2e-4
 
 
 def test_a_guess_far_from_a_c_is_refused(family):
@@ -77,7 +77,7 @@ def test_the_family_holds_the_orbits_of_the_double_code(branch, family):
         assert piece.orbit.multiplier.contains(arb(found.transverse.real))
         assert piece.orbit.symmetric_multiplier.contains(arb(float(found.symmetry_preserving[0].real)))
         with arithmetic():
-            piece.check_holds(prove_orbit(orbit, arb(a)).enclosure, arb(a))
+            piece.check_contains(prove_orbit(orbit, arb(a)).enclosure, arb(a))
         assert piece.orbit.slope > 0
 
 
@@ -85,7 +85,7 @@ def test_an_orbit_of_another_a_is_none_of_the_family(branch, family):
     for a, piece, at in ((0.09, branch[0], branch[0].orbit.a.mid()), (0.0861, branch[-1], arb(0.0861))):
         other = prove_orbit(family.at(a), arb(a)).enclosure
         with pytest.raises(ProofError, match="not proved to be an orbit of the family"):
-            piece.check_holds(other, at)
+            piece.check_contains(other, at)
 
 
 def test_pieces_that_do_not_join_are_refused(branch):

@@ -15,8 +15,8 @@ from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, decimal, width
 from burridge_knopoff.proof.bounds import check_positive
 from burridge_knopoff.proof.closed import Linearized
-from burridge_knopoff.proof.krawczyk import derivatives, enclose, part, solved
-from burridge_knopoff.proof.orbit import PLACES, arcs_of, equations, followed, prove_orbit
+from burridge_knopoff.proof.krawczyk import derivatives, enclose, solve_linear, submatrix
+from burridge_knopoff.proof.orbit import POSITIONS, arcs_of, equations, prove_orbit
 from tests.periodic_orbits.exact import slipping_state
 from tests.proof.conftest import changed, holds
 from tests.proof.exact import exact_orbit
@@ -37,7 +37,7 @@ def test_enclosures_hold_the_orbit_of_50_digits(proved):
         assert holds(ball, number)
         assert width(ball) < 1e-45
     with mpmath.workdps(50):
-        assert holds(proved.period, mpmath.fsum(exact.unknown[PLACES:]), "1e-44")
+        assert holds(proved.period, mpmath.fsum(exact.unknown[POSITIONS:]), "1e-44")
     assert holds(proved.multiplier, exact.transverse)
     assert holds(proved.symmetric_multiplier, exact.symmetric)
 
@@ -85,8 +85,8 @@ def test_the_symmetric_multiplier_is_the_derivative_of_the_return_map(family, a)
     matrix = derivatives(equations(proved.arcs), [*proved.enclosure.inner, proved.a])
     places, times, events, ends = range(2), range(2, 6), range(4), range(4, 6)
     with arithmetic():
-        shift = solved(part(matrix, events, times), part(matrix, events, places))
-        back = part(matrix, ends, places) - part(matrix, ends, times) * shift
+        shift = solve_linear(submatrix(matrix, events, times), submatrix(matrix, events, places))
+        back = submatrix(matrix, ends, places) - submatrix(matrix, ends, times) * shift
         back = back + type(back)([[1, 0], [0, 1]])
         assert back.det().contains(0)
         assert back.trace().overlaps(proved.symmetric_multiplier)
@@ -97,7 +97,7 @@ def test_a_shift_along_the_flow_returns(proved):
     """The multiplier of the flow is 1: all blocks stick, and a shift of all of them alike comes back as it was."""
 
     def ends(unknown):
-        return followed(proved.arcs, unknown)[0][-1].position
+        return follow_arcs(proved.arcs, unknown)[0][-1].position
 
     change = derivatives(ends, [*proved.enclosure.inner, proved.a], [0, 1])
     with arithmetic():
@@ -110,7 +110,10 @@ def test_a_shift_along_the_flow_returns(proved):
 def test_bounds_of_speed_and_force_are_those_of_a_run(proved, family):
     state = InitialState("on", *slipping_state(family.at(0.08)))
     run = simulate("linearized", 0.08, state, transient=0.0, window=50.0, batches=2)
-    for found, bound in ((run.velocity.max(), proved.fastest()), (1.0 - run.least_spring_force, proved.tightest())):
+    for found, bound in (
+        (run.velocity.max(), proved.speed_range()),
+        (1.0 - run.least_spring_force, proved.force_margin_range()),
+    ):
         assert float(found) / 0.1 == pytest.approx(float(bound.upper()), rel=0.05)
         assert float(found) / 0.1 < bound.upper()
 
@@ -153,7 +156,7 @@ def test_an_arc_on_which_the_other_block_stops_is_not_certified(proved):
 
     def margin(push):
         start = replace(first, velocity=(first.velocity[0], first.velocity[1] + arb(push)))
-        return lambda t: arc.margin(CENTER, arc.after(start, proved.a, t), proved.a)
+        return lambda t: arc.margin(CENTER, arc.state_after(start, proved.a, t), proved.a)
 
     def least(push):
         return min(float(margin(push)(arb(k) / 100)) for k in range(201))

@@ -15,7 +15,7 @@ from burridge_knopoff.proof.balls import ProofError, arithmetic, width
 from burridge_knopoff.proof.closed import Linearized
 from burridge_knopoff.proof.critical import prove_critical
 from burridge_knopoff.proof.krawczyk import derivatives
-from burridge_knopoff.proof.orbit import PLACES, followed, prove_orbit
+from burridge_knopoff.proof.orbit import POSITIONS, prove_orbit
 from burridge_knopoff.proof.taylor import Nonlinear
 from tests.proof.conftest import SLIPS, changed, holds, state_of
 
@@ -84,7 +84,7 @@ def test_derivatives_are_those_of_differences():
         def ends(unknown):
             x, p, time, a = unknown
             start = State((x, state.position[1]), (p, state.velocity[1]), state.difference)
-            end = arc.after(start, a, time)
+            end = arc.state_after(start, a, time)
             return [*end.position, *end.velocity, *end.difference]
 
         at = [state.position[0], state.velocity[0], arb("1.7"), arb(A)]
@@ -103,7 +103,7 @@ def test_second_derivatives_in_time_obey_the_equations():
     arc = Arc(slips, LATERAL, law())
     with arithmetic(3):
         state, _ = state_of(slips)
-        end = arc.after(state, arb(A), arb_series([arb("0.6"), 1]))
+        end = arc.state_after(state, arb(A), arb_series([arb("0.6"), 1]))
         x, y = end.position
         assert x[1].overlaps(end.velocity[0][0])
         force = y[0] - 2 * x[0] + arc.flow.weakening(end.velocity[0][0], arb(A))
@@ -164,7 +164,7 @@ def test_a_c_of_the_nonlinear_law(found, family):
     assert abs(critical_a(bifurcations_of(family)) - float(found.a)) < 2e-15
     assert found.orbit.multiplier.contains(1)
     assert found.orbit.slope > 5
-    assert found.unique.contains(found.a)
+    assert found.uniqueness_range.contains(found.a)
     orbit = family.at(float(found.a))
     assert float(found.orbit.period) == pytest.approx(orbit.period, abs=1e-13)
     assert float(found.orbit.symmetric_multiplier) == pytest.approx(
@@ -178,12 +178,12 @@ def test_it_is_that_of_an_integration_of_25_digits(found):
     with mpmath.workdps(25):
         numbers = [mpf(value.str(40, radius=False)) for value in (*inner, found.a)]
         z = [numbers[0], numbers[1], mpf(-1), mpf(-1), mpf(1), mpf(0)]
-        for arc, time in zip(found.orbit.arcs, numbers[PLACES:-1], strict=True):
+        for arc, time in zip(found.orbit.arcs, numbers[POSITIONS:-1], strict=True):
             z = list(mpmath.odefun(motion(arc.slips, numbers[-1]), 0, z)(time))
-            if arc.slips[arc.ends]:
-                assert abs(z[2 + arc.ends] + 1) < mpf(10) ** -17
-                z[2 + arc.ends] = mpf(-1)
-                if arc.ends == LATERAL:
+            if arc.slips[arc.event_block]:
+                assert abs(z[2 + arc.event_block] + 1) < mpf(10) ** -17
+                z[2 + arc.event_block] = mpf(-1)
+                if arc.event_block == LATERAL:
                     z[5] = mpf(0)
         assert abs(z[0] - numbers[0]) < mpf(10) ** -17
         assert abs(z[1] - numbers[1]) < mpf(10) ** -17
@@ -194,7 +194,7 @@ def test_a_wrong_arc_is_not_certified(found):
     wrong = changed(found.orbit, 3, arb("0.1"))
     with pytest.raises(ProofError, match="blocks 1 and 3, the arc until block 2 start: not proved to go on"):
         wrong.check_arcs()
-    assert len(followed(wrong.arcs, [*wrong.enclosure.inner, wrong.a])[0]) == 5
+    assert len(follow_arcs(wrong.arcs, [*wrong.enclosure.inner, wrong.a])[0]) == 5
 
 
 def test_a_ball_of_a_that_is_too_wide_is_refused(family):

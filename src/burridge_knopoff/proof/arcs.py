@@ -34,7 +34,7 @@ class State:
     velocity: tuple[Any, Any]
     difference: tuple[Any, Any] = (1, 0)
 
-    def stopped(self, block: int) -> State:
+    def stop(self, block: int) -> State:
         """Return the state with a block at rest on the ground."""
         if block == LATERAL:
             return replace(self, velocity=(-1, self.velocity[1]), difference=(self.difference[0], 0))
@@ -44,10 +44,10 @@ class State:
 class Flow(Protocol):
     """A friction law in the form that arcs use.
 
-    reaches : half-widths of the boxes in which an orbit is searched, widest first
+    box_radii : half-widths of the boxes in which an orbit is searched, widest first
     """
 
-    reaches: ClassVar[tuple[float, ...]]
+    box_radii: ClassVar[tuple[float, ...]]
 
     def weakening(self, rate: Any, a: Any) -> Any:
         """Return w, the decrease of friction below its value at the driver velocity, in units of v."""
@@ -61,20 +61,20 @@ class Arc:
     """The motion up to an event.
 
     slips : whether the end blocks, and the center, slip
-    ends : LATERAL or CENTER: the one that starts (if it sticks) or stops (if it slips) at the end of the arc
+    event_block : LATERAL or CENTER: the one that starts (if it sticks) or stops (if it slips) at the end of the arc
     flow : the friction law
     """
 
     slips: tuple[bool, bool]
-    ends: int
+    event_block: int
     flow: Flow
 
     @property
     def name(self) -> str:
         """Name of the arc, by the event at its end."""
-        return f"the arc until {NAMES[self.ends]} {'stop' if self.slips[self.ends] else 'start'}"
+        return f"the arc until {NAMES[self.event_block]} {'stop' if self.slips[self.event_block] else 'start'}"
 
-    def after(self, state: State, a: Any, time: Any) -> State:
+    def state_after(self, state: State, a: Any, time: Any) -> State:
         """Return the state a time later if no event comes before; a : friction parameter."""
         return self.flow.path(self.slips, state, a)(time)
 
@@ -88,6 +88,6 @@ class Arc:
         x, other = state.position[block], state.position[1 - block]
         return STIFFNESS[block] * x - COUPLING[block] * other - self.flow.weakening(-1, a)
 
-    def last(self, state: State) -> State:
+    def state_after_event(self, state: State) -> State:
         """Return the state just after the event from the one just before: a stop removes the velocity."""
-        return state.stopped(self.ends) if self.slips[self.ends] else state
+        return state.stop(self.event_block) if self.slips[self.event_block] else state

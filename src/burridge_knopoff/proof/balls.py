@@ -31,7 +31,7 @@ def arithmetic(terms: int = 2) -> Iterator[None]:
         ctx.prec, ctx.cap = before
 
 
-def around(low: arb | float, high: arb | float) -> arb:
+def ball_between(low: arb | float, high: arb | float) -> arb:
     """Return a ball that contains all numbers from low to high."""
     return arb(low).union(arb(high))
 

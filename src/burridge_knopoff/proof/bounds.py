@@ -14,13 +14,13 @@ from typing import Any
 
 from flint import arb, arb_series, fmpq
 
-from burridge_knopoff.proof.balls import ProofError, arithmetic, around, limits
+from burridge_knopoff.proof.balls import ProofError, arithmetic, ball_between, limits
 
 #: A function of time that accepts power series.
 Function = Callable[[Any], Any]
 
 # Maximum number of halvings of an arc: to pieces of a millionth of it.
-DEEPEST = 20
+MAX_HALVINGS = 20
 
 # Number of pieces of an arc for bounds on quantities far from any limit.
 PIECES = 64
@@ -33,51 +33,54 @@ def jet(function: Function, time: arb) -> tuple[arb, arb, arb]:
         return value[0], value[1], 2 * value[2]
 
 
-def check_positive(function: Function, length: arb, starts: bool = False, ends: bool = False) -> None:
+def check_positive(function: Function, length: arb, root_at_start: bool = False, root_at_end: bool = False) -> None:
     """Prove that a function is positive at all times from 0 to the length of an arc, except at its known roots.
 
     length : a ball; the proof is for every length in it
-    starts : whether the function and its first derivative are exactly 0 at time 0
-    ends : whether the function is exactly 0 at the end, for whatever length in the ball is the true one
+    root_at_start : whether the function and its first derivative are exactly 0 at time 0
+    root_at_end : whether the function is exactly 0 at the end, for whatever length in the ball is the true one
     Raises ProofError with the time at which the proof failed, and if a root cannot be where it is assumed.
     """
     with arithmetic(3):
-        known = [*(jet(function, arb(0))[:2] if starts else ()), *(jet(function, length)[:1] if ends else ())]
+        known = [
+            *(jet(function, arb(0))[:2] if root_at_start else ()),
+            *(jet(function, length)[:1] if root_at_end else ()),
+        ]
         if not all(value.contains(0) for value in known):
-            raise ProofError(f"there is no root at its {'start' if starts else 'end'} that could be left out")
+            raise ProofError(f"there is no root at its {'start' if root_at_start else 'end'} that could be left out")
         last = length.upper()
         pieces = [(0, 0)]
         while pieces:
             depth, number = pieces.pop()
             low, high = (last * fmpq(number + side, 2**depth) for side in (0, 1))
             first, final = number == 0, number + 1 == 2**depth
-            if not _is_positive(function, low, high, starts and first, ends and final):
-                if depth == DEEPEST:
+            if not _is_positive(function, low, high, root_at_start and first, root_at_end and final):
+                if depth == MAX_HALVINGS:
                     raise ProofError(f"at the time {float(low.mid())!r} of an arc: it may come to 0 there")
                 pieces += [(depth + 1, 2 * number), (depth + 1, 2 * number + 1)]
 
 
-def _is_positive(function: Function, low: arb, high: arb, starts: bool, ends: bool) -> bool:
+def _is_positive(function: Function, low: arb, high: arb, root_at_start: bool, root_at_end: bool) -> bool:
     """Tell whether a function is proved positive at all times from low to high, except for a root at one end."""
-    time = around(low, high)
+    time = ball_between(low, high)
     value, slope, curvature = jet(function, time)
     # The mean value theorem, and the value itself: whichever decides.
     middle = jet(function, time.mid())[0]
     if value > 0 or middle + slope * (time - time.mid()) > 0:
         return True
     # By Taylor's formula f(t) = t² f''(ξ)/2 after a double root at 0; f(t) = (t − T) f'(ξ) before a root at T.
-    return bool((starts and curvature > 0) or (ends and slope < 0))
+    return bool((root_at_start and curvature > 0) or (root_at_end and slope < 0))
 
 
 def bounds(function: Function, length: arb) -> arb:
     """Return a ball that contains all values of a function from time 0 to the length of an arc."""
     found = [jet(function, piece)[0] for piece in _pieces(length)]
     with arithmetic():
-        return around(min(limits(value)[0] for value in found), max(limits(value)[1] for value in found))
+        return ball_between(min(limits(value)[0] for value in found), max(limits(value)[1] for value in found))
 
 
 def _pieces(length: arb) -> Iterator[arb]:
     with arithmetic():
         last = length.upper()
         for number in range(PIECES):
-            yield around(last * fmpq(number, PIECES), last * fmpq(number + 1, PIECES))
+            yield ball_between(last * fmpq(number, PIECES), last * fmpq(number + 1, PIECES))

@@ -20,11 +20,11 @@ from burridge_knopoff.proof.balls import ProofError, arithmetic
 Equations = Callable[[Sequence[Any]], Sequence[Any]]
 
 # Newton's method doubles the digits of a guess this many times: from double precision to more than the balls have.
-POLISHING = 6
+NEWTON_STEPS = 6
 # After a step this small, more digits are right than the remainders of any arc leave.
-POLISHED = 2.0**-60
+SMALLEST_STEP = 2.0**-60
 # A box shrinks to the square of its size, down to rounding; the iteration ends when it no longer halves.
-SHRINKING = 12
+MAX_SHRINKINGS = 12
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ def derivatives(function: Equations, at: Sequence[arb], chosen: Sequence[int] | 
     return arb_mat(columns).transpose()
 
 
-def polished(equations: Equations, guess: Sequence[Any], parameters: Sequence[arb] = ()) -> list[arb]:
+def refine_guess(equations: Equations, guess: Sequence[Any], parameters: Sequence[arb] = ()) -> list[arb]:
     """Return a guess improved by Newton's method, as exact numbers; this proves nothing.
 
     parameters : arguments of the equations after the unknowns, exact numbers
@@ -62,11 +62,11 @@ def polished(equations: Equations, guess: Sequence[Any], parameters: Sequence[ar
     count = range(len(guess))
     with arithmetic():
         point = [arb(value).mid() for value in guess]
-        for _ in range(POLISHING):
+        for _ in range(NEWTON_STEPS):
             at = [*point, *parameters]
-            step = solved(part(derivatives(equations, at, count), count, count), _column(equations(at)))
+            step = solve_linear(submatrix(derivatives(equations, at, count), count, count), _column(equations(at)))
             point = [(value - step[k, 0]).mid() for k, value in enumerate(point)]
-            if all(abs(step[k, 0].mid()) < POLISHED for k in count):
+            if all(abs(step[k, 0].mid()) < SMALLEST_STEP for k in count):
                 break
     return point
 
@@ -89,7 +89,7 @@ def enclose(
                 raise ProofError(f"unknown {k + 1}: got {mapped}, expected it in the interior of {box}")
         # The box is now so much smaller that derivatives at its midpoint are better than the first ones.
         inverse = _inverse(equations, [ball.mid() for ball in inner], parameters)
-        for _ in range(SHRINKING):
+        for _ in range(MAX_SHRINKINGS):
             before, image = inner, _krawczyk(equations, inner, parameters, inverse)
             # Both contain the solution, hence so does their intersection.
             inner = [box.intersection(smaller) for box, smaller in zip(before, image, strict=True)]
@@ -98,7 +98,7 @@ def enclose(
     return Enclosure(tuple(inner), tuple(outer))
 
 
-def widest(
+def enclose_widest(
     equations: Equations, middle: Sequence[arb], radii: Sequence[float], parameters: Sequence[arb] = ()
 ) -> Enclosure:
     """Return the proof of `enclose` for the widest possible cube around a point.
@@ -114,7 +114,7 @@ def widest(
     return enclose(equations, middle, [radii[-1]] * len(middle), parameters)
 
 
-def inflated(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> list[arb]:
+def trial_radii(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> list[arb]:
     """Return half-widths of a box that Krawczyk's operator may map into itself: twice the image of its midpoint."""
     with arithmetic():
         image = _krawczyk(equations, middle, parameters, _inverse(equations, middle, parameters))
@@ -143,7 +143,7 @@ def _inverse(equations: Equations, middle: Sequence[arb], parameters: Sequence[a
         raise ProofError("the derivatives of the equations cannot be inverted in the middle of the box") from None
 
 
-def solved(matrix: arb_mat, values: arb_mat) -> arb_mat:
+def solve_linear(matrix: arb_mat, values: arb_mat) -> arb_mat:
     """Return an enclosure of the solutions of linear equations, for all matrices and values in their balls.
 
     Raises ProofError if some matrix in the balls may be singular.
@@ -155,7 +155,7 @@ def solved(matrix: arb_mat, values: arb_mat) -> arb_mat:
             raise ProofError("the derivatives of the equations cannot be inverted") from None
 
 
-def part(matrix: arb_mat, rows: Sequence[int], columns: Sequence[int]) -> arb_mat:
+def submatrix(matrix: arb_mat, rows: Sequence[int], columns: Sequence[int]) -> arb_mat:
     """Return some rows and columns of a matrix."""
     return arb_mat([[matrix[i, k] for k in columns] for i in rows])
 

@@ -22,36 +22,44 @@ from burridge_knopoff.proof.arcs import CENTER, LATERAL, NAMES, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic
 from burridge_knopoff.proof.bounds import Function, bounds, check_positive
 from burridge_knopoff.proof.flows import flow_of
-from burridge_knopoff.proof.krawczyk import Enclosure, Equations, derivatives, part, polished, solved, widest
+from burridge_knopoff.proof.krawczyk import (
+    Enclosure,
+    Equations,
+    derivatives,
+    enclose_widest,
+    refine_guess,
+    solve_linear,
+    submatrix,
+)
 
 #: Unknowns of an orbit before the durations of its arcs: the two positions.
-PLACES = 2
+POSITIONS = 2
 
 
-def followed(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State], list[Any]]:
+def follow_arcs(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State], list[Any]]:
     """Return the states at the beginning of each arc and at the end of the period, and the equations of the ends.
 
     unknown : positions x and y of the blocks at rest, the duration of each arc, and a
     """
     *orbit, a = unknown
     states, found = [State((orbit[0], orbit[1]), (-1, -1))], []
-    for arc, time in zip(arcs, orbit[PLACES:], strict=True):
+    for arc, time in zip(arcs, orbit[POSITIONS:], strict=True):
         # The condition has to use the state before the event: a stop makes the speed 0 anyway.
-        before = arc.after(states[-1], a, time)
-        found.append(arc.margin(arc.ends, before, a))
-        states.append(arc.last(before))
+        before = arc.state_after(states[-1], a, time)
+        found.append(arc.margin(arc.event_block, before, a))
+        states.append(arc.state_after_event(before))
     return states, found
 
 
 def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
-    """Return the equations of a periodic orbit, in the unknowns of `followed`: the events, and the return of positions.
+    """Return the equations of a periodic orbit, in the unknowns of `follow_arcs`: events and return of positions.
 
     critical : whether the transverse multiplier has to be 1 as well
     """
 
     def values(unknown: Sequence[Any]) -> list[Any]:
-        states, found = followed(arcs, unknown)
-        returned = [states[-1].position[k] - unknown[k] for k in range(PLACES)]
+        states, found = follow_arcs(arcs, unknown)
+        returned = [states[-1].position[k] - unknown[k] for k in range(POSITIONS)]
         return [*found, *returned, *([states[-1].difference[0] - 1] if critical else [])]
 
     return values
@@ -77,7 +85,7 @@ def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
     flow_of_law = flow_of(orbit.model)
     arcs = [Arc(state, block, flow_of_law) for state, (_, block) in zip(slipping, cycle[1:], strict=True)]
     start = flow(orbit.model, orbit.reference, cycle[0][0])[0].state()
-    position = [float(x) / orbit.model.v for x in start.position[:PLACES]]
+    position = [float(x) / orbit.model.v for x in start.position[:POSITIONS]]
     return tuple(arcs), position + [late - early for (early, _), (late, _) in pairwise(cycle)]
 
 
@@ -97,7 +105,7 @@ class ProvedOrbit:
     @property
     def times(self) -> tuple[arb, ...]:
         """Durations of the arcs."""
-        return self.enclosure.inner[PLACES:]
+        return self.enclosure.inner[POSITIONS:]
 
     @property
     def period(self) -> arb:
@@ -119,7 +127,7 @@ class ProvedOrbit:
     def multiplier(self) -> arb:
         """The transverse Floquet multiplier μ: the factor by which a small difference of blocks 1 and 3 changes."""
         with arithmetic():
-            return followed(self.arcs, self._unknown)[0][-1].difference[0]
+            return follow_arcs(self.arcs, self._unknown)[0][-1].difference[0]
 
     @cached_property
     def symmetric_multiplier(self) -> arb:
@@ -130,11 +138,11 @@ class ProvedOrbit:
         (docs/synchronization.md).
         """
 
-        def apart(unknown: Sequence[Any]) -> list[Any]:
-            x, y = followed(self.arcs, unknown)[0][-1].position
+        def position_difference(unknown: Sequence[Any]) -> list[Any]:
+            x, y = follow_arcs(self.arcs, unknown)[0][-1].position
             return [x - y]
 
-        return derivatives(apart, self._unknown, [0])[0, 0]
+        return derivatives(position_difference, self._unknown, [0])[0, 0]
 
     @cached_property
     def slope(self) -> arb:
@@ -143,8 +151,8 @@ class ProvedOrbit:
         count = len(self.enclosure.inner)
         orbit, last = range(count), [count]
         with arithmetic():
-            moved = solved(part(matrix, orbit, orbit), part(matrix, orbit, last))
-            change = part(matrix, last, last) - part(matrix, last, orbit) * moved
+            moved = solve_linear(submatrix(matrix, orbit, orbit), submatrix(matrix, orbit, last))
+            change = submatrix(matrix, last, last) - submatrix(matrix, last, orbit) * moved
             return change[0, 0]
 
     def check_arcs(self) -> None:
@@ -152,27 +160,27 @@ class ProvedOrbit:
 
         Raises ProofError, one line, with the block, arc and time.
         """
-        for k, (arc, state, time) in enumerate(self._each_arc()):
-            started = self.arcs[k - 1].ends if arc.slips[self.arcs[k - 1].ends] else None
+        for k, (arc, state, time) in enumerate(self._arcs_with_states()):
+            started = self.arcs[k - 1].event_block if arc.slips[self.arcs[k - 1].event_block] else None
             for block in (LATERAL, CENTER):
                 margin = self._margin(arc, state, block)
                 try:
-                    check_positive(margin, time, starts=block == started, ends=block == arc.ends)
+                    check_positive(margin, time, root_at_start=block == started, root_at_end=block == arc.event_block)
                 except ProofError as error:
                     raise ProofError(f"{NAMES[block]}, {arc.name}: not proved to go on as they do: {error}") from None
 
-    def fastest(self) -> arb:
+    def speed_range(self) -> arb:
         """Return a ball that contains all speeds U'/v of slipping blocks."""
-        return self._hull(True)
+        return self._margin_range(True)
 
-    def tightest(self) -> arb:
+    def force_margin_range(self) -> arb:
         """Return a ball that contains (1 − s)/v, with spring force s, of all stuck blocks."""
-        return self._hull(False)
+        return self._margin_range(False)
 
-    def _hull(self, slipping: bool) -> arb:
+    def _margin_range(self, slipping: bool) -> arb:
         found = [
             bounds(self._margin(arc, state, block), time)
-            for arc, state, time in self._each_arc()
+            for arc, state, time in self._arcs_with_states()
             for block in (LATERAL, CENTER)
             if arc.slips[block] == slipping
         ]
@@ -184,10 +192,10 @@ class ProvedOrbit:
         path = arc.flow.path(arc.slips, state, self.a)
         return lambda time: arc.margin(block, path(time), self.a)
 
-    def _each_arc(self) -> list[tuple[Arc, State, arb]]:
+    def _arcs_with_states(self) -> list[tuple[Arc, State, arb]]:
         """Return each arc, the state at its beginning and its duration."""
         with arithmetic():
-            states, _ = followed(self.arcs, self._unknown)
+            states, _ = follow_arcs(self.arcs, self._unknown)
         return list(zip(self.arcs, states, self.times, strict=False))
 
 
@@ -198,7 +206,7 @@ def prove_orbit(orbit: PeriodicOrbit, a: arb) -> ProvedOrbit:
     Raises ProofError, one line, if the proof fails.
     """
     arcs, guess = arcs_of(orbit)
-    middle = polished(equations(arcs), guess, [a.mid()])
-    proved = ProvedOrbit(arcs, a, widest(equations(arcs), middle, arcs[0].flow.reaches, [a]))
+    middle = refine_guess(equations(arcs), guess, [a.mid()])
+    proved = ProvedOrbit(arcs, a, enclose_widest(equations(arcs), middle, arcs[0].flow.box_radii, [a]))
     proved.check_arcs()
     return proved

@@ -20,8 +20,8 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
 from burridge_knopoff.proof.balls import BITS, ProofError, arithmetic, decimal, digits, limits, width
-from burridge_knopoff.proof.critical import Critical, Piece, prove_branch, prove_critical
-from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit, prove_orbit
+from burridge_knopoff.proof.critical import CriticalOrbit, Piece, prove_branch, prove_critical
+from burridge_knopoff.proof.orbit import POSITIONS, ProvedOrbit, prove_orbit
 from burridge_knopoff.proof.scope import NONLINEAR_V, is_covered, is_linearized
 from burridge_knopoff.study.model import models_of
 
@@ -130,7 +130,7 @@ def _of_law(model: Model) -> dict[str, Any]:
         "critical_a": limits(critical.a),
         "critical_a_digits": digits(critical.a),
         "critical_a_width": width(critical.a),
-        "only_between": between if branch else _inward(critical.unique),
+        "only_between": between if branch else _inward(critical.uniqueness_range),
         "family_between": between,
         "pieces": len(branch),
         **{name: [one[name] for one in each] for name in each[0]},
@@ -143,25 +143,25 @@ def _inward(ball: arb) -> tuple[float, float]:
     return float(np.nextafter(low, np.inf)), float(np.nextafter(high, -np.inf))
 
 
-def _check_branch(given: ProvedOrbit, critical: Critical, branch: Sequence[Piece]) -> None:
+def _check_branch(given: ProvedOrbit, critical: CriticalOrbit, branch: Sequence[Piece]) -> None:
     """Prove that the family has both orbits; raises ProofError, one line, if that fails."""
-    branch[0].check_holds(given.enclosure, arb(fmpq(*GIVEN)))
+    branch[0].check_contains(given.enclosure, arb(fmpq(*GIVEN)))
     for piece in branch:
         if piece.orbit.a.overlaps(critical.a):
-            piece.check_holds(critical.orbit.enclosure, critical.a)
+            piece.check_contains(critical.orbit.enclosure, critical.a)
     low, high = (decimal(*end) for end in RANGE)
     if not low < critical.a < high:
         raise ProofError(f"a_c = {critical.a}: not in the range of a that is covered")
 
 
-def _check(model: Model, given: ProvedOrbit, critical: Critical, branch: Sequence[Piece]) -> None:
+def _check(model: Model, given: ProvedOrbit, critical: CriticalOrbit, branch: Sequence[Piece]) -> None:
     """Prove what is left: stuck blocks hold, the given orbit attracts, a_c is narrow.
 
     Raises ProofError, one line, if that fails.
     """
     if model.contact == "symmetric":
         for orbit in (given, critical.orbit, *(piece.orbit for piece in branch)):
-            if not model.v * orbit.tightest() < 2:
+            if not model.v * orbit.force_margin_range() < 2:
                 raise ProofError(f"a = {orbit.a}, v = {model.v!r}: stuck blocks are not known to hold a pull back")
     for orbit in (given, critical.orbit):
         if not abs(orbit.symmetric_multiplier) < 1:
@@ -174,14 +174,17 @@ def _check(model: Model, given: ProvedOrbit, critical: Critical, branch: Sequenc
 
 def _of_orbit(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
     """Return the variables over orbits, for one; raises ProofError if its events are others."""
-    names = [f"{('lateral', 'center')[arc.ends]}_{'stop' if arc.slips[arc.ends] else 'start'}" for arc in orbit.arcs]
+    names = [
+        f"{('lateral', 'center')[arc.event_block]}_{'stop' if arc.slips[arc.event_block] else 'start'}"
+        for arc in orbit.arcs
+    ]
     if tuple(names) != EVENTS:
         raise ProofError(f"events: got {', '.join(names)}, expected {', '.join(EVENTS)}")
     with arithmetic():
-        positions = [limits(model.v * place) for place in orbit.enclosure.inner[:PLACES]]
-        speed = orbit.a * model.v * orbit.fastest()
+        positions = [limits(model.v * place) for place in orbit.enclosure.inner[:POSITIONS]]
+        speed = orbit.a * model.v * orbit.speed_range()
         friction = limits(1 - speed if is_linearized(model) else 1 / (1 + speed))[0]
-        force = limits(1 - model.v * orbit.tightest())[0]
+        force = limits(1 - model.v * orbit.force_margin_range())[0]
     return {
         "a": limits(orbit.a),
         "period": limits(orbit.period),
