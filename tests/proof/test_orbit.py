@@ -16,7 +16,7 @@ from burridge_knopoff.proof.balls import ProofError, arithmetic, decimal, width
 from burridge_knopoff.proof.bounds import check_positive
 from burridge_knopoff.proof.closed import Linearized
 from burridge_knopoff.proof.krawczyk import derivatives, enclose, solve_linear, submatrix
-from burridge_knopoff.proof.orbit import POSITIONS, arcs_of, equations, prove_orbit
+from burridge_knopoff.proof.orbit import POSITIONS, arcs_of, equations, follow_arcs, prove_orbit
 from tests.periodic_orbits.exact import slipping_state
 from tests.proof.conftest import changed, holds
 from tests.proof.exact import exact_orbit

@@ -15,7 +15,7 @@ from burridge_knopoff.proof.balls import ProofError, arithmetic, width
 from burridge_knopoff.proof.closed import Linearized
 from burridge_knopoff.proof.critical import prove_critical
 from burridge_knopoff.proof.krawczyk import derivatives
-from burridge_knopoff.proof.orbit import POSITIONS, prove_orbit
+from burridge_knopoff.proof.orbit import POSITIONS, follow_arcs, prove_orbit
 from burridge_knopoff.proof.taylor import Nonlinear
 from tests.proof.conftest import SLIPS, changed, holds, state_of
 
