@@ -115,10 +115,10 @@ def test_the_crisis_names_the_saddle(merging, tmp_path: Path):
     write_summary(whole, tmp_path / "edges.nc")
     whole = open_summary(tmp_path / "edges.nc")
     assert edges.digest(whole).count("\n") == 1 + len(found)
-    met = edges.met_saddle(whole, "linearized", 0.1773)
+    met = edges.saddle_at_crisis(whole, "linearized", 0.1773)
     assert met["stops"].tolist() == [1, 1, 1]
     assert met["distance"] == near.distance
-    assert edges.met_saddle(whole, "nonlinear", 0.1773) == {}
+    assert edges.saddle_at_crisis(whole, "nonlinear", 0.1773) == {}
 
     values = {
         name: np.full(

@@ -7,7 +7,7 @@ import xarray as xr
 from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.report.tables import branch_table
 from burridge_knopoff.summaries import all_laws
-from burridge_knopoff.summaries.all_laws import named_alike, with_branches_between
+from burridge_knopoff.summaries.all_laws import common_branch_names, number_intermediate_branches
 from tests.summaries.continued import SETTINGS
 
 
@@ -88,7 +88,10 @@ def test_a_branch_between_has_a_number_of_its_own():
     numbers = [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
     branches = [[0, 1], [3, -1], [4, 2]], [[0, 2], [3, 1], [-1, 9]]
     parts = [xr.Dataset({"branch": (("value", "attractor"), np.array(part))}) for part in branches]
-    assert with_branches_between(numbers, parts) == [{0: 0, 1: 1, 4: 4, 2: 6, 3: 7}, {0: 0, 2: 1, 3: 5, 1: 8, 9: 9}]
+    assert number_intermediate_branches(numbers, parts) == [
+        {0: 0, 1: 1, 4: 4, 2: 6, 3: 7},
+        {0: 0, 2: 1, 3: 5, 1: 8, 9: 9},
+    ]
     assert numbers == [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
 
 
@@ -98,6 +101,8 @@ def named(names):
 
 
 def test_names_are_those_at_the_values_of_the_grid():
-    found = named_alike(named({0: "synchronized", 3: "alternating (3)", 7: "mirror pair (7)"}), named({3: "pair (3)"}))
+    found = common_branch_names(
+        named({0: "synchronized", 3: "alternating (3)", 7: "mirror pair (7)"}), named({3: "pair (3)"})
+    )
     assert found["branch_name"].values.tolist() == ["synchronized", "pair (3)", "mirror pair (7)"]
     assert found["branch_name"].attrs == {"long_name": "what it is called"}

@@ -14,7 +14,7 @@ from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_exponent
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.summaries import basins
-from burridge_knopoff.summaries.map_rows import undetermined_alike
+from burridge_knopoff.summaries.map_rows import count_symmetric_undetermined
 
 PLANE = BasinSettings(pixels=4, first_position=(-1.0, 3.0), last_position=(0.0, 2.0), pairs=50, tiles=2)
 MODELS = [Model(Chain(3), law_of(law, a), 0.2, "symmetric") for law, a in (("nonlinear", 0.1), ("linearized", 0.3))]
@@ -122,9 +122,9 @@ def test_undetermined_states_that_are_their_own_mirror_images_are_counted(veloci
     branch = np.array([[-1, -1, -1], [0, 0, -1], [0, 0, -1]])
     places = {name: [0.5, 1.5, 2.5] for name in ("last_position", "first_position")}
     plane = {"plane_position": np.array([1.0, 3.0, 2.0]), "plane_velocity": np.array(velocity)}
-    assert undetermined_alike(xr.Dataset({"branch": (tuple(places), branch)}, places, plane)) == alike
+    assert count_symmetric_undetermined(xr.Dataset({"branch": (tuple(places), branch)}, places, plane)) == alike
     # Of the inner positions all have to be alike.
     four = {"plane_velocity": np.full(4, 0.1)}
     for inner, expected in (([3.0, 3.0], 2), ([3.0, 2.0], 0)):
         four["plane_position"] = np.array([1.0, *inner, 2.0])
-        assert undetermined_alike(xr.Dataset({"branch": (tuple(places), branch)}, places, four)) == expected
+        assert count_symmetric_undetermined(xr.Dataset({"branch": (tuple(places), branch)}, places, four)) == expected

@@ -26,7 +26,7 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries import bifurcations
-from burridge_knopoff.summaries.bifurcations import _branches_of_segments, _rounded, digest, merge, one_law
+from burridge_knopoff.summaries.bifurcations import _branches_of_segments, _round_digits, digest, merge, one_law
 
 # Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]
@@ -229,13 +229,13 @@ def test_what_is_less_well_known_has_fewer_digits(found, name, digits):
 
 
 def test_a_negative_rounding_of_0_is_0():
-    assert not np.signbit(_rounded(np.array([-1e-13]), 10)).any()
+    assert not np.signbit(_round_digits(np.array([-1e-13]), 10)).any()
 
 
 def test_next_to_0_eleven_digits_behind_the_point_are_kept():
-    values = _rounded(np.array([1.23456789e-7, 1.23456789e-2, 4e-12]), 5)
+    values = _round_digits(np.array([1.23456789e-7, 1.23456789e-2, 4e-12]), 5)
     assert values.tolist() == [1.2346e-7, 1.2346e-2, 0.0]
-    assert _rounded(np.array([1.23456789e-8]), 10).tolist() == [1.235e-8]
+    assert _round_digits(np.array([1.23456789e-8]), 10).tolist() == [1.235e-8]
 
 
 def test_orbits_are_stable_on_one_side_of_the_bifurcation(found):

@@ -16,7 +16,7 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.summaries import phases
-from burridge_knopoff.summaries.along_attractor import AlongAttractor, along_attractor
+from burridge_knopoff.summaries.attractor_observables import AttractorObservables, follow_attractor
 
 PHASES = PhaseSettings(
     amplitude=(0.05, 0.5), phase_difference=(30.0, 90.0, 180.0), inner_share=(0.0, 0.5), samples=5, seed=3
@@ -35,9 +35,9 @@ def ruled(monkeypatch):
 
     monkeypatch.setattr(phases, "label_states", label_states)
     correlations = iter([1.0, -0.5, -0.7] * 100)
-    followed = partial(AlongAttractor, np.empty(0), velocity=np.empty((0, 3)))
+    followed = partial(AttractorObservables, np.empty(0), velocity=np.empty((0, 3)))
     monkeypatch.setattr(
-        phases, "along_attractor", lambda model, start: followed(velocity_correlation=next(correlations))
+        phases, "follow_attractor", lambda model, start: followed(velocity_correlation=next(correlations))
     )
 
 
@@ -112,7 +112,7 @@ def test_velocities_go_together_or_against_each_other(difference, least, most):
     position, velocity, _ = oscillating_states(model, *(np.array([x]) for x in (0.03, difference, 100.0)))
     start = ChainState(position[0] - model.sliding_offset, velocity[0], np.zeros(3, dtype=bool))
     end = Runner(model).after(start, 3000.0)
-    assert least <= along_attractor(model, end).velocity_correlation <= most
+    assert least <= follow_attractor(model, end).velocity_correlation <= most
 
 
 @pytest.mark.parametrize(("share", "least", "most"), [(0.0, 1.0, 1.0), (0.7, 0.6, 0.99)])
@@ -144,4 +144,4 @@ def test_the_correlation_is_that_of_the_velocities_from_the_state_on():
         runner.run(0.05 * look)
         velocity.append(runner.state().velocity)
     one, _, other = np.transpose(velocity)
-    assert along_attractor(model, start).velocity_correlation == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-9)
+    assert follow_attractor(model, start).velocity_correlation == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-9)

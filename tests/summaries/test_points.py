@@ -31,7 +31,7 @@ def test_a_grid_is_its_points_in_order(grid, tmp_path):
     assert (model.v, model.law.a, model.law.name, model.chain.threshold) == (0.2, 0.2, "nonlinear", (1.0, 1.0, 0.9))
     for words in ("simulate --law nonlinear --a 0.2", "--initial plus", "--v 0.2", "--transient 10.0", "--window 20.0"):
         assert words in grid.command(*POINT)
-    other = grid.elsewhere(tmp_path / "other", {"linearized": {**SETTINGS, "solver": "map"}})
+    other = grid.copy_with(tmp_path / "other", {"linearized": {**SETTINGS, "solver": "map"}})
     assert {law: item.solver for law, item in other.settings.items()} == {"linearized": "map"}
     assert other.folder == tmp_path / "other"
     assert (other.initial, other.a, other.models) == (grid.initial, grid.a, grid.models)
@@ -42,7 +42,7 @@ def test_a_grid_is_its_points_in_order(grid, tmp_path):
         "settings": dict.fromkeys(grid.laws, SETTINGS),
         **grid.models,
     }
-    assert Grid.of(tmp_path, told) == grid
+    assert Grid.from_points(tmp_path, told) == grid
 
 
 def test_points_are_read(grid):

@@ -55,7 +55,7 @@ def test_intervals_are_narrow_and_open_to_the_right_sides(found):
         assert (low <= high).all()
         assert (high - low < (1e-6 if name == "multiplier_slope" else 1e-10)).all()
     low, high = found["critical_a"].sel(end="low"), found["critical_a"].sel(end="high")
-    assert (high - low < proof.NARROW).all()
+    assert (high - low < proof.LARGEST_WIDTH).all()
     assert (found["critical_a_width"] < [1e-50, 1e-17]).all()
     assert found["family_between"].values[0].tolist() == found["only_between"].values[0].tolist() == [0.08, 0.1]
     assert np.isnan(found["family_between"].values[1]).all()

@@ -38,7 +38,7 @@ def files(tmp_path, runs):
     others = {}
     for solver in ("series", "rk4"):
         known = {law: settings(solver) for law, solvers in SOLVERS.items() if solver in solvers[1:]}
-        others[solver] = grid.elsewhere(tmp_path / "solvers" / solver, known)
+        others[solver] = grid.copy_with(tmp_path / "solvers" / solver, known)
     return grid, others
 
 

@@ -94,7 +94,9 @@ def summarize(
                 values["mean_distance"][i, j, k] = run["mean_distance"]
                 values["mean_distance_error"][i, j, k] = run["mean_distance_error"]
             for i, run in enumerate(runs[1:]):
-                values["section_distance"][i, j, k] = _section_distance(_upward(runs[0]), _upward(run))
+                values["section_distance"][i, j, k] = _section_distance(
+                    _upward_crossings(runs[0]), _upward_crossings(run)
+                )
                 count, until = common_order(all_events(runs[0]), all_events(run))
                 values["event_order_count"][i, j, k] = count
                 values["event_order_time"][i, j, k] = min(until, float(runs[0]["end_time"]), float(run["end_time"]))
@@ -158,7 +160,7 @@ def _fill_settled(
         values["settled"][law, initial] = np.where(known, there, Answer.UNDETERMINED)
 
 
-def _upward(run: Mapping[str, np.ndarray]) -> np.ndarray:
+def _upward_crossings(run: Mapping[str, np.ndarray]) -> np.ndarray:
     """Return W' of the upward crossings of a run."""
     return run["crossing_velocity"][run["crossing_direction"] > 0]
 
@@ -203,7 +205,7 @@ def digest(dataset: xarray.Dataset) -> str:
     lines = [] if len(others) else [f"The {first} law is the only one: there is nothing to compare."]
     for other in others:
         for initial in dataset["initial"].values:
-            found = _parting(dataset.sel(other_law=other, initial=initial))
+            found = _agreement_text(dataset.sel(other_law=other, initial=initial))
             lines.append(f"{initial}, {other} law compared with the {first} law: {found}")
     for law in dataset["law"].values:
         for initial in dataset["initial"].values:
@@ -217,7 +219,7 @@ def digest(dataset: xarray.Dataset) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _parting(row: xarray.Dataset) -> str:
+def _agreement_text(row: xarray.Dataset) -> str:
     """Return in words where two laws agree and part, from one initial state."""
     verdict = row["agrees"].values
     a = row["a"].values[verdict >= 0]

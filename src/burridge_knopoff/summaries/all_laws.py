@@ -39,9 +39,9 @@ def make(
     parts, further, models = given.summaries("grid"), given.summaries("refined"), models_of(model, a)
     numbers = branch_numbers(parts, models, SearchSettings(**attractors), given.cores)
     on_grid = merge(parts, numbers)
-    numbers = with_branches_between(numbers, further)
+    numbers = number_intermediate_branches(numbers, further)
     everywhere = merge(further, numbers, refined.VARIABLES, "Attractors at refined values of a")
-    everywhere = named_alike(everywhere, on_grid)
+    everywhere = common_branch_names(everywhere, on_grid)
     return on_grid, digest(on_grid), everywhere, rotation.summarize(everywhere, models)
 
 
@@ -59,7 +59,7 @@ def merge(
     for name, item in variables.items():
         arrays = [part[name].values for part in parts]
         if name.endswith("branch"):
-            arrays = [_renumbered(array, renamed) for array, renamed in zip(arrays, numbers, strict=True)]
+            arrays = [_renumber(array, renamed) for array, renamed in zip(arrays, numbers, strict=True)]
         shape = np.max([array.shape for array in arrays], axis=0)
         values[name] = np.full((len(parts), *shape), item.missing, dtype=item.dtype)
         for number, array in enumerate(arrays):
@@ -89,11 +89,11 @@ def branch_numbers(
         grid = part["a"].values.tolist()
         firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
         renamed = joined(firsts, seconds, first, _states(part, model), settings, processes=processes)
-        numbers.append(_with_others(renamed, part, numbers))
+        numbers.append(_number_remaining(renamed, part, numbers))
     return numbers
 
 
-def _with_others(
+def _number_remaining(
     known: Mapping[int, int], part: xarray.Dataset, numbers: Sequence[Mapping[int, int]]
 ) -> dict[int, int]:
     """Return the numbers of branches of one law with those added that have none: they follow all that are taken.
@@ -117,7 +117,7 @@ def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, ChainStat
     return states
 
 
-def with_branches_between(
+def number_intermediate_branches(
     numbers: Sequence[Mapping[int, int]], parts: Sequence[xarray.Dataset]
 ) -> list[dict[int, int]]:
     """Return the numbers of branches with those added that exist only between values of the grid.
@@ -127,18 +127,18 @@ def with_branches_between(
     """
     result: list[dict[int, int]] = []
     for known, part in zip(numbers, parts, strict=True):
-        result.append(_with_others(known, part, [*numbers, *result]))
+        result.append(_number_remaining(known, part, [*numbers, *result]))
     return result
 
 
-def named_alike(refined: xarray.Dataset, attractors: xarray.Dataset) -> xarray.Dataset:
+def common_branch_names(refined: xarray.Dataset, attractors: xarray.Dataset) -> xarray.Dataset:
     """Return attractors at all values of a with the names that branches have at the values of the grid."""
     names = branch_names(refined) | branch_names(attractors)
     own = refined["branch_number"].values.tolist()
     return refined.assign(branch_name=refined["branch_name"].copy(data=[names[number] for number in own]))
 
 
-def _renumbered(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
+def _renumber(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
     """Return the numbers of branches replaced by new ones; what is undetermined stays so."""
     result = np.full_like(branch, UNDETERMINED)
     for before, after in renamed.items():

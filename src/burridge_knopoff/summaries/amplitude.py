@@ -51,14 +51,14 @@ def sweep(orbits: KnownOrbits, values: np.ndarray) -> np.ndarray:
     state = orbits.at(float(values[0])).reference
     for k, a in enumerate(values):
         try:
-            state = _settled(model_at(orbits.model, float(a)), displace_end_blocks(state, SEED * orbits.model.v))
+            state = _settle(model_at(orbits.model, float(a)), displace_end_blocks(state, SEED * orbits.model.v))
         except OrbitError:
             break
         found[k] = abs(state.position[0] - state.position[-1])
     return found
 
 
-def _settled(model: Model, state: ChainState) -> ChainState:
+def _settle(model: Model, state: ChainState) -> ChainState:
     """Return the first state after a time in which the end blocks have both just come to stick."""
     runner, last = Runner(model), model.blocks - 1
     state_after(runner, state, SWEEP_TIME)

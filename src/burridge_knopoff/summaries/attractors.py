@@ -26,8 +26,8 @@ from burridge_knopoff.model.model import CONTACTS, STARTS, Model
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.section import Section
-from burridge_knopoff.summaries.along_attractor import along_attractor, distinct
-from burridge_knopoff.summaries.equilibrium import sliding_attracts
+from burridge_knopoff.summaries.attractor_observables import count_distinct, follow_attractor
+from burridge_knopoff.summaries.equilibrium import is_sliding_attracting
 
 _SLOT = ("a", "attractor")
 _REACHED = ("contact", "start", "initial", "a")
@@ -37,7 +37,7 @@ DIRECTIONS = ("upward", "downward")
 ROUNDING = 5e-4
 CORNERS = 64
 _V = Variable
-ALONG = {"comment": "of attractors that an initial state of the study reaches under some convention"}
+ALONG_COMMENT = {"comment": "of attractors that an initial state of the study reaches under some convention"}
 VARIABLES = {
     **slot_variables("a"),
     "upward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next larger a of the grid", NOTHING),
@@ -62,12 +62,20 @@ VARIABLES = {
     "initial_branch": _V(_REACHED, "i2", "branch reached by an initial state under each convention", NOTHING),
     "initial_side": _V(_REACHED, "i1", "side of that branch", nothing=0),
     "section_count": _V(
-        _SLOT, "i4", "different points W' of the section W = 0, crossed upward, on an attractor that is followed", ALONG
+        _SLOT,
+        "i4",
+        "different points W' of the section W = 0, crossed upward, on an attractor that is followed",
+        ALONG_COMMENT,
     ),
-    "section_velocity_mean": _V(_SLOT, "f8", "mean of W' over these crossings, NaN where there is none", ALONG),
-    "velocity_correlation": _V(_SLOT, "f8", "Pearson correlation of the velocities U' of the end blocks", ALONG),
+    "section_velocity_mean": _V(_SLOT, "f8", "mean of W' over these crossings, NaN where there is none", ALONG_COMMENT),
+    "velocity_correlation": _V(
+        _SLOT, "f8", "Pearson correlation of the velocities U' of the end blocks", ALONG_COMMENT
+    ),
     "velocity_frequency": _V(
-        (*_SLOT, "block"), "f8", "frequency, in cycles per unit time, of the highest peak of the spectrum of U'", ALONG
+        (*_SLOT, "block"),
+        "f8",
+        "frequency, in cycles per unit time, of the highest peak of the spectrum of U'",
+        ALONG_COMMENT,
     ),
     "rounded_branch": _V(
         ("initial", "a", "corner"),
@@ -96,12 +104,12 @@ def one_law(
     """
     models = [found.models[k] for k in found.grid]
     values = slot_values(models, [found.rows(k) for k in found.grid], settings.lifetime, "a")
-    values.update(_basins(found))
-    values["sliding_attracts"] = np.array([sliding_attracts(model) for model in models])
-    values.update(_steps(found))
-    values.update(_reached(found, initial, settings.label_limit))
-    values.update(_followed(found, values["initial_branch"], values["initial_side"], motion.section))
-    values.update(_rounded(found, initial, settings.label_limit, start))
+    values.update(_basin_fractions(found))
+    values["sliding_attracts"] = np.array([is_sliding_attracting(model) for model in models])
+    values.update(_neighbour_branches(found))
+    values.update(_initial_branches(found, initial, settings.label_limit))
+    values.update(_observables(found, values["initial_branch"], values["initial_side"], motion.section))
+    values.update(_rounded_branches(found, initial, settings.label_limit, start))
     values.update(_sweeps(found))
     coordinates = axes(initial=[state.name for state in initial], a=[model.a for model in models])
     coordinates.update(slot_coordinates(models[0].blocks))
@@ -131,7 +139,7 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
     }
 
 
-def _basins(found: Continuation) -> dict[str, np.ndarray]:
+def _basin_fractions(found: Continuation) -> dict[str, np.ndarray]:
     """Return how many of the drawn states reach each attractor, and their fraction with its interval."""
     values = empty(
         VARIABLES,
@@ -152,7 +160,7 @@ def _basins(found: Continuation) -> dict[str, np.ndarray]:
     return values
 
 
-def _steps(found: Continuation) -> dict[str, np.ndarray]:
+def _neighbour_branches(found: Continuation) -> dict[str, np.ndarray]:
     """Return the branch that each attractor leads to at the next larger and smaller a of the grid."""
     values = {}
     for name, step, following in (("upward", 1, found.upward), ("downward", -1, found.downward)):
@@ -167,7 +175,7 @@ def _steps(found: Continuation) -> dict[str, np.ndarray]:
     return values
 
 
-def _reached(found: Continuation, states: Sequence[InitialState], label_limit: float) -> dict[str, np.ndarray]:
+def _initial_branches(found: Continuation, states: Sequence[InitialState], label_limit: float) -> dict[str, np.ndarray]:
     """Return which branch each initial state reaches under each convention of contact and start."""
     shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(found.grid)}
     values = empty(VARIABLES, shape, "initial")
@@ -180,7 +188,7 @@ def _reached(found: Continuation, states: Sequence[InitialState], label_limit: f
     return values
 
 
-def _followed(found: Continuation, branch: np.ndarray, side: np.ndarray, section: Section) -> dict[str, np.ndarray]:
+def _observables(found: Continuation, branch: np.ndarray, side: np.ndarray, section: Section) -> dict[str, np.ndarray]:
     """Return what a run along each attractor shows that an initial state reaches, shape of both (…, a)."""
     sizes = {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors)), "block": found.models[0].blocks}
     values = empty(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")
@@ -188,15 +196,15 @@ def _followed(found: Continuation, branch: np.ndarray, side: np.ndarray, section
         wanted = {*zip(branch[..., k].ravel().tolist(), side[..., k].ravel().tolist(), strict=True)}
         for slot, row in enumerate(found.rows(place)):
             if (row.branch, row.side) in wanted:
-                one = along_attractor(found.models[place], row.attractor.motion.state(), section)
-                values["section_count"][k, slot] = distinct(one.section)
+                one = follow_attractor(found.models[place], row.attractor.motion.state(), section)
+                values["section_count"][k, slot] = count_distinct(one.section)
                 values["section_velocity_mean"][k, slot] = one.section.mean() if len(one.section) else np.nan
                 values["velocity_correlation"][k, slot] = one.velocity_correlation
                 values["velocity_frequency"][k, slot] = one.velocity_frequency
     return values
 
 
-def _rounded(
+def _rounded_branches(
     found: Continuation, states: Sequence[InitialState], label_limit: float, start: str
 ) -> dict[str, np.ndarray]:
     """Return which branch the corners of each initial state reach under the convention of the models and `start`."""

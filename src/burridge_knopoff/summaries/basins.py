@@ -76,18 +76,18 @@ COORDINATES = {
 
 
 def make_tile(given: Given, **params: Any) -> xarray.Dataset:
-    """Return one tile of a map; arguments as in `_known`."""
-    known, plane, search = _known(given, **params)
+    """Return one tile of a map; arguments as in `_known_attractors`."""
+    known, plane, search = _known_attractors(given, **params)
     return tile(known, int(given.wildcards["tile"]), plane, search.label_limit, params["start"])
 
 
 def make_pairs(given: Given, **params: Any) -> xarray.Dataset:
-    """Return the pairs of nearby states of a map; arguments as in `_known`."""
-    known, plane, search = _known(given, **params)
+    """Return the pairs of nearby states of a map; arguments as in `_known_attractors`."""
+    known, plane, search = _known_attractors(given, **params)
     return pairs(known, plane, search.label_limit, search.seed, params["start"])
 
 
-def _known(
+def _known_attractors(
     given: Given,
     model: Mapping[str, Any],
     a: float,
@@ -114,7 +114,7 @@ def make(
     basins: Mapping[str, Any],
     start: str,
 ) -> tuple[xarray.Dataset, str]:
-    """Return all maps, and the same in words; maps : law and a of each; the others as in `_known`."""
+    """Return all maps, and the same in words; maps : law and a of each; the others as in `_known_attractors`."""
     plane = BasinSettings(initial=InitialState(**state), **basins)
     tiles, of_pairs = given.summaries("tiles"), given.summaries("pairs")
     parts = [
@@ -245,8 +245,10 @@ def digest(dataset: xarray.Dataset) -> str:
     for number, row in enumerate(map_rows(dataset)):
         one = dataset.isel(map=number)
         shares = [f"{name} {100.0 * count / row.states:.2f} %" for name, count in row.members.items()]
-        if row.alike:
-            shares[0] += f" ({row.alike} of {row.undetermined} where mirror blocks are alike, a line of no area)"
+        if row.symmetric_count:
+            shares[0] += (
+                f" ({row.symmetric_count} of {row.undetermined} where mirror blocks are alike, a line of no area)"
+            )
         times = one["decision_time"].values
         decided = f"; decided at tau = {np.nanmean(times):.0f} in the mean" if np.isfinite(times).any() else ""
         lines.append(f"{row.law}, a = {row.a:g}: {', '.join(shares)}; {_exponent_text(one)}{decided}")

@@ -28,13 +28,13 @@ from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.model import model_of
-from burridge_knopoff.summaries.edges import met_saddle
+from burridge_knopoff.summaries.edges import saddle_at_crisis
 
 PARTS = ("real", "imaginary")
 _AT, _ORBIT = ("bifurcation",), ("orbit",)
 
 
-def _located(value: Callable[[Bifurcation], Any]) -> Callable[[Entry], Any]:
+def _of_bifurcation(value: Callable[[Bifurcation], Any]) -> Callable[[Entry], Any]:
     """Return the value of a column that only a bifurcation has that was found on an orbit."""
     return lambda entry: value(entry.bifurcation) if entry.bifurcation else None
 
@@ -61,7 +61,10 @@ _LARGEST = "Floquet multiplier of the largest modulus next to the bifurcation"
 BIFURCATIONS = {
     "a": Column(_AT, "f8", "friction parameter a of the bifurcation", value=lambda one: one.a),
     "a_error": Column(
-        _AT, "f8", "its error: half the width of the interval that brackets it", value=_located(lambda at: at.error)
+        _AT,
+        "f8",
+        "its error: half the width of the interval that brackets it",
+        value=_of_bifurcation(lambda at: at.error),
     ),
     "kind": Column(_AT, "i1", "what happens there", flag("i1", BifurcationKind), value=lambda one: one.kind),
     "change": Column(
@@ -77,33 +80,35 @@ BIFURCATIONS = {
     ),
     "motion_before": Column(_AT, "i1", "kind of motion at grid_low", _MOTION, value=lambda one: one.motion[0]),
     "motion_after": Column(_AT, "i1", "kind of motion at grid_high", _MOTION, value=lambda one: one.motion[1]),
-    "turns": Column(_AT, "i1", _TURNS, ANSWER, value=_located(lambda at: at.is_turning_point)),
-    "period": Column(_AT, "f8", "period of the orbit at the bifurcation", value=_located(lambda at: at.period)),
+    "turns": Column(_AT, "i1", _TURNS, ANSWER, value=_of_bifurcation(lambda at: at.is_turning_point)),
+    "period": Column(_AT, "f8", "period of the orbit at the bifurcation", value=_of_bifurcation(lambda at: at.period)),
     "stops": Column(
         (*_AT, "block"),
         "i4",
         "stops of each block in a period of the stable orbits",
-        value=_located(lambda at: at.before.orbit.stop_counts),
+        value=_of_bifurcation(lambda at: at.before.orbit.stop_counts),
     ),
     "stops_beyond": Column(
         (*_AT, "block"),
         "i4",
         "the same of the orbits beyond the bifurcation",
-        value=_located(lambda at: at.after.orbit.stop_counts if at.after else None),
+        value=_of_bifurcation(lambda at: at.after.orbit.stop_counts if at.after else None),
     ),
-    "multiplier": Column((*_AT, "part"), "f8", _LARGEST, value=_located(lambda at: _multiplier(at.at))),
+    "multiplier": Column((*_AT, "part"), "f8", _LARGEST, value=_of_bifurcation(lambda at: _multiplier(at.at))),
     "multiplier_beyond": Column(
         (*_AT, "part"),
         "f8",
         "the same of the orbits beyond the bifurcation",
-        value=_located(lambda at: _multiplier(at.after)),
+        value=_of_bifurcation(lambda at: _multiplier(at.after)),
     ),
-    "mean_distance": Column(_AT, "f8", "<J> over a period of that orbit", value=_located(lambda at: at.mean_distance)),
+    "mean_distance": Column(
+        _AT, "f8", "<J> over a period of that orbit", value=_of_bifurcation(lambda at: at.mean_distance)
+    ),
     "stick_time": Column(
         _AT,
         "f8",
         "shortest stick at the bifurcation, 0 where it shrinks to nothing",
-        value=_located(lambda at: at.stick_time),
+        value=_of_bifurcation(lambda at: at.stick_time),
     ),
     "lifetime_low": Column(_AT, "f8", _LIFE, value=lambda one: one.lifetime[0]),
     "lifetime_high": Column(_AT, "f8", _LONGER, value=lambda one: one.lifetime[1]),
@@ -156,7 +161,7 @@ def make(given: Given) -> tuple[xarray.Dataset, str]:
     dataset = merge(given.summaries("parts"))
     for edges in given.summaries("edges"):
         for k in np.flatnonzero(dataset["kind"].values == BifurcationKind.CRISIS):
-            saddle = met_saddle(edges, str(dataset["law"].values[k]), float(dataset["a"].values[k]))
+            saddle = saddle_at_crisis(edges, str(dataset["law"].values[k]), float(dataset["a"].values[k]))
             for name, value in saddle.items():
                 dataset[f"saddle_{name}"].values[k] = value
     return dataset, digest(dataset)
@@ -184,15 +189,15 @@ def one_law(
     points = [(number, branch, point) for number, (branch, segment) in segments for point in segment.drawn_orbits]
     sizes = {"bifurcation": len(found), "orbit": len(points), "block": model.blocks, "part": len(PARTS)}
     values = filled(BIFURCATIONS, {(k,): one for k, one in enumerate(found)}, sizes)
-    rounded = {name: _rounded(value, DIGITS.get(name, 10)) for name, value in values.items()}
+    rounded = {name: _round_digits(value, DIGITS.get(name, 10)) for name, value in values.items()}
     rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])
     rounded["a_error"][~located] = 0.5 * (rounded["grid_high"] - rounded["grid_low"])[~located]
     # They are values of refined.nc, to be looked up there.
     rounded["grid_low"], rounded["grid_high"] = values["grid_low"], values["grid_high"]
-    rounded = _in_order(rounded)
+    rounded = _sort_rows(rounded)
     rounded |= {
-        name: _rounded(value, 10)
+        name: _round_digits(value, 10)
         for name, value in filled(ORBITS, {(k,): one for k, one in enumerate(points)}, sizes).items()
     }
     rounded |= {"law": np.repeat(law, len(found)), "orbit_law": np.repeat(law, len(points))}
@@ -214,20 +219,20 @@ def digest(dataset: xarray.Dataset) -> str:
     for number in range(dataset.sizes["bifurcation"]):
         one = {name: values[number] for name, values in columns.items()}
         kind = BifurcationKind(one["kind"]).name.lower() + (", turns" if one["turns"] == 1 else "")
-        parts = [f"{one['law']}, a = {one['a']:.10g} +/- {one['a_error']:.2g}: {kind}", _happening(one)]
+        parts = [f"{one['law']}, a = {one['a']:.10g} +/- {one['a_error']:.2g}: {kind}", _change_text(one)]
         if np.isfinite(one["lifetime_low"]):
             parts.append(f"chaos lasts for {one['lifetime_low']:g} to {one['lifetime_high']:g} in the mean")
         if np.isfinite(one["saddle_period"]):
-            saddle = f"period {one['saddle_period']:.6g}, stops {_listed(one['saddle_stops'])}"
+            saddle = f"period {one['saddle_period']:.6g}, stops {_format_stops(one['saddle_stops'])}"
             parts.append(f"the attractor meets the saddle orbit of {saddle} on its basin boundary")
         if np.isfinite(one["period"]):
-            beyond = f", beyond {_listed(one['stops_beyond'])}" if (one["stops_beyond"] >= 0).all() else ""
-            parts.append(f"period {one['period']:.6g}, stops {_listed(one['stops'])}{beyond}")
+            beyond = f", beyond {_format_stops(one['stops_beyond'])}" if (one["stops_beyond"] >= 0).all() else ""
+            parts.append(f"period {one['period']:.6g}, stops {_format_stops(one['stops'])}{beyond}")
         lines.append("; ".join(parts))
     return "\n".join(lines or ["No bifurcation was found between the values of a."]) + "\n"
 
 
-def _happening(one: Mapping[str, Any]) -> str:
+def _change_text(one: Mapping[str, Any]) -> str:
     """Return what a branch does at a bifurcation as a grows, in words."""
     before, after = (MotionKind(one[f"motion_{side}"]).words for side in ("before", "after"))
     low, high = (f"branch {one[name]}" if one[name] >= 0 else "" for name in ("from_branch", "to_branch"))
@@ -242,7 +247,7 @@ def _happening(one: Mapping[str, Any]) -> str:
             return f"{low} goes on, {before}"
 
 
-def _listed(stops: np.ndarray) -> str:
+def _format_stops(stops: np.ndarray) -> str:
     return " ".join(map(str, stops))
 
 
@@ -262,7 +267,7 @@ def _dataset(
     return summary("Bifurcations of the branches of attractors", VARIABLES, values, coordinates, about, module=__name__)
 
 
-def _in_order(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _sort_rows(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return bifurcations by their a, then by their change, then by all else that is written of them.
 
     Only what is written decides: further digits differ between linear-algebra libraries.
@@ -284,7 +289,7 @@ def _branches_of_segments(orbits: FollowedOrbits, branch: np.ndarray) -> list[in
     return [counted.most_common(1)[0][0] for counted in numbers]
 
 
-def _rounded(values: np.ndarray, digits: int) -> np.ndarray:
+def _round_digits(values: np.ndarray, digits: int) -> np.ndarray:
     """Return numbers with so many significant digits; whole numbers and texts as they are."""
     if values.dtype.kind != "f":
         return values

@@ -23,7 +23,7 @@ from burridge_knopoff.running.status import Status
 TITLE = "Slip events: rates, slopes, extents and intervals"
 
 #: Events of the map of slips, the last ones of a run.
-SHOWN = 3000
+LAST_EVENTS = 3000
 
 _V = Variable
 _RUN = ("law", "a")
@@ -91,11 +91,11 @@ def summarize(
     runs, attributes = [], {}
     # Of all catalogues, one is held at a time.
     for catalogue in catalogues:
-        runs.append(_one(catalogue, low, high))
+        runs.append(_run_statistics(catalogue, low, high))
         attributes = {name: catalogue.attrs[name] for name in SHARED} | {"v": catalogue["v"].item()}
     most = max(len(run["bar_event"]) for run in runs)
     for run in runs:
-        run |= {name: _filled(run[name], 0, most) for name in VARIABLES if name.startswith("bar_")}
+        run |= {name: _pad(run[name], 0, most) for name in VARIABLES if name.startswith("bar_")}
     values = {
         name: np.reshape([run[name] for run in runs], (len(laws), len(grid), *np.shape(runs[0][name])))
         for name in VARIABLES
@@ -115,16 +115,16 @@ def summarize(
         "interval": whole["interval_count"],
         "shown_event": whole["shown_time"].notnull(),
     }
-    return whole.isel({name: _extent(counts, name) for name, counts in there.items()})
+    return whole.isel({name: _nonzero_range(counts, name) for name, counts in there.items()})
 
 
-def _extent(counts: xarray.DataArray, name: str) -> slice:
+def _nonzero_range(counts: xarray.DataArray, name: str) -> slice:
     """Return the part of a dimension outside of which all counts are 0."""
     found = np.flatnonzero((counts > 0).any([other for other in counts.dims if other != name]).values)
     return slice(found[0], found[-1] + 1) if len(found) else slice(0)
 
 
-def _one(catalogue: xarray.Dataset, low: float | None, high: float | None) -> dict[str, Any]:
+def _run_statistics(catalogue: xarray.Dataset, low: float | None, high: float | None) -> dict[str, Any]:
     """Return the values of all variables for one catalogue."""
     length = catalogue.attrs["end_time"] - catalogue.attrs["begin_time"]
     if catalogue["status"].item() != Status.COMPLETED:
@@ -154,9 +154,9 @@ def _one(catalogue: xarray.Dataset, low: float | None, high: float | None) -> di
         "block_event_count": containing,
         "recurrence": mean,
         "recurrence_spread": spread,
-        "shown_time": _filled(time[-SHOWN:], np.nan, SHOWN),
-        "shown_magnitude": _filled(magnitude[-SHOWN:], np.nan, SHOWN),
-        **_bars([] if members is None else members[-SHOWN:]),
+        "shown_time": _pad(time[-LAST_EVENTS:], np.nan, LAST_EVENTS),
+        "shown_magnitude": _pad(magnitude[-LAST_EVENTS:], np.nan, LAST_EVENTS),
+        **_bars([] if members is None else members[-LAST_EVENTS:]),
     }
 
 
@@ -179,7 +179,7 @@ def _bars(members: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
     return {"bar_event": event[first], "bar_first_block": block[first], "bar_last_block": block[last]}
 
 
-def _filled(values: np.ndarray, none: float, length: int) -> np.ndarray:
+def _pad(values: np.ndarray, none: float, length: int) -> np.ndarray:
     """Return values filled up to a length."""
     return np.pad(values, (0, length - len(values)), constant_values=none)
 

@@ -173,7 +173,7 @@ VARIABLES: dict[str, Variable] = {
 _NUMBERS = {"segment": "orbit_segment", "orbit_segment": "orbit_segment", "crisis_edge": "a"}
 
 #: A crisis meets a saddle if the attractor comes this close to it, as a share of the size of the attractor.
-MET = 0.02
+MEETING_DISTANCE = 0.02
 
 
 def make_of_law(
@@ -288,13 +288,13 @@ def _dataset(names: Sequence[str], values: Mapping[str, np.ndarray], head: Mappi
 
 def digest(dataset: xarray.Dataset) -> str:
     """Return a line for each edge state: between which branches, what it is, and whether the boundary is crossed."""
-    lines = [f"{described}." for described in map(partial(_described, dataset), range(dataset.sizes["edge"]))]
+    lines = [f"{described}." for described in map(partial(_edge_text, dataset), range(dataset.sizes["edge"]))]
     return "\n".join(lines or ["No edge state was found."]) + "\n"
 
 
-def _described(dataset: xarray.Dataset, number: int) -> str:
+def _edge_text(dataset: xarray.Dataset, number: int) -> str:
     one = {name: dataset[name].values[number] for name in ("law", *EDGES)}
-    branches = " and ".join(_named(*pair) for pair in zip(one["branch"], one["side"], strict=True))
+    branches = " and ".join(_branch_label(*pair) for pair in zip(one["branch"], one["side"], strict=True))
     motion = f"{Symmetry(one['symmetry']).name.lower()}, {MotionKind(one['kind']).words}"
     if np.isfinite(one["period"]):
         stops = " ".join(map(str, one["stops"]))
@@ -309,11 +309,11 @@ def _described(dataset: xarray.Dataset, number: int) -> str:
     )
 
 
-def _named(branch: int, side: int) -> str:
+def _branch_label(branch: int, side: int) -> str:
     return f"{branch}{'+' if side > 0 else '-' if side < 0 else ''}"
 
 
-def met_saddle(edges: xarray.Dataset, law: str, a: float) -> dict[str, Any]:
+def saddle_at_crisis(edges: xarray.Dataset, law: str, a: float) -> dict[str, Any]:
     """Return period, stops and distance of the saddle orbit that the attractor of a crisis meets; {} if none is known.
 
     edges : as `merge` returns them; a : of the crisis in bifurcations.nc
@@ -321,7 +321,7 @@ def met_saddle(edges: xarray.Dataset, law: str, a: float) -> dict[str, Any]:
     for k in np.flatnonzero((edges["crisis_law"].values == law) & (edges["crisis_a"].values == a)):
         number = int(edges["crisis_edge"].values[k])
         distance, size = (float(edges[f"crisis_{name}"].values[k]) for name in ("distance", "size"))
-        if number >= 0 and distance <= MET * size:
+        if number >= 0 and distance <= MEETING_DISTANCE * size:
             return {
                 "period": edges["period"].values[number],
                 "stops": edges["stops"].values[number],

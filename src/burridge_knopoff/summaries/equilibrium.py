@@ -36,7 +36,7 @@ SLIDING = "uniform sliding attracts here; it has no stops and is not looked for"
 PARTS = ("real", "imaginary")
 
 #: Limit on the number of blocks: the modes of larger chains take hours, and their matrices more than any memory.
-MOST_BLOCKS = 1024
+MAX_BLOCKS = 1024
 
 # Digits kept of numbers that come from LAPACK, whose last bits depend on the machine.
 DIGITS = 12
@@ -75,7 +75,7 @@ _COORDINATES = {
 def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     """Return position, simulated drift, eigenvalues and simulated growth rate of uniform sliding at each a of a grid.
 
-    They are NaN for more than MOST_BLOCKS blocks.
+    They are NaN for more than MAX_BLOCKS blocks.
 
     models : one for each law, at any a, of one chain and velocity
     """
@@ -83,7 +83,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     sizes = {"law": len(models), "a": len(grid), "block": blocks, "mode": 2 * blocks, "part": len(PARTS)}
     values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
     for i, of_law in enumerate(models):
-        for k, a in enumerate(grid if blocks <= MOST_BLOCKS else ()):
+        for k, a in enumerate(grid if blocks <= MAX_BLOCKS else ()):
             model = of_law.at(a)
             position = sliding_position(model)
             values["equilibrium_position"][i, k] = position
@@ -115,7 +115,7 @@ def sliding_position(model: Model) -> np.ndarray:
     load = -float(model.law(model.v)) * chain.thresholds
     # SciPy refuses a band matrix of one number.
     if chain.ends == "ring" or chain.blocks == 1 or chain.is_network:
-        return np.array([_rounded(value) for value in solve(chain.stiffness, load, assume_a="pos")])
+        return np.array([_round(value) for value in solve(chain.stiffness, load, assume_a="pos")])
     bands = np.stack([np.append(0.0, np.diag(chain.stiffness, 1)), np.diag(chain.stiffness)])
     return solveh_banded(bands, load)
 
@@ -136,7 +136,7 @@ def eigenvalues(model: Model) -> np.ndarray:
         blocks, masses = model.blocks, model.chain.masses[:, None]
         damped = np.diag(rates) - model.chain.damping_matrix / masses
         jacobian = np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-stiffness / masses, damped]])
-        found = [complex(_rounded(value.real), _rounded(value.imag)) for value in np.linalg.eigvals(jacobian)]
+        found = [complex(_round(value.real), _round(value.imag)) for value in np.linalg.eigvals(jacobian)]
         return np.array(sorted(found, key=lambda value: (abs(value.imag), value.imag < 0.0, -value.real)))
     half = 0.5 * rates[0]
     # The symmetric matrix with the eigenvalues of M⁻¹K.
@@ -146,13 +146,13 @@ def eigenvalues(model: Model) -> np.ndarray:
     else:
         kappa = eigvalsh_tridiagonal(np.diag(stiffness), np.diag(stiffness, 1), lapack_driver="sterf")
     square = kappa - half**2
-    shift = np.array([_rounded(value) for value in np.sqrt(np.abs(square))])
+    shift = np.array([_round(value) for value in np.sqrt(np.abs(square))])
     # A mode that does not oscillate has two real eigenvalues.
     shift = np.where(square > 0.0, 1j, 1.0) * shift
     return (half + shift[:, None] * np.array([1.0, -1.0])).ravel()
 
 
-def sliding_attracts(model: Model) -> bool:
+def is_sliding_attracting(model: Model) -> bool:
     """Return whether every perturbation of uniform sliding that is small decays."""
     return bool((eigenvalues(model).real < 0.0).all())
 
@@ -176,6 +176,6 @@ def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:
     return float(np.abs(end.position).max()), rate + 0.0
 
 
-def _rounded(value: float) -> float:
+def _round(value: float) -> float:
     """Return a number to the digits that every machine agrees on."""
     return float(f"{value:.{DIGITS - 1}e}")

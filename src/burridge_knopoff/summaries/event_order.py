@@ -27,7 +27,7 @@ def common_order(
         if codes[0][n] == codes[1][n]:
             n += 1
             continue
-        cluster = _reordered(codes, times, n)
+        cluster = _cluster_size(codes, times, n)
         if not cluster:
             return n, float(min(time[n] for time in times))
         n += cluster
@@ -35,7 +35,7 @@ def common_order(
     return count, float(longer[count]) if len(longer) > count else np.inf
 
 
-def _reordered(codes: list[list[int]], times: list[np.ndarray], n: int) -> int:
+def _cluster_size(codes: list[list[int]], times: list[np.ndarray], n: int) -> int:
     """Return how many simultaneous events from the n-th on are the same but for their order; 0 if they are not."""
     for size in range(2, min(LARGEST_CLUSTER, len(codes[0]) - n) + 1):
         if min(time[n + size - 1] - time[n] for time in times) > SIMULTANEOUS:

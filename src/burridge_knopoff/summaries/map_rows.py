@@ -19,7 +19,7 @@ class MapRow:
     """A map of basins.
 
     states : in all; members : {branch and side: number of the states that reach it}, the undetermined ones first
-    alike : how many undetermined states are their own mirror images, see `undetermined_alike`
+    symmetric_count : how many undetermined states are their own mirror images, see `count_symmetric_undetermined`
     exponent : uncertainty exponent of the boundary and its standard error, NaN if there is none
     """
 
@@ -27,7 +27,7 @@ class MapRow:
     a: float
     states: int
     members: Mapping[str, int]
-    alike: int
+    symmetric_count: int
     exponent: tuple[float, float]
 
     @property
@@ -51,12 +51,12 @@ def map_rows(basins: xarray.Dataset) -> Iterator[MapRow]:
                 names[branch] + {1: " (+)", -1: " (-)", 0: ""}[side]: count
                 for (branch, side), count in zip(pairs.T.tolist(), counts.tolist(), strict=True)
             },
-            undetermined_alike(one),
+            count_symmetric_undetermined(one),
             (one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()),
         )
 
 
-def undetermined_alike(one: xarray.Dataset) -> int:
+def count_symmetric_undetermined(one: xarray.Dataset) -> int:
     """Return how many undetermined states of a map are their own mirror images: U_1(0) = U_N(0), a line of no area.
 
     In a chain that is its own mirror image such states stay alike, and so come to no attractor where synchrony repels.

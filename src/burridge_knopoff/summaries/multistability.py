@@ -14,7 +14,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.summaries.all_laws import branch_numbers, merge
 from burridge_knopoff.summaries.attractors import one_law
-from burridge_knopoff.summaries.equilibrium import SLIDING, sliding_attracts
+from burridge_knopoff.summaries.equilibrium import SLIDING, is_sliding_attracting
 
 
 def coexisting_attractors(
@@ -33,7 +33,7 @@ def coexisting_attractors(
     """
     found = continue_attractors([model], settings, motion, starts=starts, start=start)
     if not found.attractors[0]:
-        if sliding_attracts(model):
+        if is_sliding_attracting(model):
             raise ValueError(f"a: got {model.a!r}, at which no attractor was found; {SLIDING}")
         raise ValueError(
             f"transient: got {settings.transient:g}, and no attractor was found at a = {model.a!r}; expected longer, "

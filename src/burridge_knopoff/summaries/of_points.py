@@ -18,6 +18,6 @@ def make(given: Given, summary: str, config: Mapping[str, Any]) -> tuple[xarray.
     config : its keys that the module uses
     """
     module = import_module(f"burridge_knopoff.summaries.{summary}")
-    dataset = module.summarize(Grid.given(given), *given.summaries("summaries"), **config)
+    dataset = module.summarize(Grid.from_job(given), *given.summaries("summaries"), **config)
     texts = [getattr(module, text)(dataset) for text in ("table", "digest") if hasattr(module, text)]
     return dataset, *texts

@@ -123,7 +123,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     }
     found: dict[str, KnownOrbits | None] = {}
     for i, model in enumerate(models):
-        found[laws[i]] = _known(model)
+        found[laws[i]] = _orbits_of_model(model)
         _fill_curve(values, i, model, found[laws[i]], grid)
         _fill_transition(values, i, found[laws[i]], asymmetry)
     if len(pair) == len(PAPER_LAWS):
@@ -152,7 +152,7 @@ def _coordinates(laws: Sequence[str], grid: Sequence[float], asymmetry: np.ndarr
     return named
 
 
-def _known(model: Model) -> KnownOrbits | None:
+def _orbits_of_model(model: Model) -> KnownOrbits | None:
     """Return the synchronized orbits of a model; None, with a line of the log, if there are none."""
     try:
         # Variables and modes are those of three blocks.
@@ -215,7 +215,9 @@ def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None,
     if not np.isfinite(critical):
         return
     values["critical_a_error"][i] = critical_a_error(orbits, critical)
-    kind = BifurcationKind.PITCHFORK if transverse(orbits, critical) > 0.0 else BifurcationKind.PERIOD_DOUBLING
+    kind = (
+        BifurcationKind.PITCHFORK if transverse_multiplier(orbits, critical) > 0.0 else BifurcationKind.PERIOD_DOUBLING
+    )
     values["bifurcation_kind"][i] = kind
     runs = critical + a_unit(orbits.model.chain) * np.array(OFFSETS)
     values["sweep_asymmetry"][i] = sweep(orbits, runs), sweep(orbits, runs[::-1])[::-1]
@@ -224,7 +226,7 @@ def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None,
         _fill_branch(values, i, orbits, critical, asymmetry)
 
 
-def transverse(orbits: KnownOrbits, a: float) -> float:
+def transverse_multiplier(orbits: KnownOrbits, a: float) -> float:
     """Return the transverse multiplier of the synchronized orbit at an a."""
     return multipliers(orbits.at(a)).transverse.real
 
@@ -246,7 +248,7 @@ def _fill_branch(values: dict[str, Any], i: int, orbits: KnownOrbits, critical: 
     small = np.array(ASYMMETRIES) <= LARGEST_FITTED
     offset = values["branch_offset"][i, small]
     if (offset > 0.0).all() or (offset < 0.0).all():
-        unstable = transverse(orbits, critical + float(offset[-1])) > 1.0
+        unstable = transverse_multiplier(orbits, critical + float(offset[-1])) > 1.0
         values["bifurcation_side"][i] = BifurcationSide.SUPERCRITICAL if unstable else BifurcationSide.SUBCRITICAL
         fit = fit_power_law(np.abs(offset), asymmetry[small])
         values["amplitude_exponent"][i] = fit.exponent

@@ -21,7 +21,7 @@ from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.study.model import model_of
-from burridge_knopoff.summaries.along_attractor import along_attractor
+from burridge_knopoff.summaries.attractor_observables import follow_attractor
 
 TITLE = "Initial phases of the blocks"
 
@@ -95,7 +95,7 @@ def one_law(
     processes : that work at once; no result depends on them
     """
     with shared_out(processes) as each:
-        found = each("phases", partial(_at, phases=phases, label_limit=label_limit), known)
+        found = each("phases", partial(_values_at, phases=phases, label_limit=label_limit), known)
     model, grid = known[0].model, [item.model.a for item in known]
     inner = model.chain.blocks - 2
     coordinates: dict[str, Any] = {"a": ("a", np.array(grid, dtype=float), AXES["a"].all_attributes())}
@@ -117,13 +117,13 @@ def one_law(
     return summary(TITLE, variables, arrays, coordinates, attributes, module=__name__)
 
 
-def _at(known: KnownAttractors, phases: PhaseSettings, label_limit: float) -> dict[str, np.ndarray]:
+def _values_at(known: KnownAttractors, phases: PhaseSettings, label_limit: float) -> dict[str, np.ndarray]:
     """Return the values of all variables at one a, but for the slipping amplitude."""
     shape = (len(phases.amplitude), len(phases.phase_difference), phases.samples)
     amplitude, difference, _ = np.meshgrid(phases.amplitude, phases.phase_difference, range(shape[2]), indexing="ij")
     model = known.model
     inner = model.chain.blocks - 2
-    correlations = [along_attractor(model, item.motion.state()).velocity_correlation for item in known.attractors]
+    correlations = [follow_attractor(model, item.motion.state()).velocity_correlation for item in known.attractors]
     common = common_phases(model.a, shape, phases.seed)
     of_inner = inner_phases(model.a, (*shape, inner), phases.seed)
     told = amplitude.ravel(), difference.ravel(), common.ravel()
@@ -133,7 +133,7 @@ def _at(known: KnownAttractors, phases: PhaseSettings, label_limit: float) -> di
         # Every block slips in the midst of its oscillation: there is no stick rule to apply at τ = 0.
         labels, _ = label_states(model, known.attractors, position, velocity, time_limit=label_limit)
         cell = {"standing_count": standing.reshape(shape).sum(axis=2)}
-        cells.append({**cell, **_reached(known, correlations, labels.reshape(shape))})
+        cells.append({**cell, **_outcomes(known, correlations, labels.reshape(shape))})
     values = {name: np.array([cell[name] for cell in cells]) for name in cells[0]}
     return {"common_phase": common, "inner_phase": of_inner, **values}
 
@@ -149,7 +149,7 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     return summary(TITLE, {**variables, **COMMON_VARIABLES}, values, coordinates, attributes, module=__name__)
 
 
-def _reached(known: KnownAttractors, correlations: Sequence[float], labels: np.ndarray) -> dict[str, np.ndarray]:
+def _outcomes(known: KnownAttractors, correlations: Sequence[float], labels: np.ndarray) -> dict[str, np.ndarray]:
     """Return what states reach by their labels, shape (amplitude, phase_difference, state).
 
     correlations : of the velocities of the end blocks on each attractor

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 LARGEST_DENOMINATOR = 1000
 
 # Only rotation numbers as exact as this can be seen to be the same.
-SHARP = 1e-6
+LARGEST_ERROR = 1e-6
 
 # What rounding leaves of a rotation number.
 ROUNDING = 1e-9
@@ -46,20 +46,23 @@ def plateaux(rotation: xarray.Dataset) -> list[Plateau]:
     last = -1
     for k in np.flatnonzero((locked >= 0) & np.isfinite(number)).tolist():
         if locked[k]:
-            sharp = max(error[k], error[last]) <= SHARP
-            if runs and runs[-1][-1] == last and sharp and abs(number[k] - number[last]) <= 2.0 * SHARP:
+            sharp = max(error[k], error[last]) <= LARGEST_ERROR
+            if runs and runs[-1][-1] == last and sharp and abs(number[k] - number[last]) <= 2.0 * LARGEST_ERROR:
                 runs[-1].append(k)
             else:
                 runs.append([k])
         last = k
-    return [Plateau(float(a[run[0]]), float(a[run[-1]]), _simplest(*_best(number[run], error[run]))) for run in runs]
+    return [
+        Plateau(float(a[run[0]]), float(a[run[-1]]), _simplest_fraction(*_best(number[run], error[run])))
+        for run in runs
+    ]
 
 
 def _best(number: np.ndarray, error: np.ndarray) -> tuple[float, float]:
     return number[error.argmin()], error.min()
 
 
-def _simplest(number: float, error: float) -> Fraction:
+def _simplest_fraction(number: float, error: float) -> Fraction:
     """Return the fraction with the least denominator within the error of a number."""
     for denominator in range(1, LARGEST_DENOMINATOR + 1):
         numerator = round(number * denominator)

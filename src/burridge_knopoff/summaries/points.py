@@ -50,7 +50,7 @@ class Grid:
     models: Mapping[str, Any]
 
     @classmethod
-    def of(cls, folder: str | Path, points: Mapping[str, Any]) -> Grid:
+    def from_points(cls, folder: str | Path, points: Mapping[str, Any]) -> Grid:
         """Return the grid of the points that `Study.points` describes."""
         return cls(
             Path(folder),
@@ -61,11 +61,11 @@ class Grid:
         )
 
     @classmethod
-    def given(cls, given: Given) -> Grid:
+    def from_job(cls, given: Given) -> Grid:
         """Return the grid of the points that a job reads."""
-        return cls.of(given.results / "points", given.points)
+        return cls.from_points(given.results / "points", given.points)
 
-    def elsewhere(self, folder: Path, settings: Mapping[str, Mapping[str, Any]]) -> Grid:
+    def copy_with(self, folder: Path, settings: Mapping[str, Mapping[str, Any]]) -> Grid:
         """Return the same points as they were run with other settings, {law: settings}, below another folder."""
         others = {law: Settings(**items) for law, items in settings.items()}
         return Grid(folder, self.initial, self.parameters, others, self.models)
@@ -118,13 +118,13 @@ class Grid:
     def path(self, law: str, initial: str, *names: str) -> Path:
         """Return the path of a point file; names : of the values of the parameters."""
         file = point_file(self.parameters)
-        return self.folder / file.format(law=law, initial=initial, **self._named(names))
+        return self.folder / file.format(law=law, initial=initial, **self._value_names(names))
 
     def command(self, law: str, initial: str, *names: str) -> str:
         """Return the `bk simulate` command that makes a point."""
         return simulate_command(self.model_of(law, *names), self.initial[initial], self.settings[law])
 
-    def _named(self, names: tuple[str, ...]) -> dict[str, str]:
+    def _value_names(self, names: tuple[str, ...]) -> dict[str, str]:
         return dict(zip(map(plain_name, self.parameters), names, strict=True))
 
     def __iter__(self) -> Iterator[tuple[tuple[int, ...], tuple[str, ...]]]:

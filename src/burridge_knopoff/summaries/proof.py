@@ -28,11 +28,11 @@ from burridge_knopoff.study.model import models_of
 #: Number of blocks of the chain.
 CHAIN_BLOCKS = 3
 #: The friction parameter of the orbit that is proved besides the critical one, as a fraction: the paper's 0.08.
-GIVEN = (8, 100)
+GIVEN_A = (8, 100)
 #: Ends of the range of a in which the family of orbits is proved under the linearized law.
 RANGE = ((8, 100), (10, 100))
 #: The interval of a_c is narrower than this.
-NARROW = 1e-15
+LARGEST_WIDTH = 1e-15
 
 ORBITS = ("given", "critical")
 END = ("low", "high")
@@ -41,7 +41,7 @@ MODES = ("transverse", "symmetric")
 BLOCKS = (1, 2)
 
 #: What the proof takes for granted.
-ASSUMED = (
+ASSUMPTIONS = (
     "Assumed: the model of docs/model.md, with the laws and the chain of the paper. Linearized: v is only a scale.",
     "Nonlinear: v is the decimal. Shown by hand, in docs/synchronization.md: mirror-symmetric motion stays so; the",
     "closed forms; what stops and starts do to perturbations. Taken for granted: Arb's balls hold what they say, and",
@@ -78,7 +78,7 @@ _COORDINATES = {
 
 def make(given: Given, model: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
     """Return the proofs under all laws, and the same in words; model : what decides the models."""
-    dataset = summarize(models_of(model, GIVEN[0] / GIVEN[1], CHAIN_BLOCKS))
+    dataset = summarize(models_of(model, GIVEN_A[0] / GIVEN_A[1], CHAIN_BLOCKS))
     return dataset, digest(dataset)
 
 
@@ -115,7 +115,7 @@ def _of_law(model: Model) -> dict[str, Any]:
         raise ProofError(f"law {model.law.name}: not covered: the paper's laws and chain of {CHAIN_BLOCKS} blocks")
     # Only the guess comes from a simulation. Under the linearized law it serves for every v.
     orbits = synchronized_orbits(replace(model, v=NONLINEAR_V, contact="one_sided"))
-    given = prove_orbit(orbits.at(GIVEN[0] / GIVEN[1]), decimal(*GIVEN))
+    given = prove_orbit(orbits.at(GIVEN_A[0] / GIVEN_A[1]), decimal(*GIVEN_A))
     critical = prove_critical(orbits.at(critical_a(bifurcations_of(orbits))))
     branch: list[Piece] = []
     between = np.nan, np.nan
@@ -130,14 +130,14 @@ def _of_law(model: Model) -> dict[str, Any]:
         "critical_a": limits(critical.a),
         "critical_a_digits": digits(critical.a),
         "critical_a_width": width(critical.a),
-        "only_between": between if branch else _inward(critical.uniqueness_range),
+        "only_between": between if branch else _inner_limits(critical.uniqueness_range),
         "family_between": between,
         "pieces": len(branch),
         **{name: [one[name] for one in each] for name in each[0]},
     }
 
 
-def _inward(ball: arb) -> tuple[float, float]:
+def _inner_limits(ball: arb) -> tuple[float, float]:
     """Return doubles that lie in a ball, next to its ends."""
     low, high = limits(ball)
     return float(np.nextafter(low, np.inf)), float(np.nextafter(high, -np.inf))
@@ -145,7 +145,7 @@ def _inward(ball: arb) -> tuple[float, float]:
 
 def _check_branch(given: ProvedOrbit, critical: CriticalOrbit, branch: Sequence[Piece]) -> None:
     """Prove that the family has both orbits; raises ProofError, one line, if that fails."""
-    branch[0].check_contains(given.enclosure, arb(fmpq(*GIVEN)))
+    branch[0].check_contains(given.enclosure, arb(fmpq(*GIVEN_A)))
     for piece in branch:
         if piece.orbit.a.overlaps(critical.a):
             piece.check_contains(critical.orbit.enclosure, critical.a)
@@ -168,8 +168,8 @@ def _check(model: Model, given: ProvedOrbit, critical: CriticalOrbit, branch: Se
             raise ProofError(f"a = {orbit.a}: symmetric perturbations are not known to fade")
     if not abs(given.multiplier) < 1:
         raise ProofError(f"a = {given.a}: transverse perturbations are not known to fade")
-    if not width(critical.a) < NARROW:
-        raise ProofError(f"a_c: got an interval of width {width(critical.a)!r}, expected below {NARROW!r}")
+    if not width(critical.a) < LARGEST_WIDTH:
+        raise ProofError(f"a_c: got an interval of width {width(critical.a)!r}, expected below {LARGEST_WIDTH!r}")
 
 
 def _of_orbit(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
@@ -201,18 +201,18 @@ def digest(dataset: xarray.Dataset) -> str:
     """Return the summary in words: what is proved, with its numbers, and what is assumed."""
     lines = ["Proved by Krawczyk's operator in ball arithmetic, and by bounds over whole arcs of the motion.", ""]
     for law in dataset["law"].values:
-        lines += [*_of_one(dataset.sel(law=law), f"{law} law"), ""]
-    return "\n".join([*lines, *ASSUMED]) + "\n"
+        lines += [*_law_lines(dataset.sel(law=law), f"{law} law"), ""]
+    return "\n".join([*lines, *ASSUMPTIONS]) + "\n"
 
 
-def _of_one(dataset: xarray.Dataset, name: str) -> list[str]:
+def _law_lines(dataset: xarray.Dataset, name: str) -> list[str]:
     """Return the lines on one law."""
     low, high = dataset["family_between"].values
     lines = [
         f"{name}: a_c = {dataset['critical_a_digits'].item()}",
-        f"    lies between the doubles {_between(dataset['critical_a'])}.",
-        f"    It is the only a between {_between(dataset['only_between'])} with mu = 1 on orbits near this one.",
-        f"    There mu passes 1 with d mu/d a between {_between(dataset['multiplier_slope'].sel(orbit='critical'))}.",
+        f"    lies between the doubles {_format_ends(dataset['critical_a'])}.",
+        f"    It is the only a between {_format_ends(dataset['only_between'])} with mu = 1 on orbits near this one.",
+        f"    There mu passes 1 with d mu/d a between {_format_ends(dataset['multiplier_slope'].sel(orbit='critical'))}.",
     ]
     if np.isfinite(low):
         lines += [
@@ -222,16 +222,16 @@ def _of_one(dataset: xarray.Dataset, name: str) -> list[str]:
     for title, one in zip(("At a = 0.08, where the orbit attracts", "At a_c"), dataset["orbit"].values, strict=True):
         orbit = dataset.sel(orbit=one)
         lines += ["", f"{name}: {title}, these lie between"]
-        lines += [f"    period              {_between(orbit['period'])}"]
-        lines += [f"    {event:<19} {_between(orbit['event_time'].sel(event=event))}" for event in EVENTS]
-        lines += [f"    mu, {mode:<15} {_between(orbit['multiplier'].sel(mode=mode))}" for mode in MODES]
+        lines += [f"    period              {_format_ends(orbit['period'])}"]
+        lines += [f"    {event:<19} {_format_ends(orbit['event_time'].sel(event=event))}" for event in EVENTS]
+        lines += [f"    mu, {mode:<15} {_format_ends(orbit['multiplier'].sel(mode=mode))}" for mode in MODES]
         lines += ["    All other multipliers but that of the flow are 0. No block stops or starts in between."]
         friction, force = orbit["least_friction"].item(), orbit["least_spring_force"].item()
         lines += [f"    Friction is above {friction!r}, the spring force on stuck blocks above {force!r}."]
     return lines
 
 
-def _between(ends: xarray.DataArray) -> str:
+def _format_ends(ends: xarray.DataArray) -> str:
     """Return two ends with all digits of their doubles: rounding would make them ends of something else."""
     low, high = (float(end) for end in ends.values)
     return f"{low!r} and {high!r}"

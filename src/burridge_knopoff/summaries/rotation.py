@@ -25,7 +25,7 @@ TITLE = "Rotation number of branch 1, and its frequencies after detuning"
 BRANCH = 1
 
 #: Time for which the motion is followed at each a: the error is then below 1e-5 as a rule, on closed orbits far less.
-FOLLOWED = 1000.0
+DURATION = 1000.0
 
 #: Detunings, small and large, that are tried on branch 1.
 DETUNINGS = (0.1, 0.3, 0.8)
@@ -89,7 +89,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
         one = refined.isel(law=law, value=value, attractor=slot)
         model, velocity = models[law].at(float(values["a"][at])), one["velocity"].values
         start = ChainState(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
-        values["rotation_number"][at], values["rotation_error"][at] = rotation_number(model, start, FOLLOWED)
+        values["rotation_number"][at], values["rotation_error"][at] = rotation_number(model, start, DURATION)
         values["locked"][at] = one["kind"].item() == MotionKind.PERIODIC
         if not values["in_grid"][at]:
             continue
@@ -99,7 +99,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
                 values[f"detuned_{name}"][*at, k] = getattr(found, name)
     attributes = {
         "branch": BRANCH,
-        "duration": FOLLOWED,
+        "duration": DURATION,
         "detuned_transient": TRANSIENT,
         "detuned_window": WINDOW,
         "history": "snakemake, from refined.nc",

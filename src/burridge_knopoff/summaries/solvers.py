@@ -50,8 +50,8 @@ _READ = [*_COPIED, *EVENTS]
 
 def make(given: Given, others: Mapping[str, Mapping[str, Any]], step: float) -> xarray.Dataset:
     """Return the comparison; others : {solver: {law: settings of its runs}}; step : of rk4."""
-    grid, folder = Grid.given(given), given.results / "solvers"
-    grids = {solver: grid.elsewhere(folder / solver, settings) for solver, settings in others.items()}
+    grid, folder = Grid.from_job(given), given.results / "solvers"
+    grids = {solver: grid.copy_with(folder / solver, settings) for solver, settings in others.items()}
     return summarize(grid, grids, step)
 
 

@@ -173,7 +173,7 @@ def summarize(
     first = InitialState(initial[0].name, tuple(position[:1]), tuple(velocity[:1]))
     with shared_out(processes) as each:
         for c, (name, chosen) in enumerate(zip(CHAINS, (trains, models), strict=True)):
-            of_one = partial(_at, chosen, initial=initial, settings=settings, search=search, motion=motion)
+            of_one = partial(_compare_at, chosen, initial=initial, settings=settings, search=search, motion=motion)
             for k, found in enumerate(each(f"two blocks, {name}", of_one, grid)):
                 for variable, value in found.items():
                     values[variable][c, ..., k] = value
@@ -221,7 +221,7 @@ def summarize(
     )
 
 
-def _at(
+def _compare_at(
     models: Sequence[Model],
     a: float,
     initial: Sequence[InitialState],
@@ -237,7 +237,7 @@ def _at(
     for j, state in enumerate(initial):
         first, *others = (run(model, state, settings) for model in here)
         for i, other in enumerate(others):
-            count[i, j], time = common_order(_sequence(first), _sequence(other))
+            count[i, j], time = common_order(_event_sequence(first), _event_sequence(other))
             until[i, j] = min(time, first.end_time, other.end_time)
     return {**values, "event_order_count": count, "event_order_time": until}
 
@@ -260,6 +260,6 @@ def _one_block(
     return {"one_block_kind": kind, "one_block_stop_rate": rate}
 
 
-def _sequence(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _event_sequence(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return time, block and kind of all events of a run that has kept all of them with states."""
     return trajectory.event_time, trajectory.event_block, trajectory.event_kind
