@@ -111,11 +111,16 @@ def test_altered_data_changes_the_verdict(compare):
     assert dataset["agrees"].sel(other_law="nonlinear").values.tolist() == [[1, 0]]
     assert dataset["parting_a"].item() == 0.08
     assert dataset["difference"].values[0, 0, 1] == 0.2 - dataset["mean_distance"].values[0, 0, 1]
-    words = "they agree up to a = 0.05 and part at a = 0.08; they disagree at 1 of 2 values of a, the last 0.08"
-    settled = "minus, nonlinear law: the run is not on the attractor that its state reaches at a = 0.08"
+    words = (
+        "they agree up to a = 0.05 and first disagree at a = 0.08; they disagree at 1 of 2 values of a, "
+        "the last at 0.08"
+    )
+    settled = "minus, nonlinear law: the run has not reached the attractor of its initial state at a = 0.08"
     assert agreement.digest(dataset).endswith(f": {words}; the kind of motion differs at 1.\n{settled}\n")
     _, dataset = compare({("nonlinear", a): {"mean_distance": 0.2} for a in (0.05, 0.08)})
-    assert "they part at a = 0.05; they disagree at 2 of 2 values of a, the last 0.08" in agreement.digest(dataset)
+    assert "they first disagree at a = 0.05; they disagree at 2 of 2 values of a, the last at 0.08" in agreement.digest(
+        dataset
+    )
 
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
@@ -196,7 +201,10 @@ def test_a_run_without_result_agrees_with_nothing(compare):
     assert np.isnan(dataset["section_distance"]).all()
     assert np.isnan(dataset["parting_a"].item())
     words = agreement.digest(dataset)
-    assert "no value of a could be compared. 2 values of a are undetermined: a run did not complete," in words
+    assert (
+        "no value of a could be compared. At 2 values of a the comparison is undetermined: a run did not complete,"
+        in words
+    )
     assert agreement.table(dataset).count("undetermined") == 6
     assert (dataset["kind"].sel(law="linearized") == -1).all()
     means = mean_distance.summarize(grid, 1e-6)

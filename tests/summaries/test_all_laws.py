@@ -62,7 +62,7 @@ def test_the_digest_tells_each_branch(one_law):
         "linearized: 5 of 12 sampled states are undetermined; no attractor at a = 0.2\n"
     )
     found["sliding_attracts"][0, 2] = 1
-    sliding = "uniform sliding, which has no stops and is not looked for, attracts at a = 0.2\n"
+    sliding = "uniform sliding, which has no stops and is not searched for, attracts at a = 0.2\n"
     assert all_laws.digest(found).endswith(f"undetermined; {sliding}")
 
 

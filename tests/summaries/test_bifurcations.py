@@ -303,18 +303,19 @@ def test_bifurcations_in_words(found):
     for name, value in values.items():
         shown[name] = found[name].dims, np.array(value)
     assert digest(shown.assign_attrs(laws="linearized mine")).splitlines() == [
-        "linearized, a = 0.0869729047 +/- 1e-10: pitchfork; branch 0 ends, synchronized; above, it leads to branch 3; "
-        "period 5.69123, stops 1 1 1, beyond 1 1 1",
-        "linearized, a = 0.1 +/- 1e-09: neimark_sacker; branch 3, periodic to quasiperiodic; period 5.7, stops 1 1 1",
-        "mine, a = 0.1234567891 +/- 1e-10: grazing, turns; branch 3 goes on, periodic; period 34.4, stops 6 6 3, "
-        "beyond 6 6 2",
-        "mine, a = 0.2 +/- 5e-05: crisis; branch 4 begins, chaotic; chaos lasts for 1240 to inf in the mean",
-        "mine, a = 0.20125 +/- 0.0013: undetermined; branch 4, to another periodic motion",
+        "linearized, a = 0.0869729047 +/- 1e-10: pitchfork; branch 0 ends, synchronized; at larger a it leads to "
+        "branch 3; period 5.69123, stops 1 1 1, beyond it 1 1 1",
+        "linearized, a = 0.1 +/- 1e-09: Neimark–Sacker; branch 3 changes from periodic to quasiperiodic; period 5.7, "
+        "stops 1 1 1",
+        "mine, a = 0.1234567891 +/- 1e-10: grazing (turning point); branch 3 continues, periodic; period 34.4, "
+        "stops 6 6 3, beyond it 6 6 2",
+        "mine, a = 0.2 +/- 5e-05: crisis; branch 4 begins, chaotic; mean lifetime of chaos above 1240",
+        "mine, a = 0.20125 +/- 0.0013: undetermined; branch 4 changes to another periodic motion",
     ]
 
 
 def test_no_bifurcation_in_words(found):
-    """An empty text could not be told from one that was cut off."""
+    """An empty text could not be distinguished from a truncated one."""
     assert digest(found.isel(bifurcation=[])) == "No bifurcation was found between the values of a.\n"
 
 

@@ -85,7 +85,7 @@ def test_fractions_count_outcomes(files):
 def test_files_of_other_settings_do_not_mix(files):
     path = files[0].with_name("other.nc")
     write_summary(chain_file(3, 200.0), path)
-    with pytest.raises(ValueError, match=r"other\.nc: made with other settings"):
+    with pytest.raises(ValueError, match=r"other\.nc: made with settings that differ"):
         chains.merge([open_summary(name) for name in (*files, path)])
 
 

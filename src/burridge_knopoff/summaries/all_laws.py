@@ -1,7 +1,7 @@
-"""The attractors of all laws in one file, at the values of the grid and at all values: branches numbered alike.
+"""The attractors of all laws in one file, on the grid and at all values of a, with common numbers of branches.
 
-`refined.nc` has the numbers and names of `attractors.nc`, and those of branches that exist only between values of the
-grid.
+`refined.nc` has the numbers and names of `attractors.nc`, and further ones for branches that exist only between values
+of the grid.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ from burridge_knopoff.summaries.branch_rows import branch_rows
 def make(
     given: Given, model: Mapping[str, Any], a: float, attractors: Mapping[str, Any]
 ) -> tuple[xarray.Dataset, str, xarray.Dataset, xarray.Dataset]:
-    """Return the attractors of all laws on the grid, the same in words, those at all values of a, and their rotation.
+    """Return the attractors of all laws on the grid, with a text, those at all values of a, and their rotation.
 
-    model, a : what decides the models, and one a; attractors : settings of the search
+    model, a : the config's description of the models, and any a; attractors : settings of the search
     """
     parts, further, models = given.summaries("grid"), given.summaries("refined"), models_of(model, a)
     numbers = branch_numbers(parts, models, SearchSettings(**attractors), given.cores)
@@ -53,7 +53,7 @@ def merge(
 ) -> xarray.Dataset:
     """Return the attractors of all laws in one Dataset with the dimension law; missing slots are −1 or NaN.
 
-    numbers : for each law {number of a branch: the one that it gets}, see `branch_numbers`
+    numbers : for each law {number of a branch: common number}, see `branch_numbers`
     """
     values = {}
     for name, item in variables.items():
@@ -76,12 +76,13 @@ def merge(
 def branch_numbers(
     parts: Sequence[xarray.Dataset], models: Sequence[Model], settings: SearchSettings, processes: int = 1
 ) -> list[dict[int, int]]:
-    """Return, for each law, the numbers of its branches: what turns into a branch of the first law takes its number.
+    """Return {number of a branch: common number} for each law.
 
-    parts : of the laws, see `one_law`; models : of each law, at any a
-    settings : of the search; processes : that work at once
+    A branch that becomes a branch of the first law when one law is deformed into the other takes the number of that
+    branch. Every other branch gets a new number.
 
-    All others have a number of their own.
+    parts : attractors of each law, see `one_law`; models : one for each law, at any a
+    settings : of the search; processes : number of parallel processes
     """
     numbers = [{int(n): int(n) for n in np.unique(parts[0]["branch"].values) if n >= 0}]
     first = _states(parts[0], models[0])
@@ -96,10 +97,10 @@ def branch_numbers(
 def _number_remaining(
     known: Mapping[int, int], part: xarray.Dataset, numbers: Sequence[Mapping[int, int]]
 ) -> dict[int, int]:
-    """Return the numbers of branches of one law with those added that have none: they follow all that are taken.
+    """Return the numbers of the branches of one law, with new numbers, above all in use, for branches without one.
 
-    known : {number of a branch: the one that it gets}; part : the attractors of that law
-    numbers : of all laws whose numbers are taken
+    known : {number of a branch: common number}; part : the attractors of that law
+    numbers : the same of all laws whose numbers are in use
     """
     following = max((0, *(n for taken in numbers for n in taken.values())))
     others = sorted({int(n) for n in np.unique(part["branch"].values) if n >= 0} - known.keys())
@@ -107,7 +108,7 @@ def _number_remaining(
 
 
 def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, ChainState]]:
-    """Return {branch: {position of a in the grid: a state on it}}, of mirror images those of one side."""
+    """Return {branch: {index of a in the grid: a state on the branch}}; of mirror images, only one side is included."""
     states: dict[int, dict[int, ChainState]] = {}
     for k, slot in np.argwhere((part["branch"].values >= 0) & (part["side"].values >= 0)).tolist():
         one = part.isel(a=k, attractor=slot)
@@ -120,10 +121,10 @@ def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, ChainStat
 def number_intermediate_branches(
     numbers: Sequence[Mapping[int, int]], parts: Sequence[xarray.Dataset]
 ) -> list[dict[int, int]]:
-    """Return the numbers of branches with those added that exist only between values of the grid.
+    """Return the numbers of branches, with new ones for branches that exist only between values of the grid.
 
-    numbers : for each law {number of a branch: the one that it gets}, of the branches at values of the grid
-    parts : of the laws, the attractors at all values, see `refined.one_law`
+    numbers : for each law {number of a branch: common number}, of the branches at values of the grid
+    parts : attractors of each law at all values of a, see `refined.one_law`
     """
     result: list[dict[int, int]] = []
     for known, part in zip(numbers, parts, strict=True):
@@ -132,14 +133,14 @@ def number_intermediate_branches(
 
 
 def common_branch_names(refined: xarray.Dataset, attractors: xarray.Dataset) -> xarray.Dataset:
-    """Return attractors at all values of a with the names that branches have at the values of the grid."""
+    """Return the attractors at all values of a with the names that the branches have at the values of the grid."""
     names = branch_names(refined) | branch_names(attractors)
     own = refined["branch_number"].values.tolist()
     return refined.assign(branch_name=refined["branch_name"].copy(data=[names[number] for number in own]))
 
 
 def _renumber(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
-    """Return the numbers of branches replaced by new ones; what is undetermined stays so."""
+    """Return the branches with their new numbers; undetermined branches stay undetermined."""
     result = np.full_like(branch, UNDETERMINED)
     for before, after in renamed.items():
         result[branch == before] = after
@@ -147,7 +148,7 @@ def _renumber(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return, for each law, in a line a branch where it exists, its ⟨J⟩, kinds of motion and largest basin fraction."""
+    """Return a line for each law and branch: its range of a, its ⟨J⟩, kinds of motion and largest basin fraction."""
     lines = []
     a, rows = dataset["a"].values, list(branch_rows(dataset))
     for law in dataset["law"].values:
@@ -156,7 +157,7 @@ def digest(dataset: xarray.Dataset) -> str:
             if row.law != law:
                 continue
             ends = span(*(f"{value:g}" for value in row.a[[0, -1]]))
-            basin = "no states sampled for its basin"
+            basin = "basin fraction not sampled"
             if row.fraction:
                 fraction, at = row.fraction
                 basin = f"largest basin fraction {fraction:.3f} (a = {at:g})"
@@ -170,7 +171,7 @@ def digest(dataset: xarray.Dataset) -> str:
         sliding = one["sliding_attracts"].values == 1
         for where, words in (
             ((one["branch"].values.max(axis=1) < 0) & ~sliding, "no attractor"),
-            (sliding, "uniform sliding, which has no stops and is not looked for, attracts"),
+            (sliding, "uniform sliding, which has no stops and is not searched for, attracts"),
         ):
             if where.any():
                 line += f"; {words} at a = {', '.join(f'{value:g}' for value in a[where])}"
