@@ -140,12 +140,12 @@ def test_what_has_no_bound_is_refused(speed, time, message):
 def test_a_step_that_no_box_holds_is_refused(monkeypatch):
     """Picard's operator over so long a time maps no box into itself."""
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 2))
-    with pytest.raises(ProofError, match=r"step 1 of an arc: no box is known|1 \+ aU': got"):
+    with pytest.raises(ProofError, match=r"step 1 of an arc: found no box|1 \+ aU': got"):
         law().path((True, True), state_of((True, True))[0], arb(A))(arb(1))
     # Wide enough at the first try, and still not to be believed: what is mapped lies beyond it.
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 4))
     monkeypatch.setattr(taylor, "WIDENINGS", 1)
-    with pytest.raises(ProofError, match=r"step 1 of an arc: no box is known to hold the motion"):
+    with pytest.raises(ProofError, match=r"step 1 of an arc: found no box that contains the motion"):
         law().path((True, True), state_of((True, True))[0], arb(A))(arb("0.5"))
 
 
@@ -192,7 +192,7 @@ def test_it_is_that_of_an_integration_of_25_digits(found):
 
 def test_a_wrong_arc_is_not_certified(found):
     wrong = changed(found.orbit, 3, arb("0.1"))
-    with pytest.raises(ProofError, match="blocks 1 and 3, the arc until block 2 start: not proved to go on"):
+    with pytest.raises(ProofError, match="blocks 1 and 3, the arc until block 2 start: not proved to keep sticking"):
         wrong.check_arcs()
     assert len(follow_arcs(wrong.arcs, [*wrong.enclosure.inner, wrong.a])[0]) == 5
 

@@ -50,7 +50,7 @@ def oscillation(stiffness: Any, a: Any, time: Any, position: Any, velocity: Any)
 
 
 def _state_all_slipping(state: State, a: Any, time: Any) -> State:
-    """Return the state after all blocks have slipped: two normal modes x + w y with stiffness 3 ∓ √3."""
+    """Return the state a time later while all blocks slip: two normal modes x + w y with stiffness 3 ∓ √3."""
     root = arb(3).sqrt()
     x, y = state.position
     p, q = state.velocity
@@ -65,10 +65,10 @@ def _state_all_slipping(state: State, a: Any, time: Any) -> State:
 
 
 def _state_one_slipping(state: State, a: Any, time: Any, slipping: int) -> State:
-    """Return the state after the end blocks or the center have slipped and the other has stuck.
+    """Return the state a time later while either the end blocks or the center slip and the others stick.
 
-    The stuck one moves at the constant velocity of the ground. The other oscillates about a point that follows it at
-    half the velocity, since COUPLING is half of STIFFNESS.
+    Stuck blocks move at the constant velocity of the ground. Slipping blocks oscillate about a point that moves at half
+    this velocity, since COUPLING is half of STIFFNESS.
     """
     half = fmpq(1, 2)
     x, other = state.position[slipping], state.position[1 - slipping]

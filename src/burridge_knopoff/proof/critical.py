@@ -1,8 +1,8 @@
 """Proof of the loss of synchrony: the a at which the transverse multiplier is 1, and its uniqueness in a range of a.
 
-Near a_c the equations of the orbit and of the multiplier are solved together for the orbit and a. The rest of the range
-of a is covered by balls. For all a in a ball there is an orbit, the orbits of neighbouring balls agree where they
-touch, and the multiplier increases with a throughout: it equals 1 only once.
+Near a_c the equations of the orbit and of the multiplier are solved together for the orbit and a. The range of a is
+covered by balls. For all a in a ball there is an orbit, the orbits of neighbouring balls agree where the balls touch,
+and the multiplier increases with a throughout. It therefore equals 1 only once.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ BOX_RADIUS = 2.0**-40
 class CriticalOrbit:
     """The proved loss of synchrony.
 
-    orbit : the synchronized orbit at a_c, with a_c as its a; its events are those of its arcs
-    uniqueness_range : a ball of a in which no other such orbit near this one has the multiplier 1
+    orbit : the synchronized orbit at a_c, whose a is a_c; it has exactly the events of its arcs
+    uniqueness_range : a ball of a in which no other orbit near this one has the multiplier 1
     """
 
     orbit: ProvedOrbit
@@ -56,9 +56,9 @@ class CriticalOrbit:
 class Piece:
     """The proved synchronized orbits for all a in a ball.
 
-    orbit : enclosure of all of them
-    middle, direction : the unknowns of the orbit in the middle of the ball, and their derivative with respect to a
-    box : the box around that tangent in which, at each a, the orbit is unique
+    orbit : enclosure of all these orbits
+    middle, direction : the unknowns of the orbit at the midpoint of the ball, and their derivative with respect to a
+    box : the box around this tangent in which the orbit is unique at each a
     """
 
     orbit: ProvedOrbit
@@ -67,7 +67,7 @@ class Piece:
     box: Sequence[arb]
 
     def check_contains(self, other: Enclosure, a: arb) -> None:
-        """Prove that an orbit found at an a in the ball is that of the piece; raises ProofError if not."""
+        """Prove that an orbit enclosed at an a in the ball is that of the piece; raises ProofError if this fails."""
         with arithmetic():
             box = _point_near_tangent(self.middle, self.direction, a - self.orbit.a.mid(), self.box)
             if not self.orbit.a.contains(a) or not all(map(arb.contains, box, other.inner)):
@@ -75,7 +75,7 @@ class Piece:
 
 
 def prove_critical(orbit: PeriodicOrbit) -> CriticalOrbit:
-    """Return the proof that the multiplier of the synchronized orbit crosses 1, at an a near that of an orbit.
+    """Return the proof that the multiplier of the synchronized orbit crosses 1 at an a near that of a given orbit.
 
     orbit : in double precision, near a_c
     Raises ProofError, one line, if the proof fails.
@@ -86,14 +86,14 @@ def prove_critical(orbit: PeriodicOrbit) -> CriticalOrbit:
     proved = ProvedOrbit(arcs, found.inner[-1], Enclosure(found.inner[:-1], found.outer[:-1]))
     proved.check_arcs()
     if not abs(proved.slope) > 0:
-        raise ProofError(f"a = {proved.a}: not proved that the multiplier passes 1: its slope is {proved.slope}")
+        raise ProofError(f"a = {proved.a}: not proved that the multiplier crosses 1: its slope is {proved.slope}")
     return CriticalOrbit(proved, found.outer[-1])
 
 
 def prove_branch(orbit: PeriodicOrbit, low: fmpq, high: fmpq) -> list[Piece]:
     """Return the proofs that the synchronized orbit exists and that its multiplier increases, for a from low to high.
 
-    The box of each piece contains one orbit, and neighbouring pieces have the same orbit where they touch.
+    The box of each piece contains one orbit, and neighbouring pieces share the orbit at the a where they touch.
 
     orbit : in double precision, at an a near the low end; the order of its events is assumed for the whole range
     Raises ProofError, one line, if the proof fails.
@@ -105,7 +105,7 @@ def prove_branch(orbit: PeriodicOrbit, low: fmpq, high: fmpq) -> list[Piece]:
         first, last, depth = waiting.pop()
         half = (first + last) / 2
         try:
-            # Newton's method starts from the previous piece; a much wider piece is not tried.
+            # Newton's method starts from the previous piece, so that the piece must not be too wide.
             if last - first > LARGEST_PIECE:
                 raise ProofError("a piece too wide")
             piece = _piece(arcs, pieces[-1].middle if pieces else [arb(value) for value in guess], first, last)
@@ -121,7 +121,7 @@ def prove_branch(orbit: PeriodicOrbit, low: fmpq, high: fmpq) -> list[Piece]:
 
 
 def _piece(arcs: Sequence[Arc], guess: Sequence[arb], first: fmpq, last: fmpq) -> Piece:
-    """Return the proof for all a from first to last."""
+    """Return the proof for all a from first to last; raises ProofError if it fails."""
     system = equations(arcs)
     with arithmetic():
         a = ball_between(arb(first), arb(last))
@@ -147,9 +147,9 @@ def _piece(arcs: Sequence[Arc], guess: Sequence[arb], first: fmpq, last: fmpq) -
     proved = ProvedOrbit(tuple(arcs), a, Enclosure(inner, outer))
     proved.check_arcs()
     if not proved.slope > 0:
-        raise ProofError(f"the multiplier is not known to rise: its slope is {proved.slope}")
+        raise ProofError(f"not proved that the multiplier increases with a: its slope is {proved.slope}")
     if not abs(proved.symmetric_multiplier) < 1:
-        raise ProofError(f"symmetric perturbations are not known to fade: {proved.symmetric_multiplier}")
+        raise ProofError(f"not proved that symmetric perturbations decay: {proved.symmetric_multiplier}")
     return Piece(proved, middle, direction, found.outer)
 
 

@@ -1,9 +1,9 @@
-"""Proof of the synchronized orbit: its existence, its events and the absence of others between them, its multipliers.
+"""Proof of the synchronized orbit: its existence, its events and the absence of others, and its multipliers.
 
 The unknowns are the positions just after the first start of a period, when all blocks are at rest, and the durations of
 the arcs. The equations require that each arc ends with its event, and that the positions return. Of the six
-multipliers, one is that of the flow, three are 0 since three blocks stop, one is the image of a small difference of
-blocks 1 and 3 after a period, and one that of a relative shift of the end blocks and the center.
+multipliers, one is that of the flow, and three are 0 since three blocks stop. The other two are the factors by which an
+infinitesimal difference of blocks 1 and 3, and a relative shift of the end blocks and the center, change in a period.
 """
 
 from __future__ import annotations
@@ -37,14 +37,14 @@ POSITIONS = 2
 
 
 def follow_arcs(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State], list[Any]]:
-    """Return the states at the beginning of each arc and at the end of the period, and the equations of the ends.
+    """Return the states at the beginning of each arc and at the end of the period, and the equations of the events.
 
     unknown : positions x and y of the blocks at rest, the duration of each arc, and a
     """
     *orbit, a = unknown
     states, found = [State((orbit[0], orbit[1]), (-1, -1))], []
     for arc, time in zip(arcs, orbit[POSITIONS:], strict=True):
-        # The condition has to use the state before the event: a stop makes the speed 0 anyway.
+        # The condition uses the state before the event: after a stop the speed is always 0.
         before = arc.state_after(states[-1], a, time)
         found.append(arc.margin(arc.event_block, before, a))
         states.append(arc.state_after_event(before))
@@ -54,7 +54,7 @@ def follow_arcs(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State
 def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
     """Return the equations of a periodic orbit, in the unknowns of `follow_arcs`: events and return of positions.
 
-    critical : whether the transverse multiplier has to be 1 as well
+    critical : whether the transverse multiplier must be 1 as well
     """
 
     def values(unknown: Sequence[Any]) -> list[Any]:
@@ -66,9 +66,9 @@ def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
 
 
 def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
-    """Return the arcs of a synchronized orbit in double precision, and its unknowns, as a guess.
+    """Return the arcs of a synchronized orbit and, as a guess in double precision, its unknowns.
 
-    Raises ProofError unless all blocks stick at some time, and each starts and stops once a period.
+    Raises ProofError unless all blocks stick at some time, and each starts and stops once in a period.
     """
     events = [(time, block) for time, block, _ in orbit.events if block in (LATERAL, CENTER)]
     slips = [not stuck for stuck in orbit.reference.stuck[:2]]
@@ -77,7 +77,8 @@ def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
         before.append((slips[LATERAL], slips[CENTER]))
         slips[block] = not slips[block]
     if sorted(block for _, block in events) != [0, 0, 1, 1] or (False, False) not in before:
-        raise ProofError(f"a = {orbit.model.a!r}: not covered: all blocks stick at once, and each stops once a period")
+        expected = "expected all blocks to stick at once, and each to stop once in a period"
+        raise ProofError(f"a = {orbit.model.a!r}: not covered: {expected}")
     first = before.index((False, False))
     # A period, from the first start to the next.
     cycle = events[first:] + [(time + orbit.period, block) for time, block in events[: first + 1]]
@@ -91,11 +92,11 @@ def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
 
 @dataclass(frozen=True, eq=False)
 class ProvedOrbit:
-    """A synchronized orbit that is proved to exist, and to be unique in a box, for every a in a ball.
+    """A synchronized orbit that is proved to exist and to be unique in a box for every a in a ball.
 
     arcs : from the first start of a period
     a : friction parameter, a ball
-    enclosure : of the unknowns; its inner part may be narrower if it solves additional equations
+    enclosure : of the unknowns; additional equations may make its inner part narrower
     """
 
     arcs: tuple[Arc, ...]
@@ -115,7 +116,7 @@ class ProvedOrbit:
 
     @property
     def event_times(self) -> list[arb]:
-        """Times of the events that end each arc, after the first start of the period; the last is the period."""
+        """Times of the events at the ends of the arcs, since the first start of the period; the last is the period."""
         with arithmetic():
             return [sum(self.times[: k + 1], arb(0)) for k in range(len(self.times))]
 
@@ -131,11 +132,11 @@ class ProvedOrbit:
 
     @cached_property
     def symmetric_multiplier(self) -> arb:
-        """The multiplier of mirror-symmetric perturbations; all others of these are 0 or that of the flow.
+        """The multiplier of mirror-symmetric perturbations; their other multipliers are 0 or that of the flow.
 
-        When all blocks stick, a common shift of all blocks is along the flow. The multiplier is the factor by which x −
-        y changes in a period: a start leaves perturbations unchanged, a stop removes the velocity
-        (docs/synchronization.md).
+        While all blocks stick, a common shift of all blocks is along the flow. The multiplier is the factor by which a
+        perturbation of x − y changes in a period: a start leaves perturbations unchanged, and a stop removes those of
+        the velocity (docs/synchronization.md).
         """
 
         def position_difference(unknown: Sequence[Any]) -> list[Any]:
@@ -167,14 +168,16 @@ class ProvedOrbit:
                 try:
                     check_positive(margin, time, root_at_start=block == started, root_at_end=block == arc.event_block)
                 except ProofError as error:
-                    raise ProofError(f"{NAMES[block]}, {arc.name}: not proved to go on as they do: {error}") from None
+                    raise ProofError(
+                        f"{NAMES[block]}, {arc.name}: not proved to keep sticking or slipping: {error}"
+                    ) from None
 
     def speed_range(self) -> arb:
-        """Return a ball that contains all speeds U'/v of slipping blocks."""
+        """Return a ball that contains U'/v of all slipping blocks at all times."""
         return self._margin_range(True)
 
     def force_margin_range(self) -> arb:
-        """Return a ball that contains (1 − s)/v, with spring force s, of all stuck blocks."""
+        """Return a ball that contains (1 − s)/v of all stuck blocks at all times, with spring force s."""
         return self._margin_range(False)
 
     def _margin_range(self, slipping: bool) -> arb:
@@ -188,19 +191,19 @@ class ProvedOrbit:
             return reduce(arb.union, found)
 
     def _margin(self, arc: Arc, state: State, block: int) -> Function:
-        """Return the margin of a block as a function of time since the beginning of an arc."""
+        """Return the margin of a block as a function of the time since the beginning of an arc."""
         path = arc.flow.path(arc.slips, state, self.a)
         return lambda time: arc.margin(block, path(time), self.a)
 
     def _arcs_with_states(self) -> list[tuple[Arc, State, arb]]:
-        """Return each arc, the state at its beginning and its duration."""
+        """Return each arc with the state at its beginning and its duration."""
         with arithmetic():
             states, _ = follow_arcs(self.arcs, self._unknown)
         return list(zip(self.arcs, states, self.times, strict=False))
 
 
 def prove_orbit(orbit: PeriodicOrbit, a: arb) -> ProvedOrbit:
-    """Return the proof that there is a synchronized orbit near one in double precision.
+    """Return the proof that there is a synchronized orbit near a given one in double precision.
 
     a : friction parameter, a narrow ball around that of the orbit
     Raises ProofError, one line, if the proof fails.

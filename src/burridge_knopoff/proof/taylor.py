@@ -1,10 +1,10 @@
 """The nonlinear law: arcs by Taylor series with a rigorous remainder, in time steps.
 
-With Φ = 1/(1 + aU') and b = av, w(p) = a p / ((1 + b)(1 + b + b p)). A step needs a box that contains the solution
-throughout: if Picard's integral operator maps a box into itself, the solution is in it. The last coefficient of the
+With Φ = 1/(1 + aU') and b = av, w(p) = a p / ((1 + b)(1 + b + b p)). Each step needs a box that contains the solution
+throughout: if Picard's integral operator maps a box into itself, the solution stays in it. The last coefficient of the
 series over that box, times the last power of time, bounds the remainder of the series (W. Tucker, Validated Numerics,
-2011). Numbers may be power series in another quantity: then the derivative with respect to it is enclosed as well,
-which obeys the derivative of the same equations.
+2011). The state may consist of power series in another quantity. The derivative with respect to this quantity, which
+obeys the derivative of the same equations, is then enclosed as well.
 """
 
 from __future__ import annotations
@@ -20,14 +20,14 @@ from flint import arb, arb_series, fmpq
 from burridge_knopoff.proof.arcs import COUPLING, LATERAL, STIFFNESS, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, ball_between, limits
 
-#: Length of a step, and number of terms of its series; the remainder is about 1e-22 on these orbits.
+#: Length of a time step, and number of terms of its series; the remainder is about 1e-22 on these orbits.
 STEP = fmpq(1, 4)
 ORDER = 24
 
-# Upper bound on the length of an arc.
+# Upper bound on the duration of an arc.
 LONGEST_ARC = 100
 
-# The box of a step is searched by this many widenings, each by this fraction and at least by the other number.
+# The box of a step is widened up to this many times, each time by this fraction and at least by the last number.
 WIDENINGS = 60
 WIDENING = 0.25
 SMALLEST_WIDENING = 2.0**-120
@@ -37,7 +37,7 @@ SMALLEST_WIDENING = 2.0**-120
 class Nonlinear:
     """Arcs for the nonlinear law at a driver velocity v, a ball."""
 
-    # Boxes widen a million times over the steps of a period, and must stay small all the same.
+    # Boxes widen a million times over the steps of a period, and must still be small in the end.
     box_radii: ClassVar[tuple[float, ...]] = (2.0**-26, 2.0**-32)
 
     v: arb
@@ -65,7 +65,7 @@ class Nonlinear:
             _check_denominator(1 + b + b * rate[0]) if moves else None
             for rate, moves in zip((p, q), slips, strict=True)
         ]
-        # p/(1 + b + b p) for both, and 1/(1 + b + b p) for the end blocks, whose square the difference needs.
+        # p/(1 + b + b p) for both, and 1/(1 + b + b p) for the end blocks; its square enters the difference.
         ratios: list[list[Any]] = [[], []]
         inverse: list[Any] = []
         square: list[Any] = []
@@ -96,9 +96,10 @@ class Nonlinear:
 
 @dataclass
 class _Path:
-    """A motion, integrated as far as requested.
+    """A motion that is integrated as far as requested.
 
-    numbers : x, y, x', y', d, d' at the beginning, and a; pieces : coefficients of each step, the last its remainder
+    numbers : x, y, x', y', d, d' at the beginning, and a
+    pieces : coefficients of each step, of which the last is the remainder
     """
 
     law: Nonlinear
@@ -119,7 +120,7 @@ class _Path:
         assert found is not None
         a = self.numbers[-1]
         if isinstance(time, arb_series):
-            # The first terms of the series around that time, which are all that a power series of time needs.
+            # Terms up to second order of the series around that time, which suffice for a power series in time.
             rest = time - whole
             coefficients = self.law.series(self.slips, found, a, 2)
             found = [one[0] + one[1] * rest + one[2] * rest * rest for one in coefficients]
@@ -136,14 +137,14 @@ class _Path:
         with arithmetic(self.terms):
             begin = time.lower() if time.lower() > low else arb(low)
             end = time.upper() if time.upper() < high else arb(high)
-            # By rounding, a ball around both ends may reach beyond the step; the margin of the box allows for it.
+            # A rounded ball around both ends may reach beyond the step; the margin of the box allows for this.
             since = ball_between(begin, end) - low
             return [_evaluate(coefficients, since) for coefficients in self.pieces[number]]
 
     def _step(self) -> None:
         """Add a step; raises ProofError if no box is found that contains it."""
         *start, a = self.numbers if not self.pieces else [*self._end_state(), self.numbers[-1]]
-        # Slightly longer than the step, so that rounded times stay inside.
+        # Slightly longer than the step, so that rounded times lie inside.
         span = ball_between(0, arb(STEP) * fmpq(1001, 1000))
         box = [_evaluate(one, span) for one in self.law.series(self.slips, start, a, 3)]
         for _ in range(WIDENINGS):
@@ -154,7 +155,7 @@ class _Path:
                 break
             box = image
         else:
-            raise ProofError(f"step {len(self.pieces) + 1} of an arc: no box is known to hold the motion")
+            raise ProofError(f"step {len(self.pieces) + 1} of an arc: found no box that contains the motion")
         remainders = self.law.series(self.slips, image, a, ORDER)
         series = self.law.series(self.slips, start, a, ORDER - 1)
         self.pieces.append([[*one, rest[ORDER]] for one, rest in zip(series, remainders, strict=True)])
@@ -164,7 +165,7 @@ class _Path:
 
 
 def _check_denominator(value: Any) -> Any:
-    """Return 1 + aU'; raises ProofError where it may vanish and friction is not defined."""
+    """Return a value of 1 + aU'; raises ProofError if it may vanish, so that friction is not defined."""
     if not _parts(value)[0] > 0:
         raise ProofError(f"1 + aU': got {_parts(value)[0]}, expected above 0")
     return value
