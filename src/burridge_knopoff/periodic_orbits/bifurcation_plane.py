@@ -1,7 +1,7 @@
-"""The place of a bifurcation on a line in the plane of two parameters.
+"""The location of a bifurcation on a line in the plane of two parameters.
 
-The orbit is on a branch there, with the coordinate along the line as another unknown, and the bifurcation is a root
-along this branch. A grazing is approached from the side of the orbits with the stops of the first one.
+Along the line the orbits form a branch, with the coordinate on the line as an additional unknown, and the bifurcation
+is a root along this branch. A grazing is approached from the side on which the orbits have the stops of the first one.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import (
 )
 from burridge_knopoff.values import refusal
 
-# First step of the search for a root along a branch, the change at which it ends, and the most iterations.
+# First step of the search for a root along a branch, the change at which it ends, and the maximum number of iterations.
 PROBE = 1e-6
 CONVERGED = 1e-12
 ITERATIONS = 40
 
-# A root is searched for within so many lengths of the step; the return time may change by this fraction.
+# A root is searched for within this many step lengths, and the return time may change by this fraction.
 FARTHEST = 10.0
 CHANGE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
 class CurvePoint:
-    """A point of the curve; `offset` is the time by which the reference was moved on along the orbit."""
+    """A point of the curve; `offset` is the time by which the reference was shifted along the orbit."""
 
     orbit: PeriodicOrbit
     errors: np.ndarray
@@ -54,9 +54,9 @@ class CurvePoint:
 class BifurcationPlane:
     """The plane of two parameters, and the function that vanishes at one kind of bifurcation of an orbit.
 
-    Raises ValueError, one line, if the bifurcation is of a symmetry that one of the parameters breaks.
+    Raises ValueError, one line, if the bifurcation requires a symmetry that one of the parameters breaks.
 
-    Places in the plane are in the units of `line_of` at the bifurcation.
+    Points of the plane are in the units of `line_of` at the bifurcation.
     """
 
     def __init__(self, bifurcation: Bifurcation, names: tuple[str, str]) -> None:
@@ -77,7 +77,7 @@ class BifurcationPlane:
             self.key = min(values, key=values.__getitem__)
 
     def place(self, model: Model) -> np.ndarray:
-        """Return the place of a model in the plane."""
+        """Return the point of a model in the plane."""
         return np.array([value_of(model, name) for name in self.names]) / self.units
 
     def line(self, model: Model, direction: np.ndarray) -> ParameterLine:
@@ -93,9 +93,9 @@ class BifurcationPlane:
     ) -> CurvePoint:
         """Return the point of the curve on the line through a model perpendicular to a direction.
 
-        near : an orbit near by; guess, time : of the orbit; length : of the step
+        near : a neighbouring orbit; guess, time : of the orbit; length : of the step
 
-        Raises OrbitError if there is none within some steps.
+        Raises OrbitError if no such point is found within FARTHEST steps.
         """
         line = self.line(model, direction)
         tangent = tangent_of(near, self.line(near.model, direction))
@@ -120,7 +120,7 @@ class BifurcationPlane:
         return CurvePoint(found, np.maximum(errors * self.units, ROUNDING), offset)
 
     def _root(self, orbit: PeriodicOrbit, line: ParameterLine, longest: float) -> tuple[PeriodicOrbit, np.ndarray]:
-        """Return the orbit at which the function of the multipliers vanishes, and half the widths of its bracket."""
+        """Return the orbit at which the test function vanishes, and half the widths of the bracket in the plane."""
         tangent = tangent_of(orbit, line)
 
         def orbit_at(distance: float) -> PeriodicOrbit:
@@ -146,7 +146,7 @@ class BifurcationPlane:
         raise OrbitError(f"{self.kind.name.lower()}: no root found near the guess")
 
     def _grazing(self, orbit: PeriodicOrbit, line: ParameterLine) -> tuple[PeriodicOrbit, np.ndarray]:
-        """Return an orbit next to the one that grazes, on the side of its own stops, and what is left in the plane."""
+        """Return an orbit next to the grazing one, on the side with its own stops, and the remaining distances."""
         tangent, length = tangent_of(orbit, line), PROBE
         distance = self._distance(orbit)
         for _ in range(ITERATIONS):
@@ -175,7 +175,7 @@ class BifurcationPlane:
 
 
 def _first_with(stops: tuple[int, ...], orbit_at: Callable[[float], PeriodicOrbit], longest: float) -> PeriodicOrbit:
-    """Return the orbit with these stops at the least distance tried, on either side."""
+    """Return the orbit with these stops at the smallest distance tried, on either side."""
     distance = 0.0
     while distance < longest:
         for side in (1.0, -1.0):

@@ -1,9 +1,9 @@
-"""Corners of a branch of periodic orbits, where an orbit grazes: approaching and rounding them.
+"""Continuation of a branch of periodic orbits through a grazing, where the branch has a corner.
 
 The return map of a grazing orbit is continuous, but its derivative jumps, since a stop removes a velocity perturbation
 however short the stick is; the next terms are of order 3/2. The branch therefore has a corner, and Floquet multipliers
-jump. Either the orbit continues with one stick more or less, or both kinds of orbit exist on the same side of the
-grazing and meet there: the branch turns back in a (a non-smooth fold).
+jump. Either the orbit continues with one stick more or less, or the orbits with and without the stick exist on the same
+side of the grazing and meet there: the grazing is then a turning point of the branch (a non-smooth fold).
 
 If friction drops at the start of a slip, the return map itself jumps, and the branch ends.
 
@@ -27,30 +27,31 @@ from burridge_knopoff.periodic_orbits.minimal_orbit import reduced_orbit
 from burridge_knopoff.periodic_orbits.periodic import orbit_of
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_along, tangent_of
 
-# A corner is reached at this distance from it; limits on the number of steps, and on failed steps.
+# Distance at which a corner counts as reached, and limits on the number of steps and of failed steps.
 CORNER_DISTANCE = 1e-10
 STEPS = 32
 FAILURES = 14
 
-# First step towards a corner, as a fraction of the length within which it lies. Later steps are at most this fraction
-# of the predicted length; a factor applies after a successful and after a failed step.
+# First step towards a corner, as a fraction of the length within which it lies. Later steps are at most LARGEST_SHARE
+# of the predicted length; the share grows after a successful step, and share and step shrink after a failed step.
 PROBE = 1e-2
 LARGEST_SHARE = 0.97
 SHARE_GROWTH = 2.0
 STEP_REDUCTION = 0.4
 
-# Number of steps ahead within which a branch may join a branch of simpler orbits.
+# Number of steps within which a branch may join a branch of simpler orbits.
 STEPS_TO_BRANCH_POINT = 2.0
 
-# Distance beyond a corner at which the tangent of the other side is taken, and lengths of the first steps to try.
+# Distances beyond a corner at which the tangent on the other side is computed, and lengths of the first steps, to be
+# tried in turn.
 OFFSETS_BEYOND = (1e-5, 1e-4, 1e-6)
 FIRST_STEPS = (1e-5, 1e-4, 1e-6, 1e-7)
 
 
 def distance_to_grazing(before: BranchOrbit, point: BranchOrbit) -> float:
-    """Return the length to the next grazing after two neighbouring points of a branch; infinite if none is ahead.
+    """Return the length to the next grazing, extrapolated from two neighbouring points; infinite if none is ahead.
 
-    The grazing distance falls in proportion to the length.
+    The grazing distance decreases in proportion to the length.
     """
     last, here = before.grazing_distances.values(), point.grazing_distances.values()
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -80,9 +81,9 @@ def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None
 
 
 def _distance_to_branch_point(way: Sequence[BranchOrbit]) -> float:
-    """Return the length from the end of a path to where an approaching multiplier reaches 1; else infinite.
+    """Return the length from the end of a path to where an approaching multiplier reaches 1; otherwise infinite.
 
-    There a branch of orbits with less symmetry, or with twice the period, joins one of simpler orbits.
+    There a branch of orbits with less symmetry, or with twice the period, joins a branch of simpler orbits.
     """
     if len(way) < 2:
         return np.inf
@@ -94,9 +95,9 @@ def _distance_to_branch_point(way: Sequence[BranchOrbit]) -> float:
 
 
 def approach_grazing(before: Sequence[BranchOrbit], length: float) -> list[BranchOrbit]:
-    """Return orbits ahead of a path up to the one next to the grazing that lies within about a length.
+    """Return the orbits that continue a path up to the grazing that lies within about a length.
 
-    Near a corner that turns back, a step may end on its other side, with other stops; it is repeated shorter.
+    Near a turning point a step may end on the other side, with different stops; it is repeated with a shorter length.
     """
     way: list[BranchOrbit] = []
     step, share, failures = PROBE * length, LARGEST_SHARE, 0
@@ -146,9 +147,9 @@ def switch_branch(point: BranchOrbit) -> BranchOrbit | None:
                     found = step_along(point, length, side * tangent)
                 except OrbitError:
                     continue
-                # Reject an orbit without stops: such motion is neutral, as at a = 0. Reject several turns of a simpler
-                # orbit beside the corner, which do not continue the branch, and the mirror image of the path itself:
-                # there the corner is where orbits of less symmetry begin.
+                # Reject an orbit without stops, which is neutral, as at a = 0. Reject multiple traversals of a simpler
+                # orbit near the corner, which does not continue the branch. Reject the mirror image of the path itself:
+                # its corner is then the point at which less symmetric orbits begin.
                 signature = found.orbit.stop_counts
                 if (
                     signature not in (orbit.stop_counts, orbit.stop_counts[::-1])

@@ -1,4 +1,4 @@
-"""A branch segment of stable periodic orbits, followed in a both ways to the bifurcations at its ends."""
+"""A branch segment of stable periodic orbits, continued in both directions of a to the bifurcations at its ends."""
 
 from __future__ import annotations
 
@@ -16,22 +16,22 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 # Difference of ⟨J⟩, for v = 0.1, within which an orbit between two neighbours on a branch may belong to the branch.
 SAME_MEAN = 1e-3
 
-# Orbits closer than this along a branch are merged.
+# Orbits closer than this to the previous one along a branch are not drawn.
 CLOSE = 1e-5
 
 
 @dataclass(frozen=True, eq=False)
 class HalfBranch:
-    """Orbits of one branch followed from a stable one in one direction of a.
+    """Orbits of one branch, continued from a stable orbit in one direction of a.
 
-    orbits : in the order in which they were followed
+    orbits : in the order of the continuation
     """
 
     orbits: Sequence[BranchOrbit]
 
     @cached_property
     def bifurcations(self) -> list[Bifurcation]:
-        """Bifurcations that the stable orbits pass, and the one at which they end, if it was reached."""
+        """Bifurcations that the stable orbits pass, and the one at which they end if it was reached."""
         found = []
         for bifurcation in locate_bifurcations(self.orbits):
             found.append(bifurcation)
@@ -46,7 +46,7 @@ class HalfBranch:
 
     @property
     def drawn_orbits(self) -> list[BranchOrbit]:
-        """All orbits except those approaching a corner."""
+        """All orbits except those very close to the previous one, near a grazing."""
         return [point for point in self.orbits if point.is_grazing or not 0.0 < point.length < CLOSE]
 
 
@@ -54,7 +54,7 @@ class HalfBranch:
 class BranchSegment:
     """A segment of a branch around a stable orbit.
 
-    downward, upward : orbits followed from it with a falling, and growing, at first
+    downward, upward : orbits continued from it with a decreasing, and increasing, at first
     """
 
     downward: HalfBranch
@@ -71,13 +71,13 @@ class BranchSegment:
 
     @property
     def drawn_orbits(self) -> list[BranchOrbit]:
-        """All orbits from one end to the other, except those approaching a corner."""
+        """All orbits from one end to the other, except those very close to the previous one, near a grazing."""
         return [*self.downward.drawn_orbits[:0:-1], *self.upward.drawn_orbits]
 
     def contains(self, orbit: PeriodicOrbit, tolerance: float) -> bool:
-        """Tell whether an orbit is one of the stable ones: by its a, stops, symmetry, period and ⟨J⟩.
+        """Return whether an orbit is one of the stable orbits, judged by a, stops, symmetry, period and ⟨J⟩.
 
-        tolerance : largest relative difference from the period of the neighbouring orbits
+        tolerance : largest relative difference from the interpolated period
         """
         a, period = self._stable_periods
         if not len(a):
@@ -95,14 +95,14 @@ class BranchSegment:
         expected = float(np.interp(orbit.a, a, period))
         if abs(orbit.period - expected) > tolerance * expected:
             return False
-        # Next to a grazing ⟨J⟩ changes as a square root.
+        # Near a grazing ⟨J⟩ changes as a square root.
         means = [other.mean_distance for other in near]
         margin = max(means) - min(means) + SAME_MEAN * orbit.model.scale
         return min(means) - margin <= orbit.mean_distance <= max(means) + margin
 
     @cached_property
     def _stable_periods(self) -> tuple[np.ndarray, np.ndarray]:
-        """The friction parameters and periods of the stable orbits."""
+        """The values of a and the periods of the stable orbits."""
         orbits = [point.orbit for point in self.stable_orbits]
         return np.array([orbit.a for orbit in orbits]), np.array([orbit.period for orbit in orbits])
 
@@ -114,15 +114,17 @@ def follow_half_branch(
     beyond: int,
     settings: ContinuationSettings = CONTINUATION,
 ) -> HalfBranch:
-    """Follow a stable orbit one way until some orbits beyond a bifurcation are unstable, or a leaves a range.
+    """Continue a stable orbit one way until a leaves a range, or until some orbits beyond the first unstable one.
 
-    Raises OrbitError if it cannot be followed at all.
+    beyond : number of orbits after the first unstable one
+
+    Raises OrbitError if the continuation cannot start.
     """
     return HalfBranch(follow(orbit, a_range, settings, upward=upward, is_complete=_stop_after_unstable(beyond)))
 
 
 def _stop_after_unstable(beyond: int) -> Callable[[list[BranchOrbit]], bool]:
-    """Return a test whether `beyond` orbits have followed since the first unstable one."""
+    """Return a predicate: whether there are `beyond` orbits after the first unstable one."""
     first = 0
 
     def is_complete(points: list[BranchOrbit]) -> bool:

@@ -1,12 +1,12 @@
 """Floquet multipliers of a periodic orbit, without that of the flow, and functions that vanish at its bifurcations.
 
 For an orbit that is its own mirror image after half a period, everything is computed from the half return: its
-multipliers ν give those of the whole period, μ = ν². ν = −1 breaks the symmetry (a pitchfork, μ = +1), ν = +1 is a
-fold. A single μ = −1 would need ν = i and ν = −i at once. Such orbits do not double their period before they have lost
-the symmetry.
+multipliers ν give those of the whole period, μ = ν². ν = −1 breaks the symmetry (a pitchfork, μ = +1), and ν = +1 is a
+fold. A single μ = −1 would require both ν = i and ν = −i. Such orbits therefore lose the symmetry before they can
+double their period.
 
 If mirror blocks move synchronously, symmetric and symmetry-breaking perturbations do not mix: +1 is a fold among the
-former and a pitchfork among the latter, −1 a period doubling among both.
+former and a pitchfork among the latter, and −1 is a period doubling among both.
 
 References: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2;
 J. W. Swift and K. Wiesenfeld, Phys. Rev. Lett. 52 (1984) 705.
@@ -28,9 +28,9 @@ from burridge_knopoff.values import instance_of
 
 @dataclass(frozen=True, eq=False)
 class Multipliers:
-    """Multipliers of a return, complex, without that of the flow; largest modulus first.
+    """Complex multipliers of a return, without that of the flow; largest modulus first.
 
-    symmetry_preserving : of all perturbations, or of the mirror-symmetric ones if mirror blocks move synchronously
+    symmetry_preserving : of all perturbations, or only of the mirror-symmetric ones if mirror blocks move synchronously
     symmetry_breaking : of the symmetry-breaking perturbations; empty unless mirror blocks move synchronously
     power : number of returns in a period
 
@@ -71,10 +71,10 @@ class Multipliers:
 def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     """Return the Floquet multipliers of an orbit; the velocities of stuck blocks have multiplier 0.
 
-    The flow direction f is an eigenvector of the return with eigenvalue 1. The restriction to its orthogonal complement
-    has the other eigenvalues, however close to 1 they are.
+    The direction of the flow is an eigenvector of the return with eigenvalue 1. The restriction to its orthogonal
+    complement has the other eigenvalues, however close to 1 they are.
 
-    orbit : of any chain; the multiplier of the flow, 1, is left out
+    orbit : of any chain; the multiplier 1 of the flow is excluded
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2.
 
@@ -85,7 +85,7 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     >>> multipliers(orbit).unstable_count == 0
     True
     """
-    # In the chain's own units, or positions would outweigh velocities where times are long.
+    # In the chain's own units: otherwise positions would outweigh velocities in slow chains.
     nothing = np.zeros(instance_of(orbit, PeriodicOrbit, "orbit").model.blocks, dtype=bool)
     keeping, breaking = allowed_directions(nothing, orbit.symmetry), symmetry_breaking_directions(nothing)
     if orbit.symmetry != Symmetry.SYNCHRONIZED:
@@ -105,9 +105,10 @@ def _sorted(values: np.ndarray) -> np.ndarray:
 
 
 def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> dict[tuple[BifurcationKind, str], float]:
-    """Return, for each kind of bifurcation and part of the perturbations, a smooth function that changes sign there.
+    """Return the values of the test functions, {(kind of bifurcation, part of the perturbations): value}.
 
-    They are those of MULTIPLIER_TESTS, such as the products over multipliers of μ − 1.
+    Each is a smooth function that changes sign at the bifurcation, such as the product of all μ − 1; see
+    MULTIPLIER_TESTS.
     """
     found = multipliers(orbit) if found is None else found
     return {

@@ -1,4 +1,4 @@
-"""Continuation of periodic orbits in a parameter: through folds and around grazings, stable or unstable."""
+"""Continuation of stable and unstable periodic orbits in a parameter, through folds and grazings."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch, line_of
 from burridge_knopoff.values import instance_of, real_number, refusal
 
-# Distance, for v = 0.1 in the chain's own units, within which an orbit about to become more symmetric, or of half the
-# period, returns to its mirror image, or to itself after half its period.
+# Distance, for v = 0.1 in the chain's own units, within which an orbit must return to its mirror image, or to itself
+# after half its period, to be about to become more symmetric or to halve its period.
 REDUCTION_DISTANCE = 3e-2
 
-# Growth of a step after a successful one.
+# Factor by which the length of a step grows after a successful step.
 STEP_GROWTH = 2.0
 
 
 @dataclass(frozen=True)
 class ContinuationSettings:
-    """Options of the continuation: lengths of steps along the branch, mostly in a, and the maximum number of orbits.
+    """Settings of the continuation: lengths of steps along the branch, mostly in a, and the maximum number of orbits.
 
-    Lengths in a are in the chain's own unit of it, `Chain.own_units.slope`: 1 for the paper's chain, and 2 for one that
-    moves half as fast, so that friction has to fall twice as steeply.
+    Lengths in a are in the chain's own unit of a, `Chain.own_units.slope`: 1 for the paper's chain, and 2 for a chain
+    that moves half as fast, for which friction has to fall twice as steeply.
 
-    Along another parameter, the unit of length is the change of it that changes the return of the orbit by about as
-    much as a change of 1 in a does on a short orbit. On long orbits, whose return changes faster, the unit is smaller.
+    Along another parameter, the unit of length is the change that moves the return of the orbit by about as much as a
+    change of 1 in a does for a short orbit. For long orbits, whose return changes faster, the unit is smaller.
 
     >>> from burridge_knopoff import ContinuationSettings
     >>> ContinuationSettings(max_orbits=20).largest_step
@@ -57,22 +57,22 @@ def follow(
     upward: bool = True,
     is_complete: Callable[[list[BranchOrbit]], bool] = lambda points: False,
 ) -> list[BranchOrbit]:
-    """Return the orbits of a branch starting from one of them, until a parameter leaves an interval.
+    """Return the orbits of a branch, continued from one of them until a parameter leaves an interval.
 
-    orbit : stable or unstable, of any chain; reduced to its simplest form first
-    interval : (low, high) of the parameter; by default as far as the branch goes
-    settings : lengths of steps; upward : whether the parameter grows at first
-    parameter : a, v, a number of the law such as sigma, one of the chain such as coupling, or of one block or spring
-        such as `mass[3]` (`Model.at`)
-    is_complete : called after each orbit except those on a corner, with all orbits so far
+    orbit : stable or unstable, of any chain; first reduced to its minimal form
+    interval : (low, high) of the parameter; by default unbounded
+    settings : lengths of steps; upward : whether the parameter increases at first
+    parameter : a, v, a parameter of the law such as sigma, one of the chain such as coupling, or that of one block or
+        spring such as `mass[3]` (`Model.at`)
+    is_complete : called with all orbits so far after each orbit that does not graze; ends the branch if true
 
-    A grazing orbit is in the list with `corner` set; the next orbit, if there is one, is on the other side. The branch
-    also ends where it joins one of simpler orbits, where no step is short enough, and at the `settings.max_orbits`-th
-    orbit, or the next one if that is on a corner. If the parameter is then still within the interval, the rest of the
-    branch has not been followed.
+    A grazing orbit is in the list with `is_grazing` set; the next orbit, if there is one, is on the other side. The
+    branch also ends where it joins a branch of simpler orbits, where steps become too short, and at the
+    `settings.max_orbits`-th orbit, or at the next one if that one grazes. If the parameter is then still within the
+    interval, the rest of the branch has not been followed.
 
-    Raises OrbitError if it cannot start, for example if the orbit is not within the interval, and ValueError for an
-    invalid interval, and for what is no parameter of the model.
+    Raises OrbitError if the continuation cannot start, for example if the orbit is outside the interval, and ValueError
+    for an invalid interval or a name that is not a parameter of the model.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
     docs/bifurcations.md explains how a branch continues where its orbit grazes.
@@ -126,7 +126,7 @@ def follow(
 
 
 def interval_ends(interval: Any) -> tuple[float, float]:
-    """Return the ends of an interval; raises ValueError, one line, if it has none."""
+    """Return the ends of an interval; raises ValueError, one line, if it is not an interval."""
     try:
         low, high = (real_number(value) for value in interval)
     except (TypeError, ValueError):
@@ -137,9 +137,9 @@ def interval_ends(interval: Any) -> tuple[float, float]:
 
 
 def _passed_orbit(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:
-    """Return the simpler orbit that a branch has passed, on to its own mirror image; None if there is none.
+    """Return the simpler orbit between two points of a branch, beyond which it repeats its mirror image; None if none.
 
-    The branch turns back there, but the multiplier only touches 1, unlike at a fold.
+    The parameter turns back at such an orbit, but the multiplier only touches 1, unlike at a fold.
     """
     if first.tangent[-1] * second.tangent[-1] > 0.0:
         return None

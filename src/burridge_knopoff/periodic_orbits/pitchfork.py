@@ -1,7 +1,7 @@
-"""Orbits that branch off a synchronized orbit where a transverse multiplier is 1, with a as another unknown.
+"""Orbits that branch off a synchronized orbit where a transverse multiplier is 1, with a as an additional unknown.
 
 Such an orbit is parametrized by its asymmetry d, the difference of the positions of the end blocks while both stick.
-Its a is a_c + c d² + …, even in d by mirror symmetry. Orbits at a beyond a_c make the pitchfork supercritical.
+By mirror symmetry its a is even in d, a_c + c d² + …. The pitchfork is supercritical if these orbits exist beyond a_c.
 
 Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 7.4.
 """
@@ -17,17 +17,17 @@ from burridge_knopoff.periodic_orbits.periodic import Constraint, PeriodicOrbit,
 from burridge_knopoff.periodic_orbits.return_map import symmetry_breaking_directions
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# Orbits that branch off are searched for up to this relative distance from a_c.
+# Branching orbits are searched for up to this relative distance from a_c.
 LARGEST_OFFSET = 0.5
 
 
 def branching_orbit(critical: PeriodicOrbit, asymmetry: float, near: PeriodicOrbit | None = None) -> PeriodicOrbit:
-    """Return the orbit of a given asymmetry that branches off; its model has the a at which it exists.
+    """Return the branching orbit of a given asymmetry; its model has the a at which it exists.
 
     critical : the synchronized orbit at a_c
-    near : an orbit of smaller asymmetry returned by this function, for a better guess
+    near : an orbit of smaller asymmetry returned by this function, which gives a better guess
 
-    Its reference is a state in which the end blocks stick. Raises OrbitError if it is not found.
+    The reference is a state in which the end blocks stick. Raises OrbitError if the orbit is not found.
     """
     center = _center_on_end_stick(critical)
     base, blocks, units = center.reference.vector(), center.model.blocks, center.model.chain.own_units
@@ -69,22 +69,22 @@ def end_block_asymmetry(orbit: PeriodicOrbit) -> float:
 
 
 def _branching_direction(orbit: PeriodicOrbit) -> np.ndarray:
-    """Return the perturbation whose multiplier is 1, per difference of the end blocks, shape (2 blocks,)."""
+    """Return the perturbation with multiplier 1, for a unit difference of the end blocks, shape (2 blocks,)."""
     basis = symmetry_breaking_directions(orbit.reference.stuck)
     values, vectors = np.linalg.eig(basis.T @ orbit.monodromy @ basis)
-    way = basis @ vectors[:, np.abs(values - 1.0).argmin()].real
-    return way / (way[0] - way[orbit.model.blocks - 1])
+    direction = basis @ vectors[:, np.abs(values - 1.0).argmin()].real
+    return direction / (direction[0] - direction[orbit.model.blocks - 1])
 
 
 def _center_on_end_stick(orbit: PeriodicOrbit) -> PeriodicOrbit:
-    """Return a synchronized orbit, with the middle of the longest event-free time of stuck end blocks as reference."""
+    """Return a synchronized orbit with its reference in the longest event-free interval with stuck end blocks."""
     time = orbit.event_rows[:, 0]
     at, kind = orbit.events_of(0)
     if not len(at):
         raise OrbitError(f"a = {orbit.a!r}: the end blocks never stick")
     length = np.diff(time, append=time[:1] + orbit.period)
     middle = time + 0.5 * length
-    # The last event of an end block before the middle; the last one of a period precedes the first.
+    # The last event of an end block before the middle; before the first event comes the last one of a period.
     sticks = kind[np.searchsorted(at, middle) - 1] == 0
     chosen = float(middle[np.where(sticks, length, -np.inf).argmax()])
     state = flow(orbit.model, orbit.reference, chosen)[0].state()

@@ -1,7 +1,7 @@
 """Pseudo-arclength continuation of periodic orbits in a parameter: through folds, up to grazings.
 
-A step follows the tangent of the branch in (state, return time, parameter) and is corrected perpendicular to it. No
-step passes a grazing: there the branch has a corner (`is_grazing`), which `follow` goes around.
+A step follows the tangent of the branch in (state, return time, parameter) and is corrected perpendicular to it. Steps
+do not pass a grazing, where the branch has a corner (`is_grazing`); `follow` continues beyond it.
 
 Reference: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 and 745.
 """
@@ -30,16 +30,16 @@ from burridge_knopoff.periodic_orbits.periodic import (
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, allowed_directions
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# Length along a branch is mostly length in the parameter: positions, in units of 0.1 v, and times have smaller weights,
-# all in the chain's own units.
+# Weights in the squared length along a branch, which is mostly the change of the parameter. Positions and velocities
+# are relative to v/0.1 and, like times, in the chain's own units.
 STATE_WEIGHT = 0.01
 TIME_WEIGHT = 1e-4
 
-# Fraction of a change of state by which the tangent is carried from one reference state to another.
+# Step of the finite differences that carry a tangent from one reference state to another.
 PART = 1e-6
 
-# Change of the return of an orbit, for v = 0.1, that a step of length 1 makes: a change of 1 in a makes about this one
-# where all blocks stop once in a period. A step is at most so long relative to the parameter.
+# Change of the return of an orbit, for v = 0.1, in a step of length 1: about that of a change of 1 in a if all blocks
+# stop once in a period. A step of length 1 is at most LONGEST times the parameter.
 CHANGE = 0.25
 LONGEST = 10.0
 
@@ -51,8 +51,8 @@ STRAIGHT = 0.8
 class BranchOrbit:
     """An orbit on a branch and the unit tangent there, over (positions and velocities, return time, parameter).
 
-    line : the parameter along which the branch is followed, in units in which it is measured
-    length : from the previous orbit, along its tangent
+    line : the parameter along which the branch is continued, and its unit
+    length : distance from the previous orbit, along its tangent
     reduced_orbit : if the branch has reached a branch of simpler orbits, this orbit in its simpler form, more symmetric
         or of half the period; the branch ends before it
     distance_to_grazing : length from here to the corner of the branch where the orbit grazes; NaN unless it is next
@@ -77,12 +77,12 @@ class BranchOrbit:
 
     @cached_property
     def value(self) -> float:
-        """The value of the parameter along which the branch is followed."""
+        """The value of the parameter along which the branch is continued."""
         return self.line.value(self.orbit.model)
 
     @property
     def is_grazing(self) -> bool:
-        """Whether the orbit grazes, up to rounding."""
+        """Whether the orbit grazes, up to rounding errors."""
         return not np.isnan(self.distance_to_grazing)
 
     @cached_property
@@ -97,12 +97,12 @@ class BranchOrbit:
 
 
 def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
-    """Return the line along one parameter of an orbit, in units in which its return changes by CHANGE.
+    """Return the line along one parameter of an orbit, with a unit that changes the return of the orbit by CHANGE.
 
     The return of a long orbit changes faster, so that its unit is smaller. Positions and velocities are compared in
-    units of v, since they grow with it. For a, the unit is the chain's own.
+    units of v, since they grow with v. For a, the unit is the chain's own.
 
-    Raises ValueError, one line, if the model has no one number of this name.
+    Raises ValueError, one line, if the model has no parameter of this name with a single value.
     """
     value = value_of(orbit.model, parameter)
     if parameter == "a":
@@ -151,7 +151,7 @@ def tangent_of(orbit: PeriodicOrbit, line: ParameterLine) -> np.ndarray:
 
 
 def adapt_symmetry(line: ParameterLine, orbit: PeriodicOrbit) -> PeriodicOrbit:
-    """Return an orbit as one of the symmetry that all models on a line have: none, if the line breaks the mirror's."""
+    """Return an orbit with the symmetry of all models on a line: ASYMMETRIC if the line breaks the mirror symmetry."""
     model, here = orbit.model, line.coordinate(orbit.model)
     if orbit.symmetry == Symmetry.ASYMMETRIC:
         return orbit
@@ -165,7 +165,7 @@ def adapt_symmetry(line: ParameterLine, orbit: PeriodicOrbit) -> PeriodicOrbit:
 
 
 def begin_branch(orbit: PeriodicOrbit, upward: bool, line: ParameterLine) -> BranchOrbit:
-    """Return an orbit with the tangent along which the parameter grows or falls."""
+    """Return an orbit with the tangent along which the parameter increases (upward) or decreases."""
     orbit = adapt_symmetry(line, orbit)
     tangent = tangent_of(orbit, line)
     return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent, line)
@@ -181,7 +181,7 @@ def solve_ahead(
     length: float,
     target_residual: float = TARGET_RESIDUAL,
 ) -> PeriodicOrbit:
-    """Return the orbit at a length along a tangent from a state, its return time and its model.
+    """Return the orbit at a length along a tangent from a state, a return time and a model.
 
     target_residual : residual at which Newton's method ends; 0 iterates to rounding
 
@@ -201,7 +201,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
 
     tangent : replaces that of the point
 
-    Raises OrbitError if none is found, or if the branch turns sharply on the way.
+    Raises OrbitError if none is found, or if the tangent turns too sharply within the step.
     """
     orbit, line = point.orbit, point.line
     tangent = point.tangent if tangent is None else tangent
@@ -224,7 +224,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
 
 
 def _carry_tangent(orbit: PeriodicOrbit, tangent: np.ndarray, time: float, line: ParameterLine) -> np.ndarray:
-    """Return a tangent carried to the state a time after the reference, perpendicular to the flow there."""
+    """Return a tangent transported to the state a time after the reference, perpendicular to the flow there."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + PART * tangent[:-2]
     near = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)

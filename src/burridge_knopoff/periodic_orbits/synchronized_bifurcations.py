@@ -1,7 +1,7 @@
-"""Bifurcations of the synchronized orbit: its loss at a_c, the grazing at which a block begins to stick, its doubling.
+"""Bifurcations of the synchronized orbit: loss of stability at a_c, grazing of a block, and period doubling.
 
-The bifurcations along the followed branch tell which there are. The root in a of the function that vanishes there, on
-orbits solved down to rounding, then gives a to the last digits.
+The bifurcations are located along the branch. The root in a of the function that vanishes at each of them, on orbits
+solved to rounding accuracy, then gives a to the last digits.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ FIRST_STEP = 1e-3
 LARGEST_STEP = 5e-3
 RESTART_GAP = 0.0125
 
-# A root is bracketed at these distances, in the chain's own unit of a, in turn, and found to the rounding of the
-# function. With such small steps brentq only bisects, and may need more than its usual hundred iterations.
+# Half-widths of brackets of a root, in the chain's own unit of a, to be tried in turn. The root is found to the
+# rounding error of the function. In such narrow brackets brentq only bisects and may need more iterations than usual.
 BRACKETS = (1e-9, 1e-8, 1e-7, 1e-6)
 TOLERANCE = 1e-15
 ITERATIONS = 1000
 
-# Largest distance from −1, or from the unit circle, of the multiplier of a bifurcation.
+# Largest distance of the critical multiplier at a bifurcation from −1, or from the unit circle.
 CRITICAL = 1e-5
 
-# Difference d of mirror blocks for finite differences, in units of v, for times in the own unit: rounding of the
-# quotient and the d⁴ that extrapolation leaves are both about 1e-12.
+# Difference d of mirror blocks for finite differences, in units of v, for times in the own unit: the rounding error of
+# the quotient and the remaining error of order d⁴ are both about 1e-12.
 DIFFERENCE = 1e-3
 
 # Step in a, in units of `a_unit`, for the slope of the multiplier.
@@ -50,9 +50,10 @@ SLOPE_STEP = 1e-4
 
 
 def a_unit(chain: Chain) -> float:
-    """Return the a at which friction changes a slip as much as a = 1 does in the paper's chain, where it is 1.
+    """Return the a at which friction changes a slip as much as a = 1 does in the paper's chain, for which it is 1.
 
-    Springs stronger by a factor make all motion faster by its square root; a mode grows with a times the threshold.
+    Springs that are stiffer by a factor make all motion faster by its square root; a mode grows at a rate proportional
+    to a times the threshold.
     """
     pulled = chain.driving > 0.0
     return math.sqrt(float((chain.driving * chain.masses)[pulled].min())) / float(chain.thresholds.max())
@@ -64,10 +65,10 @@ def bifurcations_of(orbits: KnownOrbits) -> list[Bifurcation]:
 
 
 def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
-    """Follow the orbits upward; where a branch ends, continue both ways with any orbit beyond."""
+    """Yield the bifurcations along the orbits; beyond the end of a branch, continue both ways from the next orbit."""
     size = a_unit(orbits.model.chain)
     (first, high), gap = (size * end for end in RANGE), size * RESTART_GAP
-    # `follow` counts its steps in the chain's own unit.
+    # `follow` measures its steps in the chain's own unit.
     share = size / orbits.model.chain.own_units.slope
     settings = ContinuationSettings(first_step=share * FIRST_STEP, largest_step=share * LARGEST_STEP)
     low, a = first, first
@@ -86,7 +87,7 @@ def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
 
 
 def critical_a(bifurcations: list[Bifurcation]) -> float:
-    """Return a_c, where the leading transverse multiplier reaches the unit circle; NaN if it does not."""
+    """Return a_c, at which the leading transverse multiplier reaches the unit circle; NaN if it does not."""
 
     def distance(orbit: PeriodicOrbit) -> float:
         return abs(multipliers(orbit).transverse) - 1.0
@@ -118,9 +119,9 @@ def symmetric_period_doubling_a(bifurcations: list[Bifurcation]) -> float:
 def grazing_a(bifurcations: list[Bifurcation], block: int) -> float:
     """Return the a at which a block, numbered from 0, begins to stick; NaN if it does not.
 
-    On one side the least speed of the block is positive. On the other side the stick lasts about the square root of the
-    distance, so that minus its squared length continues the least speed through 0. If friction drops at the start of a
-    slip no stick begins this way: the branch ends.
+    On one side the smallest speed of the block is positive. On the other side the duration of the stick grows as the
+    square root of the distance, so that minus its square continues the smallest speed through 0. If friction drops at
+    the start of a slip, no stick begins this way, and the branch ends.
     """
 
     def is_first_stick(bifurcation: Bifurcation) -> bool:
@@ -138,13 +139,13 @@ def grazing_a(bifurcations: list[Bifurcation], block: int) -> float:
 def _smallest_a(
     bifurcations: list[Bifurcation], is_one: Callable[[Bifurcation], bool], value: Callable[[PeriodicOrbit], float]
 ) -> float:
-    """Return the smallest a of the bifurcations of a kind, from the root of its function; NaN if there is none."""
+    """Return the smallest a of the bifurcations that satisfy a predicate, from the root of a function; NaN if none."""
     bifurcation = next((bifurcation for bifurcation in bifurcations if is_one(bifurcation)), None)
     return math.nan if bifurcation is None else _root(bifurcation, value)
 
 
 def _root(bifurcation: Bifurcation, value: Callable[[PeriodicOrbit], float]) -> float:
-    """Return the root in a of a function of the orbit at a bifurcation; the a of the bifurcation if there is none."""
+    """Return the root in a of a function of the orbit near a bifurcation; the a of the bifurcation if there is none."""
     orbit = bifurcation.at.orbit
     own = orbit.model.chain.own_units.slope
     for side in BRACKETS:
@@ -161,8 +162,8 @@ def _root(bifurcation: Bifurcation, value: Callable[[PeriodicOrbit], float]) -> 
 def finite_difference_multiplier(orbit: PeriodicOrbit) -> complex:
     """Return the leading transverse multiplier of a synchronized orbit without the tangent map.
 
-    Mirror blocks are displaced by d and followed for a period. By mirror symmetry the remaining difference is an odd
-    function of d, so that one step of Richardson extrapolation leaves an error of order d⁴.
+    Mirror blocks are displaced by d and followed for a period. By mirror symmetry their difference after the period is
+    an odd function of d, so that one step of Richardson extrapolation leaves an error of order d⁴.
     """
     runner, start, blocks = Runner(orbit.model), orbit.reference, orbit.model.blocks
     basis, units = symmetry_breaking_directions(start.stuck), orbit.model.chain.own_units
@@ -183,7 +184,7 @@ def finite_difference_multiplier(orbit: PeriodicOrbit) -> complex:
 
 
 def critical_a_error(orbits: KnownOrbits, a: float) -> float:
-    """Return the change of a_c if finite differences replace the tangent map; NaN if the orbit is lost nearby."""
+    """Return the change of a_c if finite differences replace the tangent map; NaN if a nearby orbit is not found."""
     orbit, step = orbits.at(a), SLOPE_STEP * a_unit(orbits.model.chain)
     try:
         low, high = (abs(multipliers(orbits.at(a + side * step)).transverse) for side in (-1, 1))
