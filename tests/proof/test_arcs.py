@@ -42,7 +42,7 @@ def test_a_small_difference_goes_as_that_of_two_motions(slips):
     with mpmath.workdps(55), arithmetic():
         state, numbers = state_of(slips)
         exact = three_blocks(numbers)
-        end = Arc(slips, LATERAL, Linearized()).after(state, arb("0.1"), arb("1.7"))
+        end = Arc(slips, LATERAL, Linearized()).state_after(state, arb("0.1"), arb("1.7"))
         apart = exact.copy()
         apart[0], apart[2] = exact[0] + mpf("0.45"), exact[2] - mpf("0.45")
         if slips[0]:

@@ -47,7 +47,7 @@ def test_enclosures_hold_the_orbit_of_50_digits(proved):
 def test_enclosures_hold_the_orbit_of_the_double_code(family, a):
     proved, orbit = proved_at(family, a), family.at(a)
     assert float(proved.period) == pytest.approx(orbit.period, abs=1e-13)
-    slipping = (LATERAL, CENTER)[proved.arcs[-1].ends]
+    slipping = (LATERAL, CENTER)[proved.arcs[-1].event_block]
     first = next(time for time, block, kind in orbit.events if (block, kind) == (slipping, 1))
     later = [(time - first) % orbit.period for time, block, _ in orbit.events if block < 2]
     expected = [*sorted(time for time in later if time > 0.0), orbit.period]
@@ -55,7 +55,7 @@ def test_enclosures_hold_the_orbit_of_the_double_code(family, a):
     found = multipliers(orbit)
     assert float(proved.multiplier) == pytest.approx(found.transverse.real, abs=1e-11)
     assert float(proved.symmetric_multiplier) == pytest.approx(found.symmetry_preserving[0].real, abs=1e-11)
-    assert (proved.arcs[0].ends == LATERAL) == (a > 0.0757)
+    assert (proved.arcs[0].event_block == LATERAL) == (a > 0.0757)
 
 
 def test_an_orbit_is_proved_for_all_a_of_a_ball(family):
@@ -135,13 +135,13 @@ def test_a_ball_of_a_that_is_too_wide_is_refused(family):
     [
         (1, 0.0, None),
         # Blocks 1 and 3 have stopped before the end of their arc, or do not stop there.
-        (1, 1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop: not proved to go on"),
-        (1, -1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop: not proved to go on"),
+        (1, 1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop: not proved to keep sticking or slipping"),
+        (1, -1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop: not proved to keep sticking or slipping"),
         (2, -0.01, "block 2, the arc until block 2 stop: .* no root at its end"),
         # Block 2 would have stopped, and slipped back, before the end of its arc.
-        (2, 0.1, "block 2, the arc until block 2 stop: not proved to go on"),
+        (2, 0.1, "block 2, the arc until block 2 stop: not proved to keep sticking or slipping"),
         # Blocks 1 and 3 would have started before.
-        (3, 0.1, "blocks 1 and 3, the arc until block 2 start: not proved to go on"),
+        (3, 0.1, "blocks 1 and 3, the arc until block 2 start: not proved to keep sticking or slipping"),
     ],
 )
 def test_the_true_arcs_are_certified_and_changed_ones_are_not(proved, arc, late, message):
