@@ -1,4 +1,4 @@
-"""Bifurcations along followed branches against those of the synchronized orbit, single orbits, and runs."""
+"""Bifurcations along branches, compared with those of the synchronized orbit, with single orbits and with runs."""
 
 from types import SimpleNamespace
 
@@ -23,19 +23,19 @@ PERIOD_DOUBLING = 0.272317183794
 
 
 def settled(a, position=MINUS, law="linearized", velocity=(0.099, 0.1012, 0.1023)):
-    """Return the closed orbit that a long run of the paper's chain ends on."""
+    """Return the periodic orbit on which a long run of the paper's chain ends."""
     model = Model(Chain(3), law_of(law, a))
     end = Runner(model).after(model.begin(InitialState("one", position, velocity)), 10_000.0)
     return limit_cycle(model, end)
 
 
 def at(orbit, a):
-    """Return the orbit that an orbit is at another a."""
+    """Return the continuation of an orbit to another a."""
     return find_periodic_orbit(orbit.model.at(a), orbit.reference, orbit.return_time, orbit.symmetry)
 
 
 def segment(orbit, a_range, beyond, settings):
-    """Return both halves of the segment around a stable orbit."""
+    """Return the segment around a stable orbit."""
     return BranchSegment(*(follow_half_branch(orbit, upward, a_range, beyond, settings) for upward in (False, True)))
 
 
@@ -48,7 +48,7 @@ def six():
 
 
 def ends_on(orbit, a):
-    """Return the stops of the closed orbit that a run ends on which begins on an orbit, but at another a; else none."""
+    """Return the stops of the periodic orbit that a run from an orbit reaches at another a; None if it reaches none."""
     model = orbit.model.at(a)
     try:
         return limit_cycle(model, Runner(model).after(orbit.reference, 3000.0)).stop_counts
@@ -82,7 +82,7 @@ def test_stability_on_both_sides_of_a_bifurcation(unstable, loses, keeps):
 
 
 def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
-    """The return has no square root there: its derivative jumps, and the stick grows like a root of the way."""
+    """The return map has no square root: its derivative jumps, and the duration of the stick grows like a root."""
     for a, upward in ((0.03, True), (0.04, False)):
         points = follow(families[law].at(a), (0.02, 0.05), STEPS, upward=upward)
         (bifurcation,) = locate_bifurcations(points)
@@ -109,14 +109,14 @@ def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing():
     assert found.downward.end.kind == BifurcationKind.PITCHFORK
     assert found.downward.end.a == pytest.approx(CRITICAL["linearized"], abs=1e-10)
     assert found.upward.end.kind == BifurcationKind.GRAZING
-    # The stick of one end block vanishes, and with it the stability: a multiplier jumps over the unit circle.
+    # The stick of one end block vanishes and stability is lost: a multiplier jumps across the unit circle.
     assert found.upward.end.after.orbit.stop_counts in ((1, 1, 0), (0, 1, 1))
     assert np.abs(found.upward.end.before.multipliers.whole[0]) < 0.5
     assert np.abs(found.upward.end.after.multipliers.whole[0]) > 1.3
 
 
 def test_what_branches_off_joins_only_where_it_is_near():
-    """At the root of a multiplier's function an orbit far from any simpler one is at a fold."""
+    """At the root of the test function, an orbit far from any simpler one is at a fold."""
     (point, *_) = follow(settled(0.1), (0.09999, 0.10001), STEPS)
     assert bifurcations.kind_at(point, (BifurcationKind.FOLD, "symmetry_preserving")) == BifurcationKind.FOLD
 
@@ -177,7 +177,7 @@ def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
     doubling = segment(found.upward.orbits[-1].reduced_orbit, (0.13, 0.15), 4, STEPS).downward.end
     assert doubling.a == pytest.approx(found.upward.end.a, abs=1e-10)
     assert doubling.at.multipliers.whole[0] == pytest.approx(-1.0, abs=1e-7)
-    # The square of what the doubled orbit misses after half its period falls to 0 there.
+    # The squared distance of the doubled orbit from its start after half its period falls to 0 there.
     near = [point.orbit for point in found.stable_orbits if 0.0 < doubling.a - point.orbit.a < 6e-4]
     ends = [Runner(orbit.model).after(orbit.reference, 0.5 * orbit.period) for orbit in near]
     missed = [np.abs(end.vector() - orbit.reference.vector()).max() for end, orbit in zip(ends, near, strict=True)]
@@ -188,7 +188,7 @@ def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 def test_a_flip_may_break_the_mirror_symmetry(law):
-    """Two blocks that move as one part so that each does in a period what the other one does in the next."""
+    """Two synchronized blocks separate so that each does in one period what the other does in the next."""
     model = Model(Chain(2), law_of(law, 0.05))
     one = limit_cycle(model, model.begin(InitialState("one", (-0.9, -0.9), (0.1, 0.1))), 1000.0)
     (doubling,) = locate_bifurcations(follow(one, (0.045, 0.055)))
@@ -201,7 +201,7 @@ def test_a_flip_may_break_the_mirror_symmetry(law):
     (end,) = locate_bifurcations(branch)
     assert end.kind == BifurcationKind.PERIOD_DOUBLING
     assert end.a == pytest.approx(doubling.a, abs=1e-9)
-    # Found without its symmetry it is followed as what it is.
+    # An orbit found without its symmetry is continued in its minimal form.
     plain = find_periodic_orbit(doubled.model, doubled.reference, doubled.period, Symmetry.ASYMMETRIC)
     again = follow(plain, (0.045, 0.055), upward=False)
     assert [bifurcation.kind for bifurcation in locate_bifurcations(again)] == [BifurcationKind.PERIOD_DOUBLING]
@@ -225,7 +225,7 @@ def test_a_torus_branches_off_where_perturbations_stop_decaying():
 
 @pytest.mark.parametrize("succeeds", [True, False])
 def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds):
-    """Up to 5e-4, and after 200 orbits, or below 1e-9."""
+    """Steps grow to 5e-4; the branch ends after 200 orbits, or if steps fall below 1e-9."""
     lengths = []
 
     def step(points, length):
@@ -241,7 +241,7 @@ def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds)
 
 
 def test_a_branch_ends_where_friction_drops_and_an_orbit_grazes():
-    """There a block that stops for however short a time starts with a jump: no orbit goes on from the grazing one."""
+    """Even the shortest stick ends with a jump, so that the branch ends at the grazing."""
     orbit = settled(0.05, law="carlson_langer")
     points = follow(orbit, (0.01, 0.06), STEPS, upward=False)
     assert 0.02 < points[-1].orbit.a < 0.05

@@ -1,4 +1,4 @@
-"""Steps along a branch that keep its stops, and corners: how one is come to, and what is beyond it."""
+"""Steps along a branch that keep its stops, the approach to a corner, and the continuation beyond it."""
 
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
@@ -28,7 +28,7 @@ def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(values, length, expect
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC)
     way = [SimpleNamespace(orbit=orbit, multipliers=only(1.0 + value), length=length) for value in values]
     assert border_collision._distance_to_branch_point(way) == pytest.approx(expected)
-    # A longer way has the same end.
+    # Earlier points of the path do not matter.
     ahead = border_collision._distance_to_branch_point(
         [SimpleNamespace(orbit=orbit, multipliers=only(10.0), length=9.0), *way]
     )
@@ -41,7 +41,7 @@ def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(values, length, expect
         ((1, 2), None, np.inf, True),
         ((2, 1), None, np.inf, False),
         (None, None, np.inf, False),  # none is found
-        # A simpler orbit ends a branch only where it joins it.
+        # A simpler orbit ends a branch only where the branch joins it.
         ((1, 2), "simpler", 0.19, True),
         ((1, 2), "simpler", 0.21, False),
         ((1, 2), "simpler", np.inf, False),
@@ -70,7 +70,7 @@ def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
     [
         ((0.5, 0.9), (0.4, 0.6), 0.2),
         ((0.5, 0.9), (0.6, 0.6), 0.2),
-        # What grows, stays, or is not there is not ahead.
+        # A distance that grows, stays constant or is infinite predicts no grazing.
         ((0.5, np.inf), (0.6, np.inf), np.inf),
         ((0.5, 0.3), (0.5, 0.5), np.inf),
         ((0.5, np.inf), (0.4, 0.2), 0.4),
@@ -86,7 +86,7 @@ def test_a_grazing_is_ahead_where_what_is_0_there_falls(before, here, expected):
 
 @dataclass(frozen=True)
 class Place:
-    """A point of a straight branch, which has a corner at 8e-4; what is 0 there falls like a power of the way left."""
+    """A point of a straight branch with a corner at 8e-4; the grazing distance is a power of the remaining length."""
 
     orbit: float
     length: float = 1e-3
@@ -102,7 +102,7 @@ class Place:
 
 @pytest.fixture
 def approach(monkeypatch):
-    """Return how a corner is come to from 0, with the steps that are tried; those beyond it find nothing."""
+    """Return the approach to a corner from 0, and the attempted steps; steps beyond the corner fail."""
 
     def come(length, fails=lambda tried: False, joint=np.inf, **told):
         tried = []
@@ -123,7 +123,7 @@ def approach(monkeypatch):
 
 
 def test_a_corner_is_come_to_by_steps_that_leave_three_hundredths_of_the_way(approach):
-    """Up to 1e-10 from it, after a hundredth of the length within which it lies."""
+    """The first step is a hundredth of the length, and the last point is within 1e-10 of the corner."""
     way, tried = approach(1e-3)
     left = 7.9e-4 * 0.03 ** np.arange(6)
     assert tried == pytest.approx([1e-5, *(0.97 * left[:-1])], rel=1e-4, abs=0.0)
@@ -133,7 +133,7 @@ def test_a_corner_is_come_to_by_steps_that_leave_three_hundredths_of_the_way(app
 
 
 def test_steps_that_fail_are_made_again_shorter(approach):
-    """And the next ones are more cautious for a while."""
+    """The following steps are a smaller share of the predicted length."""
     _, tried = approach(1e-3, lambda tried: tried in (1, 2))
     left = np.array([8e-4 - 1.6e-6])
     for share in (0.3104, 0.6208, 0.97):
@@ -143,14 +143,14 @@ def test_steps_that_fail_are_made_again_shorter(approach):
 
 @pytest.mark.parametrize(("length", "count"), [(1e-3, 13), (1.0, 15)])
 def test_a_corner_to_which_no_step_leads_is_given_up(approach, length, count):
-    """Where steps would be shorter than 1e-10, or after fifteen in vain."""
+    """The approach ends if steps become shorter than 1e-10, or after fifteen failures."""
     way, tried = approach(length, lambda tried: True)
     assert way == []
     assert tried == pytest.approx([0.01 * length * 0.4**k for k in range(count)], rel=1e-9, abs=0.0)
 
 
 def test_a_corner_that_comes_no_nearer_is_given_up(approach):
-    """What falls like a fourth power foretells a quarter of the way."""
+    """A distance that falls like a fourth power predicts a quarter of the remaining length."""
     way, tried = approach(1e-3, power=4)
     assert len(tried) == len(way) == 32
     assert not [point for point in way if point.distance_to_grazing > 0.0]
@@ -170,7 +170,7 @@ def test_the_way_to_a_corner_ends_where_the_branch_joins_another_one(approach):
 
 @pytest.fixture
 def turn(monkeypatch):
-    """Return what is found beyond a corner, where steps along a tangent come to orbits of these stops in turn."""
+    """Return the orbit found beyond a corner if successive steps lead to orbits with these stops."""
 
     def turned(signatures, drops=False, simple=(), lost=(), here=(1, 2)):
         tried, tangents, left = [], [], iter(signatures)
@@ -209,12 +209,12 @@ def turn(monkeypatch):
 
 
 def test_beyond_a_corner_other_stops_follow(turn):
-    """On either side of it; not none at all, the same ones, or several turns of a simpler orbit."""
+    """It may lie on either side; it must have stops, other stops, and must not repeat a simpler orbit."""
     none, same, twice = (0, 0), (1, 2), (2, 2)
     found, tried, tangents = turn([None, same, none, twice, (1, 1)], simple=(twice,))
     assert found == (1, 1)
     assert tried == [(1e-5, 1, 0), (1e-5, -1, 0), (1e-4, 1, 0), (1e-4, -1, 0), (1e-6, 1, 0)]
-    # The tangent is that of an orbit a little farther, at an a that is not negative.
+    # The tangent is that of an orbit slightly farther on, at an a that is not negative.
     assert tangents == [(0.0, pytest.approx(0.50001), pytest.approx(0.249995))]
     assert turn([], drops=True) == (None, [], [])
     assert turn([(1, 1)])[0] == (1, 1)
@@ -225,7 +225,7 @@ def test_beyond_a_corner_other_stops_follow(turn):
     [((3, 2, 3), True), ((2, 2, 2), True), ((3, 2, 2), False), ((2, 2, 3), False), ((0, 0, 0), False)],
 )
 def test_a_branch_does_not_go_on_from_a_corner_in_a_mirror(turn, beyond, goes_on):
-    """Nor with the stops that it came with, or with none: there orbits begin that break a symmetry."""
+    """It does not continue with its own stops or with none: at such a corner less symmetric orbits begin."""
     assert turn([beyond] * 24, here=(2, 2, 3))[0] == (beyond if goes_on else None)
 
 

@@ -1,4 +1,4 @@
-"""Which orbits a segment holds, told of made-up ones."""
+"""Which orbits belong to a segment, tested with stand-ins."""
 
 from types import SimpleNamespace
 
@@ -22,7 +22,7 @@ def point(a, *, unstable=0, length=0.01, is_grazing=False, **look):
 
 
 def half(*points, end=None):
-    """Return a half of which the stable orbits end at an a, if it is given."""
+    """Return a half branch whose stable orbits end at an a, if it is given."""
     found = HalfBranch([point(0.1, length=0.0), *points])
     bifurcations = [
         SimpleNamespace(a=a, loses_stability=lost) for a, lost in ((0.1, False), (end, True)) if a is not None
@@ -36,7 +36,7 @@ def places(points):
 
 
 def test_stable_orbits_end_at_the_first_bifurcation_that_loses_them():
-    """Also where the branch is stable again beyond it; an end that is not known is none."""
+    """This holds even if the branch is stable again beyond its end; an unknown end does not limit it."""
     downward = half(point(0.09), point(0.07, unstable=1), point(0.05))
     upward = half(point(0.11), point(0.13, unstable=1), point(0.15))
     ended = half(*downward.orbits[1:], end=0.08), half(*upward.orbits[1:], end=0.12)
@@ -91,7 +91,7 @@ def test_an_orbit_is_held_by_its_place_its_stops_and_its_period(a, period, stop_
     ],
 )
 def test_another_orbit_of_the_same_stops_and_period_is_not_held(look, expected):
-    """In a ring the rotated images of two orbits may share both."""
+    """In a ring the rotated images of two orbits may share stops and period."""
     whole = BranchSegment(half(point(0.09)), half(point(0.11, mean_distance=0.3)))
     assert whole.contains(an_orbit(0.105, **look), 1e-3) is expected
 

@@ -1,4 +1,4 @@
-"""Orbits along the mass, spring or threshold of one block: without mirror symmetry, and up to where locking ends."""
+"""Orbits continued in the mass, spring or threshold of one block, without mirror symmetry, to the end of locking."""
 
 import numpy as np
 import pytest
@@ -27,7 +27,7 @@ MODEL = Model(Chain(3), law_of("linearized", 0.06))
 
 
 def end_of_synchrony(parameter, upward=True, model=MODEL):
-    """Return the first bifurcation of the orbit of synchrony at which it ends or loses its stability."""
+    """Return the first bifurcation at which the synchronized orbit ends or loses stability."""
     branch = follow(
         synchronized_orbit(model),
         (0.5, 2.0),
@@ -65,7 +65,7 @@ def test_synchrony_ends_where_the_stick_of_the_lighter_block_vanishes(grazing):
     assert grazing.after.orbit.stop_counts == (0, 1, 1)
     assert grazing.loses_stability
     assert not grazing.is_turning_point
-    # The same chain from its other end.
+    # The same chain, numbered from its other end.
     mirrored = end_of_synchrony("mass[1]")
     assert mirrored.value == pytest.approx(grazing.value, abs=1e-9)
     assert mirrored.before.orbit.stop_counts == (1, 1, 1)
@@ -77,7 +77,7 @@ def settled(model, orbit):
 
 
 def test_runs_are_periodic_inside_the_tongue_and_not_outside(grazing):
-    """At points of the curve in the plane of a and mass[3], 2e-4 to either side of it."""
+    """Compare the motion 2e-4 to either side of the curve in the plane of a and mass[3]."""
     curve = follow_bifurcation(grazing, ("mass[3]", "a"), (0.05, 0.085), WIDE)
     assert curve.errors.max() < 1e-9
     for orbit, (mass, _) in list(zip(curve.orbits, curve.values, strict=True))[::3]:
@@ -89,7 +89,7 @@ def test_runs_are_periodic_inside_the_tongue_and_not_outside(grazing):
 
 
 def test_mean_frequencies_stay_equal_beyond_the_tongue_of_synchrony(grazing):
-    """Beyond its end the motion is a torus, on which a third phase is free: one frequency alone is no locking."""
+    """Beyond the end the motion is a torus with a third free phase: a common frequency alone is not locking."""
     orbit = grazing.before.orbit
     run = settled(orbit.model.at(**{"mass[3]": grazing.value + 5e-3}), orbit)
     frequency, _ = block_frequencies(run.model, run.final)
@@ -104,7 +104,7 @@ def test_a_fold_in_the_mass_of_one_end_begins_at_the_pitchfork():
     start = ChainState(pushed, orbit.reference.velocity, orbit.reference.stuck)
     pair = limit_cycle(model, start, settling=6000.0)
     assert pair.symmetry == Symmetry.ASYMMETRIC
-    # Longer steps would jump over the fold to the other one of the pair.
+    # Longer steps would jump across the fold to the other orbit of the pair.
     short = ContinuationSettings(first_step=1e-5)
     (fold,) = [
         one

@@ -1,4 +1,4 @@
-"""Multipliers made by hand: how many are unstable, and which bifurcation lies where one is 1 or −1."""
+"""Hand-made multipliers: how many are unstable, and which bifurcation occurs where one is 1 or −1."""
 
 from types import SimpleNamespace
 
@@ -23,7 +23,7 @@ def test_unstable_is_what_lies_outside_the_unit_circle():
     [
         (Symmetry.ASYMMETRIC, BifurcationKind.PERIOD_DOUBLING),
         (Symmetry.SYNCHRONIZED, BifurcationKind.PERIOD_DOUBLING),
-        # −1 of a half return, in a mirror, is 1 of the whole.
+        # −1 of a reflected half return is +1 of the whole return.
         (Symmetry.SYMMETRIC, BifurcationKind.PITCHFORK),
     ],
 )

@@ -1,4 +1,4 @@
-"""Orbits over a: how they are continued where Newton's method needs a near orbit to begin with."""
+"""Orbits over a: their continuation where Newton's method needs a nearby orbit as a guess."""
 
 import re
 
@@ -38,12 +38,12 @@ def test_steps_are_halved_until_the_orbit_is_found(known, monkeypatch):
     found = known.at(here + 0.02)
     assert found.model.a == here + 0.02
     assert tried[:3] == pytest.approx([here + 0.02, here + 0.01, here + 0.005])
-    # The step that succeeds is kept.
+    # The successful step length is kept.
     assert len(tried) == pytest.approx(3 + 0.02 / 0.0025, abs=1)
 
 
 def test_where_it_is_lost_the_error_is_told_after_the_least_step(asymmetric):
-    """Where the branch turns back, at a = 0.13247: steps become half as long again and again."""
+    """The branch has a turning point at a = 0.13247, before which steps are halved repeatedly."""
     known = KnownOrbits(asymmetric)
     with pytest.raises(
         OrbitError, match=r"^a = 0\.1324\d+: no periodic orbit found .*, on the way to a = 0\.14$"
@@ -59,7 +59,7 @@ def test_where_it_is_lost_the_error_is_told_after_the_least_step(asymmetric):
 
 
 def test_steps_become_as_short_as_the_stick_is(known, monkeypatch):
-    """It vanishes with a, and with it how far Newton's method comes."""
+    """The stick vanishes with a, and with it the range of convergence of Newton's method."""
     known.known = {1e-4: known.at(1e-4)}
 
     def near_only(orbit, a):
@@ -72,7 +72,7 @@ def test_steps_become_as_short_as_the_stick_is(known, monkeypatch):
 
 
 def test_an_orbit_of_another_period_is_not_on_the_branch(known):
-    """Newton's method comes to the orbit gone round twice from a guess that is one."""
+    """From a guess that traverses the orbit twice, Newton's method converges to the doubled orbit."""
     (orbit,) = known.known.values()
     assert nearby_orbit(orbit, orbit.a + 1e-3).period == pytest.approx(orbit.period, rel=1e-2)
     with pytest.raises(OrbitError, match="no periodic orbit found near the guess"):
@@ -80,7 +80,7 @@ def test_an_orbit_of_another_period_is_not_on_the_branch(known):
 
 
 def test_orbits_of_any_symmetry_are_continued_to_where_runs_settle(asymmetric):
-    """At either a a run of its own ends on the orbit."""
+    """At both values of a an independent run ends on the orbit."""
     orbit = KnownOrbits(asymmetric).at(0.121)
     again = limit_cycle(orbit.model, asymmetric.reference, settling=10_000.0)
     assert (orbit.stop_counts, orbit.symmetry) == (again.stop_counts, again.symmetry)

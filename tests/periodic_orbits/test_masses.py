@@ -1,4 +1,4 @@
-"""The equation of motion with masses, m U'' = s − θ Φ(U'), in what orbits are found and judged by."""
+"""The equation of motion with masses, m U'' = s − θ Φ(U'), in the computation of orbits."""
 
 import numpy as np
 
@@ -32,5 +32,5 @@ def test_forces_are_divided_by_masses():
 
 
 def test_the_scale_of_a_is_that_of_damping():
-    """In units of time and a that fit a mass m, a block of m moves as one of mass 1."""
+    """In suitable units of time and a, a block of mass m moves as one of mass 1."""
     assert a_unit(Chain(3, mass=4.0)) == 2.0 * a_unit(Chain(3))

@@ -1,4 +1,4 @@
-"""Which orbits are others of more symmetry, or of a shorter period."""
+"""Reduction of orbits to forms of more symmetry or of a shorter period."""
 
 from types import SimpleNamespace
 
@@ -10,7 +10,7 @@ from burridge_knopoff.periodic_orbits import minimal_orbit
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 
 STILL = np.zeros(2, dtype=bool)
-#: No mirror image of itself.
+#: This chain is not its own mirror image.
 UNEQUAL = Chain(2, threshold=(1.0, 1.1))
 
 
@@ -22,7 +22,7 @@ UNEQUAL = Chain(2, threshold=(1.0, 1.1))
         # Distances grow with v.
         (9e-4, 10.0, 1.0, (1, 2), True),
         (0.9e-4, 0.1, 1.0, (1, 2), False),
-        # Newton's method has come to another orbit.
+        # Newton's method has converged to another orbit.
         (0.0, 1.0, 1.04, (1, 2), True),
         (0.0, 1.0, 1.06, (1, 2), False),
         (0.0, 1.0, 0.94, (1, 2), False),

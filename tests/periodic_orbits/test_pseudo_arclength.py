@@ -1,4 +1,4 @@
-"""Steps along a branch: to orbits on it, forward, whatever instant of the orbit the tangent is taken at."""
+"""Steps along a branch lead forward to orbits on it, whichever reference state the tangent belongs to."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""How returns change with a, next to where a law ends."""
+"""Derivatives of returns with respect to a, near the end of the range of a law."""
 
 from types import SimpleNamespace
 
@@ -13,7 +13,7 @@ from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-#: Friction of a block that begins to slip is a: no more than 1 is a law.
+#: The friction at the start of a slip is a, which must not exceed 1.
 LAW = FormulaLaw(1.0, "a/(1 + 0.08*u)", name="own")
 
 

@@ -45,7 +45,7 @@ def test_the_state_returns_and_its_multiplier_in_closed_form(families, law, a):
     assert orbit.reference.position[0] == orbit.reference.position[2]
     assert (orbit.stop_counts[0], orbit.stop_counts[2]) == (1, 1)
     found = multipliers(orbit)
-    # Those of the end blocks' velocities, which a stop takes away.
+    # The multipliers of the velocities of the end blocks, which a stop removes.
     assert abs(found.symmetry_breaking[1]) < 1e-12
     assert np.abs(found.symmetry_preserving).min() < 1e-12
     if law == "linearized":
@@ -59,7 +59,7 @@ def test_the_state_returns_and_its_multiplier_in_exact_arithmetic(families, law,
     orbit = families[law].at(a)
     position, velocity = slipping_state(orbit)
     run = after_a_period(orbit, position, velocity)
-    # Errors of the state grow by the multipliers at most, those of the period by the speed.
+    # Errors of the state grow at most by the multipliers, those of the period by the speed.
     assert np.abs(np.array(run.position, dtype=float) - position).max() < 5e-15
     assert np.abs(np.array(run.velocity, dtype=float) - velocity).max() < 5e-15
     assert len(run.events) == len(orbit.events)
@@ -68,7 +68,7 @@ def test_the_state_returns_and_its_multiplier_in_exact_arithmetic(families, law,
 
 @pytest.mark.parametrize("a", [0.02, 0.05, 0.15])
 def test_multipliers_against_finite_differences(families, law, a):
-    """The eigenvalues of the differenced period map are the multipliers; of stuck velocities there is no difference."""
+    """The eigenvalues of the finite-difference period map are the multipliers; stuck velocities cannot be perturbed."""
     orbit = families[law].at(a)
 
     def end(change):
@@ -144,7 +144,7 @@ def test_a_chain_that_is_not_its_own_mirror_image_is_refused(chain):
 
 @pytest.mark.parametrize("blocks", [2, 4, 5])
 def test_chains_of_any_length_have_the_orbit(law, blocks):
-    """A state that is moved off it by a hair comes back or goes away as the leading multiplier says."""
+    """A slightly displaced state returns or departs as the leading multiplier predicts."""
     orbit = synchronized_orbit(Model(Chain(blocks), law_of(law, 0.08)))
     assert orbit.symmetry == Symmetry.SYNCHRONIZED
     assert orbit.residual <= 1e-14
@@ -171,7 +171,7 @@ BUILT_IN = [law_of(name, 0.08) for name in ("exponential", "stribeck", "carlson_
 
 @pytest.mark.parametrize("law", [*BUILT_IN, FormulaLaw(0.08, "1 - a*c*tanh(u/c)", c=0.5)])
 def test_any_law_has_an_orbit_that_runs_end_on(law):
-    """The multiplier decides whether they do: where it is below 1 runs of slightly asymmetric states synchronize."""
+    """Where the multiplier is below 1, runs from slightly asymmetric states synchronize."""
     model = Model(Chain(3, threshold=(1.0, 0.8, 1.0)), law)
     orbit = synchronized_orbit(model)
     assert orbit.residual <= 1e-14
@@ -202,7 +202,7 @@ def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(
 
 @pytest.mark.parametrize("coupling", [0.7, 1.2, 1.5, 2.0])
 def test_the_orbit_of_other_couplings_is_that_of_one_turn(coupling, law):
-    """A run from rest may end on synchronous motion of several turns; the orbits of one turn are one branch."""
+    """A run from rest may end on synchronized motion of several cycles; the orbits with one cycle form one branch."""
     periods = []
     for a in (0.04, 0.05, 0.07, 0.1):
         orbit = synchronized_orbit(Model(Chain(3, coupling=coupling), law_of(law, a)))
@@ -210,6 +210,6 @@ def test_the_orbit_of_other_couplings_is_that_of_one_turn(coupling, law):
         assert orbit.stop_counts[1] <= 1
         assert orbit.residual < 1e-13
         periods.append(orbit.period)
-    # They are a little below that of one block on its own two springs, and grow with a.
+    # They are slightly below that of one block on two springs, and increase with a.
     assert (np.diff(periods) > 0.0).all()
     assert 5.3 < periods[0] < periods[-1] < 5.8

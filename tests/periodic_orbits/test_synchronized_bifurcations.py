@@ -1,4 +1,4 @@
-"""Where synchrony is lost, a block begins to stick and the period doubles, against independent computations."""
+"""Loss of synchrony, grazing and period doubling, compared with independent computations."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -54,7 +54,7 @@ def test_critical_a_is_the_known_one(critical):
 
 
 def test_critical_a_in_exact_arithmetic(families, critical, law):
-    """In 40-digit arithmetic the multiplier at a_c is 1, and its slope tells what that means for a_c."""
+    """In 40-digit arithmetic the multiplier at a_c is 1; its slope converts the deviation into an error of a_c."""
     orbits, a = families[law], critical[law]
     slope = (transverse(orbits.at(a + 1e-4)) - transverse(orbits.at(a - 1e-4))) / 2e-4
     assert slope > 5.0
@@ -63,7 +63,7 @@ def test_critical_a_in_exact_arithmetic(families, critical, law):
 
 
 def test_grazing_a_in_exact_arithmetic(families, bifurcations, law):
-    """In 40-digit arithmetic block 2 sticks on one side of it and does not on the other."""
+    """In 40-digit arithmetic block 2 sticks on one side of the grazing and does not on the other."""
     a = grazing_a(bifurcations[law], block=1)
     for side, sticks in ((-1, False), (1, True)):
         orbit = families[law].at(a + side * 2e-12)
@@ -84,7 +84,7 @@ def test_no_change_is_told():
 
 
 def test_grazing_beside_an_orbit_that_is_not_found():
-    """With stiff coupling it lies between values of a at which the multipliers are far from what they are there."""
+    """With stiff coupling it lies between values of a at which the multipliers are very different."""
     orbits = synchronized_orbits(Model(Chain(3, coupling=30.0), law_of("linearized", 0.05)))
     a = grazing_a(bifurcations_of(orbits), block=1)
     assert 0.025 < a < 0.0375
@@ -93,7 +93,7 @@ def test_grazing_beside_an_orbit_that_is_not_found():
 
 @pytest.mark.parametrize("lost", [(0.0, 0.03), (0.05, 0.06), (0.2, 1.0)])
 def test_bifurcations_beside_a_range_in_which_the_orbit_is_lost_are_found(families, critical, monkeypatch, lost):
-    """Below it, above it, and on both sides of it."""
+    """The branch may break off below, above, or on both sides."""
 
     class Partly(KnownOrbits):
         def at(self, a):
@@ -144,7 +144,7 @@ def test_critical_a_does_not_depend_on_v_under_the_linearized_law(families, crit
 
 @pytest.mark.parametrize(("strength", "threshold"), [(25.0, 1.0), (0.04, 1.0), (1.0, 0.125), (4.0, 3.0)])
 def test_transitions_are_found_on_the_scale_of_the_chain(critical, bifurcations, strength, threshold):
-    """Springs stronger by a factor make all motion faster by its root; what counts is a times the threshold."""
+    """Springs stiffer by a factor make all motion faster by its square root; a times the threshold is what matters."""
     springs = {"coupling": strength, "pulling": (strength, 2.0 * strength, strength)}
     orbits = synchronized_orbits(Model(Chain(3, threshold=threshold, **springs), law_of("linearized", 0.0)))
     factor = strength**0.5 / threshold
@@ -156,12 +156,12 @@ def test_transitions_are_found_on_the_scale_of_the_chain(critical, bifurcations,
 
 
 def test_two_blocks_part_in_a_flip():
-    """Each does in a period what the other one does in the next, so that the transverse multiplier is −1 there."""
+    """Each block does in one period what the other does in the next, so that the transverse multiplier is −1."""
     orbits = synchronized_orbits(Model(Chain(2), law_of("linearized", 0.05)))
     found = bifurcations_of(orbits)
     a = critical_a(found)
     assert multipliers(orbits.at(a)).transverse == pytest.approx(-1.0, abs=1e-12)
-    # It is no period doubling of motion in which both move as one.
+    # It is not a period doubling of synchronized motion.
     assert np.isnan(symmetric_period_doubling_a(found))
 
 
@@ -172,7 +172,7 @@ def test_five_blocks_part_where_the_leading_multiplier_is_1():
 
 
 def test_the_error_of_critical_a_is_how_far_a_multiplier_that_is_off_moves_it(monkeypatch, families):
-    """One that rises by 5 a, and is too small by a hundredth, comes to 1 later by 0.002."""
+    """A multiplier with slope 5 that is too small by 0.01 reaches 1 at an a larger by 0.002."""
     monkeypatch.setattr(
         synchronized_bifurcations, "multipliers", lambda a: SimpleNamespace(transverse=1.0 + 5.0 * (a - 0.2))
     )

@@ -1,4 +1,4 @@
-"""Signs over whole arcs: dips between any samples are seen, roots at the ends are known."""
+"""Signs over whole arcs: every dip between samples is detected, and roots at the ends are excluded."""
 
 import math
 
@@ -10,7 +10,7 @@ from burridge_knopoff.proof.bounds import bounds, check_positive, jet
 
 
 def touching(height, at=1 / 3):
-    """Return a parabola whose least value, at a third, is a height."""
+    """Return a parabola with a given minimum at a third."""
     return lambda t: (t - at) * (t - at) + height
 
 
@@ -50,17 +50,17 @@ def test_known_roots_at_the_ends_are_no_events():
         (started, 2.0, {"ends": True}),
         (started, 2.001, {"starts": True}),
         (lambda t: -t * t, 1.0, {"starts": True}),
-        # A start whose second derivative is 0 as well is not decided.
+        # A start at which the second derivative also vanishes is undecided.
         (lambda t: t * t * t, 1.0, {"starts": True}),
         # A known root where the function rises through 0: it was negative before.
         (lambda t: t - 1, 1.0, {"ends": True}),
-        # Roots that are none.
+        # These are not roots.
         (lambda t: 1 + t, 1.0, {"starts": True}),
         (lambda t: t + t * t, 1.0, {"starts": True}),
         (lambda t: 2 - t, 1.0, {"ends": True}),
-        # A graze just before the end.
+        # A grazing just before the end.
         (lambda t: (1 - t) * ((t - 0.999) * (t - 0.999) - 1e-12), 1.0, {"ends": True}),
-        # One just after the start.
+        # A grazing just after the start.
         (lambda t: t * t * ((t - 0.001) * (t - 0.001) - 1e-12), 1.0, {"starts": True}),
     ],
 )

@@ -1,4 +1,4 @@
-"""The loss of synchrony, proved: a_c against the double code and 50 digits, and the family of orbits on both sides."""
+"""The proved loss of synchrony: a_c, compared with double precision and 50 digits, and the family of orbits."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -53,7 +53,7 @@ def test_the_multiplier_is_1_there_and_passes_it(found, family):
 
 
 def test_a_guess_far_from_a_c_is_refused(family):
-    """Newton's method may go anywhere from there; Krawczyk's operator does not follow."""
+    """Newton's method may converge to anything from there, but Krawczyk's operator rejects it."""
     arcs, guess = arcs_of(family.at(0.2))
     with pytest.raises(ProofError, match="expected it in the interior of"):
         enclose(equations(arcs, critical=True), [*map(arb, guess), arb(0.2)], [1e-3] * 7)
@@ -89,7 +89,7 @@ def test_an_orbit_of_another_a_is_none_of_the_family(branch, family):
 
 
 def test_pieces_that_do_not_join_are_refused(branch):
-    """The box of one piece is moved away from the orbit: what touches it is no longer known to be the same."""
+    """The box of one piece is moved away from the orbit, so that neighbouring pieces no longer share an orbit."""
     first, second = branch[:2]
     moved = replace(first, middle=[first.middle[0] + arb(0.01), *first.middle[1:]])
     edge = fmpq(86, 1000) + (fmpq(88, 1000) - fmpq(86, 1000)) / len(branch)
@@ -108,7 +108,7 @@ def test_every_pair_of_neighbours_is_joined(branch, family, monkeypatch):
 
 
 def test_a_range_beyond_the_order_of_events_is_refused(family, monkeypatch):
-    """At 0.0757 all three blocks start at once: the family goes on, but not with these arcs."""
+    """At 0.0757 all three blocks start at the same time; the family continues with other arcs."""
     monkeypatch.setattr(critical, "DEEPEST", 3)
     with pytest.raises(ProofError, match=r"a = 0\.075\d*: not proved: block 2|blocks 1 and 3|unknown"):
         prove_branch(family.at(0.0765), fmpq(75, 1000), fmpq(76, 1000))

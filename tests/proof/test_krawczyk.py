@@ -41,7 +41,7 @@ def test_a_solution_is_enclosed_and_the_only_one_in_its_box():
 
 @pytest.mark.parametrize(("middle", "radius"), [(1.0, 2.5), (1.5, 0.2), (1.3, 0.2), (1.0, 1.5)])
 def test_a_box_without_a_single_solution_that_can_be_seen_is_refused(middle, radius):
-    """Both solutions, none, none but near, and one in a box that is too wide to see it."""
+    """Boxes with both solutions, with none, with one nearby, and one box too wide for the proof."""
     with pytest.raises(ProofError, match=r"unknown \d: got .*, expected it in the interior of "):
         enclose(circle_and_line, [arb(middle)] * 2, [radius] * 2)
 
@@ -54,7 +54,7 @@ def test_a_double_solution_is_refused():
 
 
 def test_two_solutions_nearby_are_told_apart():
-    """x² = 1e-8: the widest cube that is found has one of them only."""
+    """x² = 1e-8: the widest cube with a proof contains only one root."""
     found = enclose_widest(lambda unknown: [unknown[0] * unknown[0] - 1e-8], [arb(1e-4)], RADII)
     assert found.inner[0].overlaps(arb(1e-8).sqrt())
     assert not found.outer[0].contains(-1e-4)

@@ -1,4 +1,4 @@
-"""Proved orbits against the double code and 50-digit arithmetic; what must not be proved is refused."""
+"""Proved orbits, compared with double precision and 50-digit arithmetic; false statements are rejected."""
 
 from contextlib import nullcontext
 from dataclasses import replace
@@ -59,7 +59,7 @@ def test_enclosures_hold_the_orbit_of_the_double_code(family, a):
 
 
 def test_an_orbit_is_proved_for_all_a_of_a_ball(family):
-    """The orbits of double precision at its ends lie well inside."""
+    """The orbits in double precision at both ends lie inside the enclosure."""
     with arithmetic():
         wide = prove_orbit(family.at(0.08), arb(0.08, 1e-6))
     for a in (0.0799991, 0.08, 0.0800009):
@@ -80,7 +80,7 @@ def test_the_slope_is_that_of_differences(proved, family):
 
 @pytest.mark.parametrize("a", [0.07, 0.08, 0.2])
 def test_the_symmetric_multiplier_is_the_derivative_of_the_return_map(family, a):
-    """By the implicit function theorem on the equations of the orbit; one eigenvalue is 0, so that it is the trace."""
+    """By the implicit function theorem; one eigenvalue is 0, so that the multiplier is the trace."""
     proved = proved_at(family, a)
     matrix = derivatives(equations(proved.arcs), [*proved.enclosure.inner, proved.a])
     places, times, events, ends = range(2), range(2, 6), range(4), range(4, 6)
@@ -94,7 +94,7 @@ def test_the_symmetric_multiplier_is_the_derivative_of_the_return_map(family, a)
 
 
 def test_a_shift_along_the_flow_returns(proved):
-    """The multiplier of the flow is 1: all blocks stick, and a shift of all of them alike comes back as it was."""
+    """The multiplier of the flow is 1: while all blocks stick, a common shift of all blocks returns unchanged."""
 
     def ends(unknown):
         return follow_arcs(proved.arcs, unknown)[0][-1].position
@@ -150,7 +150,7 @@ def test_the_true_arcs_are_certified_and_changed_ones_are_not(proved, arc, late,
 
 
 def test_an_arc_on_which_the_other_block_stops_is_not_certified(proved):
-    """Block 2 is slowed down at the beginning of an arc until it comes to rest within: for an instant at last."""
+    """Block 2 is slowed down at the beginning of an arc until it comes to rest within the arc."""
     arc = Arc((True, True), LATERAL, Linearized())
     first = State((arb(0), arb(0)), (arb("0.5"), arb("-0.3")))
 
@@ -171,7 +171,7 @@ def test_an_arc_on_which_the_other_block_stops_is_not_certified(proved):
 
 @pytest.mark.parametrize("a", [0.01, 0.04])
 def test_an_orbit_on_which_not_all_blocks_stick_at_once_is_not_covered(family, a):
-    """At 0.01 block 2 never stops, at 0.04 it does so only after blocks 1 and 3 have started."""
+    """At 0.01 block 2 never stops; at 0.04 it stops only after blocks 1 and 3 have started."""
     with pytest.raises(ProofError, match=rf"a = {a}: not covered: expected all blocks to stick at once"):
         prove_orbit(family.at(a), arb(a))
 

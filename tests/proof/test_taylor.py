@@ -1,4 +1,4 @@
-"""Arcs of the nonlinear law: Taylor steps with a remainder against mpmath, and boxes that hold no motion."""
+"""Arcs of the nonlinear law: Taylor steps with a remainder, compared with mpmath, and boxes that contain no motion."""
 
 import mpmath
 import pytest
@@ -28,7 +28,7 @@ def law():
 
 
 def motion(slips, a=A):
-    """Return the right-hand side of the equations as they stand in docs/model.md, for v ξ = x and a difference."""
+    """Return the right-hand side of the equations of docs/model.md, for v ξ = x and a difference."""
     v, a = mpf(V), mpf(a)
 
     def friction(rate):
@@ -138,11 +138,11 @@ def test_what_has_no_bound_is_refused(speed, time, message):
 
 
 def test_a_step_that_no_box_holds_is_refused(monkeypatch):
-    """Picard's operator over so long a time maps no box into itself."""
+    """Over so long a time Picard's operator maps no box into itself."""
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 2))
     with pytest.raises(ProofError, match=r"step 1 of an arc: found no box|1 \+ aU': got"):
         law().path((True, True), state_of((True, True))[0], arb(A))(arb(1))
-    # Wide enough at the first try, and still not to be believed: what is mapped lies beyond it.
+    # The first box is wide, but its image is not contained in it.
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 4))
     monkeypatch.setattr(taylor, "WIDENINGS", 1)
     with pytest.raises(ProofError, match=r"step 1 of an arc: found no box that contains the motion"):
@@ -173,7 +173,7 @@ def test_a_c_of_the_nonlinear_law(found, family):
 
 
 def test_it_is_that_of_an_integration_of_25_digits(found):
-    """From the positions that were found, by mpmath's own Taylor series, through the events of a period."""
+    """Integrate a period from the enclosed positions with the Taylor series of mpmath."""
     inner = found.orbit.enclosure.inner
     with mpmath.workdps(25):
         numbers = [mpf(value.str(40, radius=False)) for value in (*inner, found.a)]

@@ -1,4 +1,4 @@
-"""The attractors of all laws in one file: what is one branch has one number and one name."""
+"""The attractors of all laws in one file: each branch has one number and one name."""
 
 import numpy as np
 import pytest
@@ -32,7 +32,7 @@ def test_laws_are_put_together_under_common_numbers(one_law):
 
 
 def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law):
-    """All others have one of their own, over all laws."""
+    """All other branches have a unique number over all laws."""
     parts = [one_law(law) for law in ("linearized", "nonlinear", "exponential")]
     models = [Model(Chain(3), law_of(part.attrs["law"], 0.0), 0.2) for part in parts]
     answers = [{0: 0, 1: 1}, {0: 0}]
@@ -41,7 +41,7 @@ def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law)
         assert [model.a for model in firsts] == [model.a for model in seconds] == [0.05, 0.1, 0.2]
         assert {model.law.name for model in firsts} == {"linearized"}
         assert sorted(first) == sorted(second) == [0, 1]
-        # Of a mirror pair the side that counts as the first.
+        # For a mirror pair, the first side.
         assert sorted(second[1]) == [0, 1]
         assert first[1][1].position[0] == pytest.approx(2.0)
         assert first[1][1].stuck.tolist() == [True, False, False]

@@ -1,4 +1,4 @@
-"""Maps of basins put together from hand-made tiles, and pairs of states labelled by a rule that is known."""
+"""Maps of basins from hand-made tiles, and pairs of states labelled by a known rule."""
 
 from dataclasses import replace
 
@@ -33,12 +33,12 @@ def ruled(monkeypatch):
     monkeypatch.setattr(basins, "label_states", label_states)
 
 
-#: Two attractors that only the rule tells apart.
+#: Two attractors that only the rule distinguishes.
 KNOWN = KnownAttractors(MODELS[0], [None, None], np.array([0, 5]), np.array([0, -1]))
 
 
 def rule(position):
-    """Return 1 where U_1 + U_3 > 1.2, else 0; −1 where U_3 > 1.7."""
+    """Return 1 where U_1 + U_3 > 1.2, otherwise 0; −1 where U_3 > 1.7."""
     return np.where(position[:, 2] > 1.7, -1, (position[:, 0] + position[:, 2] > 1.2).astype(int))
 
 
@@ -123,7 +123,7 @@ def test_undetermined_states_that_are_their_own_mirror_images_are_counted(veloci
     places = {name: [0.5, 1.5, 2.5] for name in ("last_position", "first_position")}
     plane = {"plane_position": np.array([1.0, 3.0, 2.0]), "plane_velocity": np.array(velocity)}
     assert count_symmetric_undetermined(xr.Dataset({"branch": (tuple(places), branch)}, places, plane)) == alike
-    # Of the inner positions all have to be alike.
+    # All inner positions must be mirror-symmetric.
     four = {"plane_velocity": np.full(4, 0.1)}
     for inner, expected in (([3.0, 3.0], 2), ([3.0, 2.0], 0)):
         four["plane_position"] = np.array([1.0, *inner, 2.0])

@@ -1,4 +1,4 @@
-"""Grids of point files: where they lie, what makes them, and what is refused in their place."""
+"""Grids of point files: their paths, their commands, and files that are rejected."""
 
 from pathlib import Path
 
@@ -51,7 +51,7 @@ def test_points_are_read(grid):
     for name, values in read.items():
         assert np.array_equal(values, whole[name].values), name
     time, block, kind = all_events(read)
-    # Those with states are the last ones.
+    # The last events are those with states.
     assert len(time) == len(block) == len(kind) == whole["event_count"].item() > len(read["event_time"]) > 0
     assert (np.diff(time) >= 0.0).all()
     assert block[: len(read["earlier_event_block"])].tolist() == read["earlier_event_block"].tolist()
