@@ -95,7 +95,7 @@ def test_the_place_of_a_bifurcation_is_known_within_where_the_sign_changes(branc
     assert (bifurcation.before.length, bifurcation.after.length) == (0.0, 0.5)
 
 
-def test_noise_of_one_sign_holds_no_bifurcation_from_both_sides(monkeypatch, branch):
+def test_noise_of_one_sign_is_no_bifurcation(monkeypatch, branch):
     """If noise hides the sign within 3e-9, the bracket of the bifurcation has a half-width of 1e-8."""
     point = branch(lambda length: length - 0.3 if abs(length - 0.3) > 3e-9 else 1e-15)
     monkeypatch.setattr(bifurcations, "brentq", lambda value, low, high, **_: 0.3)

@@ -162,7 +162,7 @@ def test_a_fold_against_orbits_found_on_either_side_of_it(seven):
         at(here, bifurcation.a + 1e-8)
 
 
-def test_a_bifurcation_does_not_depend_on_the_side_that_it_is_come_to_from(seven):
+def test_a_bifurcation_does_not_depend_on_the_direction_of_continuation(seven):
     again = segment(seven.stable_orbits[-1].orbit, (0.13, 0.16), 4, ContinuationSettings(largest_step=3e-4))
     for one, other in ((seven.downward.end, again.downward.end), (seven.upward.end, again.upward.end)):
         assert one.a == pytest.approx(other.a, abs=1e-10)

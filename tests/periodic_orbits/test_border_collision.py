@@ -24,7 +24,7 @@ from tests.periodic_orbits.stand_in import only
         ((0.2,), 0.1, np.inf),
     ],
 )
-def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(values, length, expected):
+def test_a_branch_point_lies_where_a_multiplier_reaches_1(values, length, expected):
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC)
     way = [SimpleNamespace(orbit=orbit, multipliers=only(1.0 + value), length=length) for value in values]
     assert border_collision._distance_to_branch_point(way) == pytest.approx(expected)
@@ -122,7 +122,7 @@ def approach(monkeypatch):
     return come
 
 
-def test_a_corner_is_come_to_by_steps_that_leave_three_hundredths_of_the_way(approach):
+def test_each_step_to_a_corner_leaves_three_percent_of_the_length(approach):
     """The first step is a hundredth of the length, and the last point is within 1e-10 of the corner."""
     way, tried = approach(1e-3)
     left = 7.9e-4 * 0.03 ** np.arange(6)
@@ -132,7 +132,7 @@ def test_a_corner_is_come_to_by_steps_that_leave_three_hundredths_of_the_way(app
     assert way[-1].distance_to_grazing == pytest.approx(1.92e-11, rel=1e-2, abs=0.0)
 
 
-def test_steps_that_fail_are_made_again_shorter(approach):
+def test_failed_steps_are_repeated_with_a_shorter_length(approach):
     """The following steps are a smaller share of the predicted length."""
     _, tried = approach(1e-3, lambda tried: tried in (1, 2))
     left = np.array([8e-4 - 1.6e-6])
@@ -156,7 +156,7 @@ def test_a_corner_that_comes_no_nearer_is_given_up(approach):
     assert not [point for point in way if point.distance_to_grazing > 0.0]
 
 
-def test_no_corner_is_looked_for_beyond_the_length_within_which_it_lies(approach):
+def test_no_corner_is_searched_for_beyond_the_given_length(approach):
     way, tried = approach(1e-3, corner=1.0)
     assert tried == pytest.approx([1e-5, 1e-3])
     assert [point.orbit for point in way] == pytest.approx([1e-5, 1.01e-3])

@@ -104,7 +104,7 @@ def test_the_mean_distance_may_be_off_by_a_thousandth_for_v_0_1(off, scale, expe
     assert whole.contains(orbit, 1e-3) is expected
 
 
-def test_two_orbits_after_the_first_unstable_one_are_enough():
+def test_a_half_branch_ends_two_orbits_after_the_first_unstable_one():
     is_complete, points, told = _stop_after_unstable(2), [], []
     for unstable in (0, 0, 2, 0, 1):
         points.append(point(0.1, unstable=unstable))

@@ -37,7 +37,7 @@ def test_a_symmetric_orbit_does_not_double_its_period_but_breaks_its_symmetry(sy
     assert found == pytest.approx(expected)
 
 
-def test_mirror_blocks_that_move_as_one_part_at_a_pitchfork():
+def test_mirror_blocks_desynchronize_at_a_pitchfork():
     orbit = SimpleNamespace(symmetry=Symmetry.SYNCHRONIZED)
     found = critical_values(orbit, Multipliers(np.array([0.5]), np.array([3.0, 0.2]), 1))
     expected = {

@@ -29,7 +29,7 @@ from tests.periodic_orbits.stand_in import only, stand_in
         ((1.0, -1.0), (0.5, 0.5), 0.031, False),
     ],
 )
-def test_a_branch_turns_without_a_fold_where_it_touches_a_simpler_one(monkeypatch, slopes, values, away, touches):
+def test_a_branch_turns_back_without_a_fold_at_a_simpler_orbit(monkeypatch, slopes, values, away, touches):
     monkeypatch.setattr(following, "minimal_form", lambda orbit, tolerance: "simpler" if away <= tolerance else orbit)
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC)
     points = [
@@ -39,7 +39,7 @@ def test_a_branch_turns_without_a_fold_where_it_touches_a_simpler_one(monkeypatc
     assert following._passed_orbit(*points) == ("simpler" if touches else None)
 
 
-def test_several_turns_of_another_orbit_are_no_way_around_a_corner():
+def test_repeats_of_another_orbit_do_not_continue_a_branch():
     """At a = 0.11226 an orbit with 29 stops grazes; one with one stop, which ends 3e-5 below, does not continue it."""
     model = Model(Chain(3), law_of("linearized", 0.112265625))
     position = np.array([0.10663254, 0.07868783, 0.06869955])
@@ -86,7 +86,7 @@ def test_no_step_leaps_to_a_simpler_orbit(a):
     assert np.abs(bifurcation.at.multipliers.symmetry_preserving + 1.0).min() < 1e-8
 
 
-def test_a_branch_is_told_where_it_begins():
+def test_a_branch_must_begin_within_its_interval():
     """The orbit may lie exactly at an end of the interval; an interval runs from low to high."""
     orbit = limit_cycle(SLOW, synchronized_orbit(SLOW).reference)
     for a_range in ((0.08, 0.08), (0.08, 0.09), (0.07, 0.08)):
@@ -140,7 +140,7 @@ def walk(monkeypatch):
     return walked
 
 
-def test_a_branch_goes_on_from_a_corner_as_from_its_beginning(walk):
+def test_after_a_corner_steps_start_again_with_the_first_length(walk):
     corner = a_step(0.13, 1e-9, is_grazing=True)
     smooth = [a_step(0.11), a_step(0.12), None, a_step(0.2), a_step(0.21)]
     points, lengths = walk(smooth, [[a_step(0.125), corner]], [a_step(0.14)])
@@ -172,7 +172,7 @@ def test_a_branch_ends_where_it_has_gone_past_another_one(walk, monkeypatch):
     assert [point.reduced_orbit for point in points] == [None, None, "passed"]
 
 
-def test_a_branch_ends_when_enough_is_known(walk):
+def test_a_branch_ends_when_it_is_complete(walk):
     told = []
 
     def enough(points):

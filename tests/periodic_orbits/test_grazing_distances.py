@@ -177,7 +177,7 @@ def test_where_friction_drops_slips_end_with_a_deceleration(dropping, contact):
     assert found == pytest.approx(least, abs=1e-3)
 
 
-def test_where_a_block_turns_round_no_stick_shrinks():
+def test_a_reversal_is_no_short_stick():
     """The block stops and starts at the same time if the springs pull it back beyond its threshold."""
     orbit = two_blocks("symmetric", STATES["symmetric"])
     time, kind = orbit.events_of(1)

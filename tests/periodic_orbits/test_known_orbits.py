@@ -42,7 +42,7 @@ def test_steps_are_halved_until_the_orbit_is_found(known, monkeypatch):
     assert len(tried) == pytest.approx(3 + 0.02 / 0.0025, abs=1)
 
 
-def test_where_it_is_lost_the_error_is_told_after_the_least_step(asymmetric):
+def test_a_lost_orbit_is_an_error_after_the_smallest_step(asymmetric):
     """The branch has a turning point at a = 0.13247, before which steps are halved repeatedly."""
     known = KnownOrbits(asymmetric)
     with pytest.raises(

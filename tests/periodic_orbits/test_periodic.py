@@ -123,7 +123,7 @@ def test_the_half_of_a_symmetric_orbit_gives_the_whole(orbits):
     assert half.start(0).mirrored().position == pytest.approx(half.start(2).position, abs=1e-12)
 
 
-def test_an_orbit_gone_round_twice_is_told(orbits):
+def test_an_orbit_traversed_twice_is_detected(orbits):
     half = orbits["symmetric"]
     twice = find_periodic_orbit(half.model, half.reference, 2.0 * half.period, ASYMMETRIC)
     found = minimal_form(twice, 1e-9)
@@ -174,7 +174,7 @@ def test_what_is_no_orbit_is_refused(orbits):
 
 
 @pytest.mark.parametrize("name", ORBITS)
-def test_events_that_were_forgotten_are_found_again(orbits, name):
+def test_forgotten_events_are_recomputed(orbits, name):
     orbit = orbits[name]
     known, signature = orbit.event_rows, orbit.stop_counts
     orbit.forget_events()

@@ -201,7 +201,7 @@ def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(
 
 
 @pytest.mark.parametrize("coupling", [0.7, 1.2, 1.5, 2.0])
-def test_the_orbit_of_other_couplings_is_that_of_one_turn(coupling, law):
+def test_the_orbit_at_other_couplings_has_one_cycle(coupling, law):
     """A run from rest may end on synchronized motion of several cycles; the orbits with one cycle form one branch."""
     periods = []
     for a in (0.04, 0.05, 0.07, 0.1):

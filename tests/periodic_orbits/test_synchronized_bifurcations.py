@@ -83,7 +83,7 @@ def test_no_change_is_told():
     assert np.isnan([critical_a([]), symmetric_period_doubling_a([]), grazing_a([], block=1)]).all()
 
 
-def test_grazing_beside_an_orbit_that_is_not_found():
+def test_grazing_next_to_an_orbit_that_is_not_found():
     """With stiff coupling it lies between values of a at which the multipliers are very different."""
     orbits = synchronized_orbits(Model(Chain(3, coupling=30.0), law_of("linearized", 0.05)))
     a = grazing_a(bifurcations_of(orbits), block=1)
@@ -92,7 +92,7 @@ def test_grazing_beside_an_orbit_that_is_not_found():
 
 
 @pytest.mark.parametrize("lost", [(0.0, 0.03), (0.05, 0.06), (0.2, 1.0)])
-def test_bifurcations_beside_a_range_in_which_the_orbit_is_lost_are_found(families, critical, monkeypatch, lost):
+def test_bifurcations_around_a_gap_of_the_orbit_are_found(families, critical, monkeypatch, lost):
     """The branch may break off below, above, or on both sides."""
 
     class Partly(KnownOrbits):
@@ -155,7 +155,7 @@ def test_transitions_are_found_on_the_scale_of_the_chain(critical, bifurcations,
     assert critical_a_error(orbits, critical_a(found)) < 1e-10 * factor
 
 
-def test_two_blocks_part_in_a_flip():
+def test_two_blocks_desynchronize_in_a_period_doubling():
     """Each block does in one period what the other does in the next, so that the transverse multiplier is −1."""
     orbits = synchronized_orbits(Model(Chain(2), law_of("linearized", 0.05)))
     found = bifurcations_of(orbits)
@@ -165,7 +165,7 @@ def test_two_blocks_part_in_a_flip():
     assert np.isnan(symmetric_period_doubling_a(found))
 
 
-def test_five_blocks_part_where_the_leading_multiplier_is_1():
+def test_five_blocks_desynchronize_where_the_leading_multiplier_is_1():
     orbits = synchronized_orbits(Model(Chain(5), law_of("linearized", 0.08)))
     a = critical_a(bifurcations_of(orbits))
     assert [abs(multipliers(orbits.at(a + side)).transverse) > 1.0 for side in (-1e-6, 1e-6)] == [False, True]

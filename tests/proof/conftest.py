@@ -31,7 +31,7 @@ def holds(ball, number, error="1e-45"):
 
 
 def state_of(slips):
-    """Return a state in which these blocks slip, as balls, and its numbers: x, y, a difference, and their rates."""
+    """Return a state in which these blocks slip, as balls, and its numbers x, y, x', y', d, d'."""
     rates = ["0.4" if slips[0] else "-1", "1.1" if slips[1] else "-1"]
     numbers = ["0.3", "-0.7", *rates, "0.9", "0.2" if slips[0] else "0"]
     with arithmetic():

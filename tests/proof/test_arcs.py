@@ -37,7 +37,7 @@ def test_an_arc_is_the_matrix_exponential(slips, a, time):
 
 
 @pytest.mark.parametrize("slips", SLIPS)
-def test_a_small_difference_goes_as_that_of_two_motions(slips):
+def test_a_small_difference_is_that_of_two_motions(slips):
     """The equations are linear, so that the difference of blocks 1 and 3 obeys the same matrix."""
     with mpmath.workdps(55), arithmetic():
         state, numbers = state_of(slips)

@@ -26,7 +26,7 @@ def test_a_dip_of_any_depth_is_seen(height):
         check_positive(touching(height), arb(1))
 
 
-def test_the_time_of_the_dip_is_told():
+def test_the_message_has_the_time_of_the_dip():
     with pytest.raises(ProofError) as error:
         check_positive(touching(-1e-9, 0.7), arb(1))
     assert float(str(error.value).split()[3]) == pytest.approx(0.7, abs=1e-4)

@@ -53,7 +53,7 @@ def test_a_double_solution_is_refused():
         enclose_widest(lambda unknown: [unknown[0] * unknown[0]], [arb(1e-30)], [0.1, 1e-6])
 
 
-def test_two_solutions_nearby_are_told_apart():
+def test_two_nearby_solutions_are_distinguished():
     """x² = 1e-8: the widest cube with a proof contains only one root."""
     found = enclose_widest(lambda unknown: [unknown[0] * unknown[0] - 1e-8], [arb(1e-4)], RADII)
     assert found.inner[0].overlaps(arb(1e-8).sqrt())
@@ -83,7 +83,7 @@ def test_derivatives_are_enclosed():
             assert matrix[1, 1].contains(-(x / 4) * (x / 2).cos())
 
 
-def test_a_guess_is_polished_to_all_digits():
+def test_a_guess_is_refined_to_all_digits():
     (found,) = refine_guess(root_of, [1.4], [arb(2)])
     with arithmetic():
         assert abs(found - arb(2).sqrt()) < 1e-55

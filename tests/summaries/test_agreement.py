@@ -145,7 +145,7 @@ def test_the_order_of_events_is_compared_until_the_first_run_ends(compare, law):
         (0.2, 0.0, -1, -1),
     ],
 )
-def test_a_run_may_end_elsewhere_than_its_state_leads(runs, compare, mean, error, branch, settled):
+def test_a_run_may_not_reach_the_attractor_of_its_state(runs, compare, mean, error, branch, settled):
     told = {key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs}
     _, found = compare(told, mean=mean, error=error, branch=branch)
     assert (found["settled"] == settled).all()
@@ -298,7 +298,7 @@ def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
     assert values["parting_a"] == pytest.approx([0.1 if agrees == 0 else np.nan], nan_ok=True)
 
 
-def test_laws_part_at_the_least_a_at_which_they_disagree():
+def test_parting_a_is_the_smallest_a_of_disagreement():
     names = ("mean_distance", "mean_distance_error", "kind")
     told = np.array([[[[1.0, 1.0, 1.0]], [[1.0, 2.0, 3.0]]], np.zeros((2, 1, 3)), np.ones((2, 1, 3))])
     filled = ("difference", "difference_error", "same_kind", "agrees")

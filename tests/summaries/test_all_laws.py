@@ -52,7 +52,7 @@ def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law)
     assert all_laws.branch_numbers(parts, models, SETTINGS) == [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
 
 
-def test_the_digest_tells_each_branch(one_law):
+def test_the_digest_describes_each_branch(one_law):
     found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
     assert all_laws.digest(found) == (
         "linearized, synchronized: at 1 of 3 values of a, 0.05; <J> 0.0000; synchronized; largest basin "

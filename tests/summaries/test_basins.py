@@ -78,7 +78,7 @@ def test_pairs_are_those_of_the_plane(ruled):
     assert found["separation"].values[[0, -1]] == pytest.approx([0.4, 0.4 / 3**12])
 
 
-def test_maps_are_put_together_and_told(ruled):
+def test_maps_are_merged_and_described(ruled):
     known, limit = [replace(KNOWN, model=model) for model in MODELS], SEARCH.label_limit
     near = [basins.pairs(one, PLANE, limit, SEARCH.seed, "moving") for one in known]
     tiles = [[basins.tile(one, k, PLANE, limit, "moving") for k in (0, 1)] for one in known]

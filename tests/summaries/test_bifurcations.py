@@ -128,7 +128,7 @@ def test_every_change_has_an_entry(grid, found):
         assert (same & (found["to_branch"] == change.to_branch)).any()
 
 
-def test_the_lifetime_of_chaos_is_told_beside_its_bifurcations(found):
+def test_bifurcations_have_the_lifetime_of_chaos(found):
     chaotic = (found["motion_before"] == MotionKind.CHAOTIC) | (found["motion_after"] == MotionKind.CHAOTIC)
     assert 0 < int(chaotic.sum()) < found.sizes["bifurcation"]
     assert (found["lifetime_low"].values[chaotic] == 1e5).all()
@@ -150,7 +150,7 @@ def test_bifurcations_are_those_of_the_orbits(found):
     assert (found["a_error"].values <= 1e-9).all()
 
 
-def test_a_bifurcation_lies_by_the_values_between_which_it_was_looked_for(found):
+def test_a_bifurcation_lies_near_the_values_that_bracket_it(found):
     """A bifurcation belongs to a change within a step of the grid, or is passed between values on the branch."""
     low, high, a = (found[name].values for name in ("grid_low", "grid_high", "a"))
     passed = found["change"].values == Change.PASSED
@@ -186,7 +186,7 @@ def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled():
     assert str(error) == "a = 0.09: the closed orbit beside the motion is unstable"
 
 
-def test_the_values_beside_a_bifurcation_are_those_of_the_attractors(found, grid):
+def test_the_values_next_to_a_bifurcation_are_those_of_the_attractors(found, grid):
     """They agree to the last bit, so that they can be looked up."""
     for name in ("grid_low", "grid_high"):
         beside = found[name].values
@@ -232,7 +232,7 @@ def test_a_negative_rounding_of_0_is_0():
     assert not np.signbit(_round_digits(np.array([-1e-13]), 10)).any()
 
 
-def test_next_to_0_eleven_digits_behind_the_point_are_kept():
+def test_near_0_eleven_decimal_places_are_kept():
     values = _round_digits(np.array([1.23456789e-7, 1.23456789e-2, 4e-12]), 5)
     assert values.tolist() == [1.2346e-7, 1.2346e-2, 0.0]
     assert _round_digits(np.array([1.23456789e-8]), 10).tolist() == [1.235e-8]

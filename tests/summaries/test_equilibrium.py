@@ -93,7 +93,7 @@ def test_eigenvalues_and_growth_rates(found):
     assert (found["equilibrium_drift"] < 1e-13).all()
 
 
-def test_elsewhere_is_no_equilibrium():
+def test_other_positions_are_no_equilibrium():
     model = Model(Chain(3), law_of("linearized", 0.08))
     drift, _ = simulate_sliding(model, sliding_position(model) + np.array([1e-3, 0.0, 0.0]))
     assert drift > 1e-4

@@ -114,7 +114,7 @@ def test_the_law_at_the_same_slope(found):
 
 
 @pytest.mark.parametrize(("blocks", "v", "status"), [(2, 0.1, 3), (5, 0.1, 3), (3, 1000.0, 2)])
-def test_no_orbit_is_told_not_a_crash(blocks, v, status):
+def test_a_missing_orbit_is_a_flag(blocks, v, status):
     # With symmetric contact so fast a driver makes blocks slip backward: no block stops just once per period.
     none = summarize(models(chain=Chain(blocks), v=v, contact="symmetric"), [0.1, 0.2])
     assert (none["status"] == status).all()

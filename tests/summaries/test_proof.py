@@ -73,7 +73,7 @@ def test_the_digits_are_those_between_the_doubles(found, law):
     assert Fraction(error) < Fraction(1, 10**17 if law == "nonlinear" else 10**40)
 
 
-def test_the_words_hold_the_numbers_and_what_is_assumed(found):
+def test_the_text_has_the_numbers_and_the_assumptions(found):
     text = proof.digest(found)
     for law in ("linearized", "nonlinear"):
         assert f"{law} law: a_c = {found['critical_a_digits'].sel(law=law).item()}\n" in text

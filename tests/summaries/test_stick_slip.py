@@ -234,7 +234,7 @@ def test_events_before_the_window_have_no_part_in_frequencies():
     assert (long_velocity({**kept, **later}, model, 300.0)[0] == found).all()
 
 
-def test_a_block_that_stands_still_has_no_frequency():
+def test_a_block_at_rest_has_no_frequency():
     """The other block stops and starts."""
     model = Model(Chain(2, coupling=0.01, threshold=(1.0, 20.0)), law_of("linearized", 0.1), 0.1)
     run = simulate(

@@ -60,14 +60,14 @@ def distance_to_grazing(before: BranchOrbit, point: BranchOrbit) -> float:
     return float(ahead.min()) if len(ahead) else np.inf
 
 
-def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None:
+def smooth_step(path: Sequence[BranchOrbit], length: float) -> BranchOrbit | None:
     """Return the orbit at a length from the end of a path along a branch; None if none with the same stops is found.
 
     If it is a simpler orbit, traversed several times or described without its symmetry, `reduced_orbit` is that orbit.
     It is accepted only if the path approaches it: the multiplier that equals 1 there then approaches 1. A long step may
     jump to such an orbit without being on the branch.
     """
-    point = way[-1]
+    point = path[-1]
     try:
         found = step_along(point, length)
     except OrbitError:
@@ -75,23 +75,23 @@ def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None
     if found.orbit.stop_counts != point.orbit.stop_counts:
         return None
     simpler = reduced_orbit(found.orbit)
-    if simpler is not None and not _distance_to_branch_point(way) <= STEPS_TO_BRANCH_POINT * length:
+    if simpler is not None and not _distance_to_branch_point(path) <= STEPS_TO_BRANCH_POINT * length:
         return None
     return replace(found, reduced_orbit=simpler)
 
 
-def _distance_to_branch_point(way: Sequence[BranchOrbit]) -> float:
+def _distance_to_branch_point(path: Sequence[BranchOrbit]) -> float:
     """Return the length from the end of a path to where an approaching multiplier reaches 1; otherwise infinite.
 
     There a branch of orbits with less symmetry, or with twice the period, joins a branch of simpler orbits.
     """
-    if len(way) < 2:
+    if len(path) < 2:
         return np.inf
     before, here = (
-        critical_values(one.orbit, one.multipliers)[BifurcationKind.FOLD, "symmetry_preserving"] for one in way[-2:]
+        critical_values(one.orbit, one.multipliers)[BifurcationKind.FOLD, "symmetry_preserving"] for one in path[-2:]
     )
     nearer = abs(before) - abs(here)
-    return abs(here) * way[-1].length / nearer if nearer > 0.0 else np.inf
+    return abs(here) * path[-1].length / nearer if nearer > 0.0 else np.inf
 
 
 def approach_grazing(before: Sequence[BranchOrbit], length: float) -> list[BranchOrbit]:
@@ -99,12 +99,12 @@ def approach_grazing(before: Sequence[BranchOrbit], length: float) -> list[Branc
 
     Near a turning point a step may end on the other side, with different stops; it is repeated with a shorter length.
     """
-    way: list[BranchOrbit] = []
+    path: list[BranchOrbit] = []
     step, share, failures = PROBE * length, LARGEST_SHARE, 0
     for _ in range(STEPS):
-        if sum(point.length for point in way) > length or failures > FAILURES:
+        if sum(point.length for point in path) > length or failures > FAILURES:
             break
-        known = [*before[-2:], *way]
+        known = [*before[-2:], *path]
         found = smooth_step(known, step)
         if found is None:
             failures += 1
@@ -114,14 +114,14 @@ def approach_grazing(before: Sequence[BranchOrbit], length: float) -> list[Branc
                 break
             continue
         ahead = distance_to_grazing(known[-1], found)
-        way.append(found)
+        path.append(found)
         if found.reduced_orbit is not None:
             break
         if ahead < CORNER_DISTANCE:
-            return [*way[:-1], replace(found, distance_to_grazing=ahead)]
+            return [*path[:-1], replace(found, distance_to_grazing=ahead)]
         share = min(SHARE_GROWTH * share, LARGEST_SHARE)
         step = min(share * ahead, length)
-    return way
+    return path
 
 
 def switch_branch(point: BranchOrbit) -> BranchOrbit | None:

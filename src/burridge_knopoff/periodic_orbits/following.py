@@ -104,15 +104,15 @@ def follow(
     while continues():
         found = smooth_step(points, length)
         if found is not None:
-            way = [found]
+            path = [found]
             length = min(STEP_GROWTH * length, settings.largest_step)
         else:
-            way = approach_grazing(points, length)
-            length = max(0.1 * length, way[-1].length if way else 0.0)
-        for point in way:
+            path = approach_grazing(points, length)
+            length = max(0.1 * length, path[-1].length if path else 0.0)
+        for point in path:
             simpler = point.reduced_orbit or _passed_orbit(points[-1], point)
             points.append(replace(point, reduced_orbit=simpler))
-            if simpler is not None or not (point.is_grazing or point is way[-1] or continues()):
+            if simpler is not None or not (point.is_grazing or point is path[-1] or continues()):
                 return points
         if points[-1].is_grazing:
             turned = switch_branch(points[-1])

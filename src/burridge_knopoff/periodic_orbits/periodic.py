@@ -194,9 +194,9 @@ def solve_return(
     for iteration in range(ITERATIONS):
         here = ChainState(state[:blocks], state[blocks:], start.stuck)
         end, changed = mapping.end_and_tangent(here, time)
-        apart = (end.vector() - state) / own
+        difference = (end.vector() - state) / own
         values = np.zeros(unknowns)
-        values[:count] = basis.T @ apart
+        values[:count] = basis.T @ difference
         values[count] = phase @ (basis.T @ ((state - first) / own))
         jacobian = np.zeros((unknowns, unknowns))
         jacobian[:count, :count] = basis.T @ (changed * own / own[:, None]) @ basis - np.eye(count)
@@ -214,7 +214,7 @@ def solve_return(
             jacobian[-1] = np.concatenate([(vector[:-2] * own) @ basis, [vector[-2] * units.time, vector[-1]]])
         size, speed = float(np.abs(values).max()), model.v / units.velocity
         if size <= target_residual or (size <= TOLERANCE * max(1.0, speed) and size > 0.25 * last):
-            if np.abs(apart).max() > TOLERANCE * max(1.0, speed) or (end.stuck != start.stuck).any():
+            if np.abs(difference).max() > TOLERANCE * max(1.0, speed) or (end.stuck != start.stuck).any():
                 break
             return PeriodicOrbit(model, symmetry, here, time, end, changed, _event_rows(mapping, time))
         if iteration > FREE_ITERATIONS and size > last:

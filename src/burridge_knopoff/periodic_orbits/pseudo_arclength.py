@@ -120,8 +120,8 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
             end = ReturnMap(model, orbit.symmetry).end(start, orbit.return_time)
         except ValueError:
             continue
-        apart = end.vector() / model.scale - orbit.returned.vector() / orbit.model.scale
-        change = max(change, float(np.abs(apart * units.velocity / own).max() / abs(step)))
+        difference = end.vector() / model.scale - orbit.returned.vector() / orbit.model.scale
+        change = max(change, float(np.abs(difference * units.velocity / own).max() / abs(step)))
     return ParameterLine((parameter,), (value,), (min(LONGEST * size, CHANGE / max(change, 1e-300)),), units=units)
 
 
