@@ -16,7 +16,7 @@ REAL = 1e-6
 
 
 class BifurcationKind(IntEnum):
-    """Kinds of bifurcations and crises (bifurcations), numbered as in netCDF files.
+    """Kinds of bifurcations, including crises, numbered as in netCDF files.
 
     grazing : a stick or a slip of a periodic orbit appears or vanishes
     fold : two orbits meet and vanish, multiplier +1
@@ -78,7 +78,7 @@ def _pairs(own: np.ndarray) -> np.ndarray:
 
 
 def _is_complex(own: np.ndarray) -> bool:
-    """Return whether the two multipliers whose product is nearest to 1 are complex, not those of a saddle."""
+    """Return whether the pair of multipliers whose product is closest to 1 is complex, not real as at a saddle."""
     one, _ = min(combinations(own, 2), key=lambda pair: abs(pair[0] * pair[1] - 1.0))
     return abs(one.imag) > REAL
 

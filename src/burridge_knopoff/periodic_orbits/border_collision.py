@@ -64,8 +64,8 @@ def smooth_step(path: Sequence[BranchOrbit], length: float) -> BranchOrbit | Non
     """Return the orbit at a length from the end of a path along a branch; None if none with the same stops is found.
 
     If it is a simpler orbit, traversed several times or described without its symmetry, `reduced_orbit` is that orbit.
-    It is accepted only if the path approaches it: the multiplier that equals 1 there then approaches 1. A long step may
-    jump to such an orbit without being on the branch.
+    It is accepted only if the path approaches it, so that the multiplier that equals 1 there approaches 1. A long step
+    may also jump to such an orbit that is not on the branch.
     """
     point = path[-1]
     try:

@@ -115,9 +115,9 @@ def make(
 
 
 def train(chain: Chain, blocks: int) -> Chain:
-    """Return the train of a number of blocks with the stiffnesses of a chain: only its first block is pulled.
+    """Return the train of a number of blocks with the parameters of a chain: only its first block is pulled.
 
-    chain : each of its stiffnesses is one number; where `pulling` is `neighbours`, the spring to the driver has 1
+    chain : each parameter is a single number; if `pulling` is `neighbours`, the spring to the driver has stiffness 1
     """
     first = 1.0 if isinstance(chain.pulling, str) else chain.pulling
     pulling = (first, *(blocks - 1) * (0.0,))
@@ -232,9 +232,7 @@ def _compare_at(
     search: SearchSettings,
     motion: MotionSettings,
 ) -> dict[str, np.ndarray]:
-    """Return at one a the asymptotic motion of each state, shape (law, state), and the common order of events, shape
-    (other law, state).
-    """
+    """Return the values of the variables at one a: of motions, shape (law, state); of pairs, shape (other law, state)."""
     here = [model.at(a) for model in models]
     ends = [endings(model, initial, search, motion, start=settings.start) for model in here]
     values = {name: np.array([[getattr(found, name) for found in row] for row in ends]) for name in MOTION_VARIABLES}
