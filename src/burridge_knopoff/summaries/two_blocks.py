@@ -232,7 +232,7 @@ def _compare_at(
     search: SearchSettings,
     motion: MotionSettings,
 ) -> dict[str, np.ndarray]:
-    """Return the values of the variables at one a: of motions, shape (law, state); of pairs, shape (other law, state)."""
+    """Return all variables at one a: of motions, shape (law, state), of pairs, shape (other law, state)."""
     here = [model.at(a) for model in models]
     ends = [endings(model, initial, search, motion, start=settings.start) for model in here]
     values = {name: np.array([[getattr(found, name) for found in row] for row in ends]) for name in MOTION_VARIABLES}
