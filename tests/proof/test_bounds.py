@@ -46,22 +46,22 @@ def test_known_roots_at_the_ends_are_no_events():
 @pytest.mark.parametrize(
     ("function", "length", "known"),
     [
-        (started, 2.0, {"starts": True}),
-        (started, 2.0, {"ends": True}),
-        (started, 2.001, {"starts": True}),
-        (lambda t: -t * t, 1.0, {"starts": True}),
+        (started, 2.0, {"root_at_start": True}),
+        (started, 2.0, {"root_at_end": True}),
+        (started, 2.001, {"root_at_start": True}),
+        (lambda t: -t * t, 1.0, {"root_at_start": True}),
         # A start at which the second derivative also vanishes is undecided.
-        (lambda t: t * t * t, 1.0, {"starts": True}),
+        (lambda t: t * t * t, 1.0, {"root_at_start": True}),
         # A known root where the function rises through 0: it was negative before.
-        (lambda t: t - 1, 1.0, {"ends": True}),
+        (lambda t: t - 1, 1.0, {"root_at_end": True}),
         # These are not roots.
-        (lambda t: 1 + t, 1.0, {"starts": True}),
-        (lambda t: t + t * t, 1.0, {"starts": True}),
-        (lambda t: 2 - t, 1.0, {"ends": True}),
+        (lambda t: 1 + t, 1.0, {"root_at_start": True}),
+        (lambda t: t + t * t, 1.0, {"root_at_start": True}),
+        (lambda t: 2 - t, 1.0, {"root_at_end": True}),
         # A grazing just before the end.
-        (lambda t: (1 - t) * ((t - 0.999) * (t - 0.999) - 1e-12), 1.0, {"ends": True}),
+        (lambda t: (1 - t) * ((t - 0.999) * (t - 0.999) - 1e-12), 1.0, {"root_at_end": True}),
         # A grazing just after the start.
-        (lambda t: t * t * ((t - 0.001) * (t - 0.001) - 1e-12), 1.0, {"starts": True}),
+        (lambda t: t * t * ((t - 0.001) * (t - 0.001) - 1e-12), 1.0, {"root_at_start": True}),
     ],
 )
 def test_other_roots_are(function, length, known):

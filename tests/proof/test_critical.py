@@ -93,15 +93,15 @@ def test_pieces_that_do_not_join_are_refused(branch):
     first, second = branch[:2]
     moved = replace(first, middle=[first.middle[0] + arb(0.01), *first.middle[1:]])
     edge = fmpq(86, 1000) + (fmpq(88, 1000) - fmpq(86, 1000)) / len(branch)
-    critical._check_joined(first, second, edge)
+    critical._check_same_orbit(first, second, edge)
     with pytest.raises(ProofError):
-        critical._check_joined(moved, second, edge)
+        critical._check_same_orbit(moved, second, edge)
 
 
 def test_every_pair_of_neighbours_is_joined(branch, family, monkeypatch):
     joined = []
-    check = critical._check_joined
-    monkeypatch.setattr(critical, "_check_joined", lambda *pair: (joined.append(pair), check(*pair)))
+    check = critical._check_same_orbit
+    monkeypatch.setattr(critical, "_check_same_orbit", lambda *pair: (joined.append(pair), check(*pair)))
     pieces = prove_branch(family.at(0.086), fmpq(86, 1000), fmpq(88, 1000))
     assert [pair[:2] for pair in joined] == list(pairwise(pieces))
     assert len(pieces) == len(branch) > 2
@@ -109,6 +109,6 @@ def test_every_pair_of_neighbours_is_joined(branch, family, monkeypatch):
 
 def test_a_range_beyond_the_order_of_events_is_refused(family, monkeypatch):
     """At 0.0757 all three blocks start at the same time; the family continues with other arcs."""
-    monkeypatch.setattr(critical, "DEEPEST", 3)
+    monkeypatch.setattr(critical, "MAX_HALVINGS", 3)
     with pytest.raises(ProofError, match=r"a = 0\.075\d*: not proved: block 2|blocks 1 and 3|unknown"):
         prove_branch(family.at(0.0765), fmpq(75, 1000), fmpq(76, 1000))
