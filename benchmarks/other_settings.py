@@ -87,7 +87,7 @@ def born_at(study: Study, attractors: xarray.Dataset) -> float:
     orbits = [limit_cycle(model, state_of(state)) for state in states]
     orbit = next(orbit for orbit in orbits if orbit.stop_counts == STOPS)
     found = locate_bifurcations(follow(orbit, BIRTH_RANGE, upward=False))
-    return next(one.a for one in found if one.kind == BifurcationKind.GRAZING and one.turns)
+    return next(one.a for one in found if one.kind == BifurcationKind.GRAZING and one.is_turning_point)
 
 
 def main() -> None:

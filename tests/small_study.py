@@ -99,7 +99,7 @@ class SmallStudy:
     @property
     def grid(self) -> Grid:
         """Its points."""
-        return Grid.of(self.folder / "points", self.study.points)
+        return Grid.from_points(self.folder / "points", self.study.points)
 
     @property
     def models(self) -> list[Model]:

@@ -100,9 +100,9 @@ branch = follow(limit_cycle(model, model.begin(run.initial), settling=2000.0), (
 found = [one for one in locate_bifurcations(branch) if one.kind.name == "NODE_FOCUS"]
 assert len(found) == 2
 for one in found:
-    first, second = one.at.multipliers.keeping[:2]
-    assert abs(first - second) < 1e-3 * abs(branch[0].multipliers.keeping[0])
-    before, after = ((point.multipliers.keeping[0]).imag for point in (one.before, one.after))
+    first, second = one.at.multipliers.symmetry_preserving[:2]
+    assert abs(first - second) < 1e-3 * abs(branch[0].multipliers.symmetry_preserving[0])
+    before, after = ((point.multipliers.symmetry_preserving[0]).imag for point in (one.before, one.after))
     assert (abs(before) > 1e-9) != (abs(after) > 1e-9)
 """
 

@@ -24,7 +24,7 @@ Exponents: Lyapunov exponents come with a `Trajectory`; `transverse_exponent` is
 Locking: `block_frequencies` returns the frequency of each block, of which locked blocks keep the ratio if one of them
 differs.
 
-Bifurcations: `follow` leads along a branch in any parameter, each orbit a `BranchOrbit`, as `Following` says;
+Bifurcations: `follow` continues a branch in any parameter with `ContinuationSettings`, each orbit a `BranchOrbit`;
 `locate_bifurcations` finds every `Bifurcation` on it, and its `BifurcationKind`; `follow_bifurcation` continues one in
 two parameters and returns a `BifurcationCurve`.
 """

@@ -42,7 +42,7 @@ from .periodic_orbits.bifurcations import locate_bifurcations as locate_bifurcat
 from .periodic_orbits.floquet import Multipliers as Multipliers
 from .periodic_orbits.floquet import multipliers as multipliers
 from .periodic_orbits.flow import OrbitError as OrbitError
-from .periodic_orbits.following import Following as Following
+from .periodic_orbits.following import ContinuationSettings as ContinuationSettings
 from .periodic_orbits.following import follow as follow
 from .periodic_orbits.periodic import PeriodicOrbit as PeriodicOrbit
 from .periodic_orbits.periodic import find_periodic_orbit as find_periodic_orbit

@@ -7,8 +7,8 @@ import pytest
 
 from burridge_knopoff import (
     Chain,
+    ContinuationSettings,
     EdgeSettings,
-    Following,
     InitialState,
     Model,
     MotionKind,
@@ -134,8 +134,8 @@ def test_the_saddle_is_the_orbit_with_which_the_attractor_is_born(a, start, stop
     model, attractors = coexisting("linearized", a, 60, [start] if start else [])
     orbits = {k: limit_cycle(model, item.motion.state()) for k, item in enumerate(attractors) if is_periodic(item)}
     index = next(k for k, orbit in orbits.items() if orbit.stop_counts == stops)
-    branch = follow(orbits[index], (0.15, a), Following(largest_step=2e-3, most_orbits=400), upward=False)
-    assert (branch[0].multipliers.unstable, branch[-1].multipliers.unstable) == (0, 1)
+    branch = follow(orbits[index], (0.15, a), ContinuationSettings(largest_step=2e-3, max_orbits=400), upward=False)
+    assert (branch[0].multipliers.unstable_count, branch[-1].multipliers.unstable_count) == (0, 1)
     # The last orbit lies beyond a.
     saddle = KnownOrbits(branch[-2].orbit).at(a)
     assert saddle.stop_counts == saddle_stops

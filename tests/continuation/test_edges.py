@@ -73,7 +73,7 @@ def test_saddle_orbits_are_followed_to_where_their_stability_changes(known, foun
     at = next(k for k, edge in enumerate(found) if edge.state.symmetry == Symmetry.SYNCHRONIZED)
     segment = segments[numbers[at]]
     a = [point.orbit.a for point in segment]
-    assert [point.multipliers.unstable for point in segment] == [0] + [1] * (len(segment) - 1)
+    assert [point.multipliers.unstable_count for point in segment] == [0] + [1] * (len(segment) - 1)
     assert a[0] < LOST < a[1]
     assert a[-1] >= 0.12
     # An orbit of the same branch is not followed again; the torus has none.
@@ -115,10 +115,10 @@ def test_the_crisis_names_the_saddle(merging, tmp_path: Path):
     write_summary(whole, tmp_path / "edges.nc")
     whole = open_summary(tmp_path / "edges.nc")
     assert edges.digest(whole).count("\n") == 1 + len(found)
-    met = edges.met_saddle(whole, "linearized", 0.1773)
+    met = edges.saddle_at_crisis(whole, "linearized", 0.1773)
     assert met["stops"].tolist() == [1, 1, 1]
     assert met["distance"] == near.distance
-    assert edges.met_saddle(whole, "nonlinear", 0.1773) == {}
+    assert edges.saddle_at_crisis(whole, "nonlinear", 0.1773) == {}
 
     values = {
         name: np.full(

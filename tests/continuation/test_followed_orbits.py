@@ -10,8 +10,8 @@ from burridge_knopoff import Chain, Model, MotionKind, OrbitError, law_of
 from burridge_knopoff.continuation import followed_orbits
 from burridge_knopoff.continuation.branch_changes import BranchChange, Change
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
-from burridge_knopoff.periodic_orbits.branch_segment import Half
-from burridge_knopoff.periodic_orbits.parameter_line import along_a
+from burridge_knopoff.periodic_orbits.branch_segment import HalfBranch
+from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch
 
 
@@ -32,10 +32,10 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, fail
     def alone(one, *_):
         if one.period == pytest.approx((failing or 0.0) * orbit.period, rel=1e-6):
             raise OrbitError("cannot be followed")
-        return Half([begin_branch(one, True, along_a(one.model.chain))])
+        return HalfBranch([begin_branch(one, True, line_along_a(one.model.chain))])
 
     monkeypatch.setattr(followed_orbits, "limit_cycle", limit_cycle)
-    monkeypatch.setattr(followed_orbits, "half", alone)
+    monkeypatch.setattr(followed_orbits, "follow_half_branch", alone)
     slots = {"branch": [0, 1, 2, 3], "side": [0] * 4, "kind": [MotionKind.PERIODIC] * 4, "period": [6.0] * 4}
     one = xr.Dataset({name: ("attractor", values) for name, values in slots.items()}).expand_dims("value")
     one.attrs["refine_longest_period"] = 500.0

@@ -9,8 +9,8 @@ import xarray
 import burridge_knopoff
 from burridge_knopoff import (
     Chain,
+    ContinuationSettings,
     EdgeSettings,
-    Following,
     InitialState,
     Model,
     SearchSettings,
@@ -74,12 +74,12 @@ def correct_calls():
         },
         "block_frequencies": {"model": MODEL, "state": STATE, "duration": 10.0},
         "fit_slope": {"magnitude": np.linspace(0.0, 1.0, 20), "low": 0.0, "high": 1.0},
-        "follow": {"orbit": orbit, "interval": (0.0864, 0.0866), "settings": Following(), "parameter": "a"},
+        "follow": {"orbit": orbit, "interval": (0.0864, 0.0866), "settings": ContinuationSettings(), "parameter": "a"},
         "follow_bifurcation": {
             "bifurcation": bifurcation,
             "parameters": ("a", "v"),
             "interval": (0.0999, 0.1001),
-            "settings": Following(first_step=1e-3, largest_step=1e-2),
+            "settings": ContinuationSettings(first_step=1e-3, largest_step=1e-2),
         },
         "label_states": {"model": MODEL, "attractors": [], "position": np.ones((1, 3)), "velocity": np.ones((1, 3))},
         "law_of": {"name": "linearized", "a": 0.08, "description": {}},

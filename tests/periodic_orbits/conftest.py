@@ -1,4 +1,4 @@
-"""The synchronized orbits of both laws, found once."""
+"""The synchronized orbits of both laws, computed once."""
 
 import pytest
 

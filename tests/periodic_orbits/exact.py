@@ -1,9 +1,9 @@
-"""A synchronized orbit handed to the 40-digit reference at an instant at which every block slips."""
+"""A synchronized orbit in the 40-digit reference, starting at a time at which every block slips."""
 
 from burridge_knopoff.periodic_orbits.flow import flow
 from tests.reference import reference_run
 
-# Added to doubles of order 1 without rounding; the 40 digits of the runs see it well.
+# It can be added to doubles of order 1 without rounding, and 40 digits resolve it.
 SHIFT = 2.0**-40
 
 

@@ -1,4 +1,4 @@
-"""Orbits and branches of which only what is told is set."""
+"""Stand-ins for orbits and branches that have only the given attributes."""
 
 from typing import Any, TypeVar
 
@@ -10,12 +10,12 @@ _T = TypeVar("_T")
 
 
 def stand_in(kind: type[_T], **told: Any) -> _T:
-    """Return an object of a class that has the attributes that are told, and no others."""
+    """Return an object of a class with the given attributes only."""
     one = object.__new__(kind)
     one.__dict__.update(told)
     return one
 
 
 def only(*keeping: complex) -> Multipliers:
-    """Return multipliers that have no others beside these."""
+    """Return an object that has only these multipliers."""
     return Multipliers(np.array(keeping), np.empty(0), power=1)

@@ -1,4 +1,4 @@
-"""Where bifurcations are and of which kind, on branches made by hand: their values, tangents and orbits are known."""
+"""Location and kind of bifurcations on hand-made branches with known values, tangents and orbits."""
 
 from types import SimpleNamespace
 
@@ -11,10 +11,10 @@ from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
 from burridge_knopoff.periodic_orbits.floquet import Multipliers
 from burridge_knopoff.periodic_orbits.following import BranchOrbit
-from burridge_knopoff.periodic_orbits.parameter_line import along_a
+from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from tests.periodic_orbits.stand_in import only, stand_in
 
-LINE = along_a(Chain(3))
+LINE = line_along_a(Chain(3))
 
 
 @pytest.mark.parametrize(
@@ -22,22 +22,22 @@ LINE = along_a(Chain(3))
     [
         # A pair on the unit circle.
         ((0.6 + 0.8j, 0.6 - 0.8j, 0.2), BifurcationKind.NEIMARK_SACKER),
-        # A real saddle, of which the product is 1, beside a pair that lies nearer to the circle than either.
+        # A real pair whose product is 1, together with a complex pair that is closer to the unit circle.
         ((2.0, 0.5, 0.7 + 0.6j, 0.7 - 0.6j), None),
-        # A real one nearer to the circle than the pair.
+        # A real multiplier closer to the unit circle than the pair.
         ((1.000001, 0.8 + 0.61j, 0.8 - 0.61j, 0.1), BifurcationKind.NEIMARK_SACKER),
-        # Pairs that are complex, and that are real to rounding, next to where they meet on the axis.
+        # Pairs that are complex, and real up to rounding, near the point where they meet on the real axis.
         ((1.0 + 2e-6j, 1.0 - 2e-6j, 0.1), BifurcationKind.NEIMARK_SACKER),
         ((1.0 + 5e-7j, 1.0 - 5e-7j, 0.1), None),
     ],
 )
 def test_the_pair_whose_product_is_1_tells_a_torus_from_a_saddle(values, kind):
     saddle = np.array([2.0, 0.5])
-    point = SimpleNamespace(multipliers=SimpleNamespace(keeping=np.array(values), breaking=saddle))
-    assert bifurcations.kind_at(point, (BifurcationKind.NEIMARK_SACKER, "keeping")) == kind
-    # Among the perturbations that part mirror blocks as well as among those that keep them together.
-    point = SimpleNamespace(multipliers=SimpleNamespace(keeping=saddle, breaking=np.array(values)))
-    assert bifurcations.kind_at(point, (BifurcationKind.NEIMARK_SACKER, "breaking")) == kind
+    point = SimpleNamespace(multipliers=SimpleNamespace(symmetry_preserving=np.array(values), symmetry_breaking=saddle))
+    assert bifurcations.kind_at(point, (BifurcationKind.NEIMARK_SACKER, "symmetry_preserving")) == kind
+    # The test applies to symmetry-breaking and to symmetry-preserving perturbations.
+    point = SimpleNamespace(multipliers=SimpleNamespace(symmetry_preserving=saddle, symmetry_breaking=np.array(values)))
+    assert bifurcations.kind_at(point, (BifurcationKind.NEIMARK_SACKER, "symmetry_breaking")) == kind
 
 
 @pytest.fixture
@@ -60,20 +60,24 @@ def branch(monkeypatch):
     ("slopes", "kind"), [((1.0, -1.0), BifurcationKind.FOLD), ((1.0, 1.0), None), ((-1.0, -1.0), None)]
 )
 def test_a_branch_turns_back_in_a_at_a_fold(monkeypatch, branch, slopes, kind):
-    """Where it does not, it is a symmetry other than the mirror's that breaks."""
+    """If the branch does not turn back, a symmetry other than the mirror symmetry breaks."""
     point = branch(lambda length: length - 0.3, at=1.0)
-    monkeypatch.setattr(bifurcations, "simplest", lambda orbit, _: SimpleNamespace(symmetry=orbit.symmetry, period=1.0))
-    found = bifurcations._root(point(0.0, slopes[0]), point(0.5, slopes[1]), (BifurcationKind.FOLD, "keeping"))
+    monkeypatch.setattr(
+        bifurcations, "minimal_form", lambda orbit, _: SimpleNamespace(symmetry=orbit.symmetry, period=1.0)
+    )
+    found = bifurcations._root(
+        point(0.0, slopes[0]), point(0.5, slopes[1]), (BifurcationKind.FOLD, "symmetry_preserving")
+    )
     assert (None if found is None else found[1].kind) == kind
     if found is not None:
         assert found[0] == pytest.approx(0.3)
-        assert found[1].turns
+        assert found[1].is_turning_point
 
 
 @pytest.mark.parametrize(
     ("place", "dead", "error"),
     [
-        # A noise that hides the sign within 3e-9, and one that hides it within 3e-8.
+        # Noise that hides the sign within 3e-9, and noise that hides it within 3e-8.
         (lambda length: length, 3e-9, 1e-8),
         (lambda length: length, 3e-8, 1e-7),
         (lambda length: 3.0 * length, 0.0, 3e-11),
@@ -83,7 +87,7 @@ def test_a_branch_turns_back_in_a_at_a_fold(monkeypatch, branch, slopes, kind):
     ],
 )
 def test_the_place_of_a_bifurcation_is_known_within_where_the_sign_changes(branch, place, dead, error):
-    """At least to the rounding of a."""
+    """The error is at least the rounding error of a."""
     point = branch(lambda length: np.expm1(3.0 * (length - 0.3)) if abs(length - 0.3) > dead else 0.0, place)
     (bifurcation,) = bifurcations._roots(point(0.0), point(0.5))
     assert bifurcation.a == pytest.approx(place(0.3))
@@ -91,8 +95,8 @@ def test_the_place_of_a_bifurcation_is_known_within_where_the_sign_changes(branc
     assert (bifurcation.before.length, bifurcation.after.length) == (0.0, 0.5)
 
 
-def test_noise_of_one_sign_holds_no_bifurcation_from_both_sides(monkeypatch, branch):
-    """Where it hides within 3e-9 on which side an orbit is, the two that hold the bifurcation are 1e-8 from it."""
+def test_noise_of_one_sign_is_no_bifurcation(monkeypatch, branch):
+    """If noise hides the sign within 3e-9, the bracket of the bifurcation has a half-width of 1e-8."""
     point = branch(lambda length: length - 0.3 if abs(length - 0.3) > 3e-9 else 1e-15)
     monkeypatch.setattr(bifurcations, "brentq", lambda value, low, high, **_: 0.3)
     (bifurcation,) = bifurcations._roots(point(0.0), point(0.5))
@@ -100,7 +104,7 @@ def test_noise_of_one_sign_holds_no_bifurcation_from_both_sides(monkeypatch, bra
 
 
 def test_a_value_that_is_0_for_long_is_no_bifurcation(monkeypatch, branch):
-    """Beyond 1e-7 on both sides its sign is no sign of a change, nor is that of an orbit which is not found."""
+    """There is no bifurcation if the sign is the same 1e-7 away on both sides, or if an orbit is not found."""
 
     def lost(first, length):
         raise OrbitError("none")
@@ -112,7 +116,7 @@ def test_a_value_that_is_0_for_long_is_no_bifurcation(monkeypatch, branch):
 
 
 def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeypatch):
-    """A pair leaves the unit circle, one multiplier comes to 1 and one to -1; farther on another one would."""
+    """A pair leaves the unit circle, one multiplier reaches 1 and one reaches −1; another one would do so later."""
 
     def point(length):
         pair = (1.0 + length - 0.1) * np.array([0.6 + 0.8j, 0.6 - 0.8j])
@@ -141,21 +145,24 @@ def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeyp
     ],
 )
 def test_a_short_stick_is_none_at_a_grazing(kind, sticks, shortest):
-    """Within 1e-10 of it what shrinks like a root is shorter than 1e-4."""
+    """Within 1e-10 of the grazing, a duration that vanishes like a root is shorter than 1e-4."""
     orbit = SimpleNamespace(model=Model(Chain(3), law_of("linearized", 0.1)))
-    here = SimpleNamespace(orbit=orbit, contacts=SimpleNamespace(stick=np.array(sticks)))
-    assert Bifurcation(0.1, 1e-9, kind, here, here, None, turns=False).stick_time == shortest
+    here = SimpleNamespace(orbit=orbit, grazing_distances=SimpleNamespace(stick=np.array(sticks)))
+    assert Bifurcation(0.1, 1e-9, kind, here, here, None, is_turning_point=False).stick_time == shortest
 
 
 @pytest.mark.parametrize(("before", "expected"), [(2.0004, 2.0), (3.9996, 4.0), (6.01, 6.0)])
 def test_the_period_at_a_bifurcation_is_that_of_the_orbits_before_it(before, expected):
-    """Of what joins an orbit of two or three times its own period: so many of its own."""
+    """The period of a branch that joins an orbit is two or three times that of this orbit."""
     points = [SimpleNamespace(orbit=SimpleNamespace(period=period)) for period in (2.0, before)]
-    assert Bifurcation(0.1, 1e-9, BifurcationKind.PERIOD_DOUBLING, *points, None, turns=False).period == expected
+    assert (
+        Bifurcation(0.1, 1e-9, BifurcationKind.PERIOD_DOUBLING, *points, None, is_turning_point=False).period
+        == expected
+    )
 
 
 @pytest.mark.parametrize(
-    ("remaining", "slope", "beyond", "a", "error", "turns"),
+    ("distance", "slope", "beyond", "a", "error", "turns"),
     [
         (1e-3, 0.5, 0.2, 0.1005, 5e-4, False),
         (1e-3, -0.5, -0.2, 0.0995, 5e-4, False),
@@ -165,11 +172,13 @@ def test_the_period_at_a_bifurcation_is_that_of_the_orbits_before_it(before, exp
         (1e-11, 0.01, 0.2, 0.1, 1e-12, False),
     ],
 )
-def test_an_orbit_grazes_at_the_length_that_is_left(remaining, slope, beyond, a, error, turns):
-    point = stand_in(BranchOrbit, line=LINE, value=0.1, remaining=remaining, tangent=[9.0, slope], corner=True)
-    following = [] if beyond is None else [stand_in(BranchOrbit, line=LINE, tangent=[-9.0, beyond], corner=False)]
+def test_an_orbit_grazes_at_the_length_that_is_left(distance, slope, beyond, a, error, turns):
+    point = stand_in(
+        BranchOrbit, line=LINE, value=0.1, distance_to_grazing=distance, tangent=[9.0, slope], is_grazing=True
+    )
+    following = [] if beyond is None else [stand_in(BranchOrbit, line=LINE, tangent=[-9.0, beyond], is_grazing=False)]
     (bifurcation,) = locate_bifurcations([point, *following])
-    assert (bifurcation.kind, bifurcation.turns) == (BifurcationKind.GRAZING, turns)
+    assert (bifurcation.kind, bifurcation.is_turning_point) == (BifurcationKind.GRAZING, turns)
     assert (bifurcation.a, bifurcation.error) == (
         pytest.approx(a, abs=1e-12),
         pytest.approx(error, rel=1e-9, abs=0.0),
@@ -189,7 +198,7 @@ def test_an_orbit_grazes_at_the_length_that_is_left(remaining, slope, beyond, a,
     ],
 )
 def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_that(monkeypatch, upward, downward, expected):
-    """It is looked for both ways, as far as the branch has come in its last steps and twice its last change of a."""
+    """It is searched for both ways, over the length of the last steps and twice the last change of a."""
     asked, own = [], locate_bifurcations
 
     def followed(orbit, interval, *, parameter, upward):
@@ -201,14 +210,14 @@ def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_that(monkeyp
         if branch not in (True, False):
             return own(branch)
         found = upward if branch else downward
-        return [Bifurcation(a, 1e-9, kind, "simple", None, None, turns=True) for a, kind in found]
+        return [Bifurcation(a, 1e-9, kind, "simple", None, None, is_turning_point=True) for a, kind in found]
 
     monkeypatch.setattr(bifurcations, "follow", followed)
     monkeypatch.setattr(bifurcations, "locate_bifurcations", located)
     simple = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=2.0)
-    point = stand_in(BranchOrbit, line=LINE, orbit=orbit, value=0.11, length=0.02, corner=False)
-    end = stand_in(BranchOrbit, line=LINE, orbit=orbit, value=0.12, length=0.03, joined=simple, corner=False)
+    point = stand_in(BranchOrbit, line=LINE, orbit=orbit, value=0.11, length=0.02, is_grazing=False)
+    end = stand_in(BranchOrbit, line=LINE, orbit=orbit, value=0.12, length=0.03, reduced_orbit=simple, is_grazing=False)
     found = list(own([point, end]))
     assert asked == [(simple, pytest.approx(0.05), pytest.approx(0.19))] * 2
     if expected is None:
@@ -223,7 +232,7 @@ def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_that(monkeyp
     )
     assert bifurcation.before is point
     assert bifurcation.after is None
-    assert not bifurcation.turns
+    assert not bifurcation.is_turning_point
 
 
 @pytest.mark.parametrize(
@@ -235,12 +244,12 @@ def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_that(monkeyp
     ],
 )
 def test_a_fold_next_to_a_simpler_orbit_is_where_that_one_branches(monkeypatch, symmetry, away, kind):
-    """Orbits that move as one have no simpler ones."""
+    """Synchronized orbits have no simpler form."""
     orbit, simple = (SimpleNamespace(symmetry=one, period=2.0) for one in (symmetry, Symmetry.SYMMETRIC))
-    monkeypatch.setattr(bifurcations, "simplest", lambda orbit, tolerance: simple if away <= tolerance else orbit)
-    assert bifurcations.kind_at(SimpleNamespace(orbit=orbit), (BifurcationKind.FOLD, "keeping")) == kind
+    monkeypatch.setattr(bifurcations, "minimal_form", lambda orbit, tolerance: simple if away <= tolerance else orbit)
+    assert bifurcations.kind_at(SimpleNamespace(orbit=orbit), (BifurcationKind.FOLD, "symmetry_preserving")) == kind
     assert (
-        bifurcations.kind_at(SimpleNamespace(orbit=orbit), (BifurcationKind.PERIOD_DOUBLING, "keeping"))
+        bifurcations.kind_at(SimpleNamespace(orbit=orbit), (BifurcationKind.PERIOD_DOUBLING, "symmetry_preserving"))
         == BifurcationKind.PERIOD_DOUBLING
     )
 
@@ -255,4 +264,4 @@ def test_a_fold_next_to_a_simpler_orbit_is_where_that_one_branches(monkeypatch, 
 )
 def test_what_a_branch_begins_as_tells_its_bifurcation(symmetry, period, kind):
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=2.0)
-    assert bifurcations._joint_kind(orbit, SimpleNamespace(symmetry=symmetry, period=period)) == kind
+    assert bifurcations._branch_point_kind(orbit, SimpleNamespace(symmetry=symmetry, period=period)) == kind

@@ -1,4 +1,4 @@
-"""Bifurcations along followed branches against those of the synchronized orbit, single orbits, and runs."""
+"""Bifurcations along branches, compared with those of the synchronized orbit, with single orbits and with runs."""
 
 from types import SimpleNamespace
 
@@ -9,13 +9,13 @@ from burridge_knopoff import Chain, ChainState, InitialState, Model, OrbitError,
 from burridge_knopoff.periodic_orbits import bifurcations, following
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
-from burridge_knopoff.periodic_orbits.branch_segment import BranchSegment, half
-from burridge_knopoff.periodic_orbits.following import Following, follow
+from burridge_knopoff.periodic_orbits.branch_segment import BranchSegment, follow_half_branch
+from burridge_knopoff.periodic_orbits.following import ContinuationSettings, follow
 from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit
 from burridge_knopoff.running.runner import Runner
 
 MINUS = (-0.989, -0.993, -0.991)
-STEPS = Following(largest_step=2e-3)
+STEPS = ContinuationSettings(largest_step=2e-3)
 #: Where the synchronized orbit of the paper's chain changes; `test_synchrony.py` holds them to 40-digit arithmetic.
 CRITICAL = {"linearized": 0.086972904666, "nonlinear": 0.088717222971}
 GRAZING = {"linearized": 0.035539733583, "nonlinear": 0.035803901459}
@@ -23,20 +23,20 @@ PERIOD_DOUBLING = 0.272317183794
 
 
 def settled(a, position=MINUS, law="linearized", velocity=(0.099, 0.1012, 0.1023)):
-    """Return the closed orbit that a long run of the paper's chain ends on."""
+    """Return the periodic orbit on which a long run of the paper's chain ends."""
     model = Model(Chain(3), law_of(law, a))
     end = Runner(model).after(model.begin(InitialState("one", position, velocity)), 10_000.0)
     return limit_cycle(model, end)
 
 
 def at(orbit, a):
-    """Return the orbit that an orbit is at another a."""
+    """Return the continuation of an orbit to another a."""
     return find_periodic_orbit(orbit.model.at(a), orbit.reference, orbit.return_time, orbit.symmetry)
 
 
 def segment(orbit, a_range, beyond, settings):
-    """Return both halves of the segment around a stable orbit."""
-    return BranchSegment(*(half(orbit, upward, a_range, beyond, settings) for upward in (False, True)))
+    """Return the segment around a stable orbit."""
+    return BranchSegment(*(follow_half_branch(orbit, upward, a_range, beyond, settings) for upward in (False, True)))
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +48,7 @@ def six():
 
 
 def ends_on(orbit, a):
-    """Return the stops of the closed orbit that a run ends on which begins on an orbit, but at another a; else none."""
+    """Return the stops of the periodic orbit that a run from an orbit reaches at another a; None if it reaches none."""
     model = orbit.model.at(a)
     try:
         return limit_cycle(model, Runner(model).after(orbit.reference, 3000.0)).stop_counts
@@ -63,7 +63,7 @@ def test_synchrony_is_lost_in_a_pitchfork(families, law):
     assert bifurcation.error <= 1e-10
     assert bifurcation.loses_stability
     assert not bifurcation.keeps_stability
-    assert not bifurcation.turns
+    assert not bifurcation.is_turning_point
 
 
 def test_an_orbit_is_followed_within_a_range_that_it_lies_in(families, law):
@@ -76,13 +76,13 @@ def test_an_orbit_is_followed_within_a_range_that_it_lies_in(families, law):
     [((0, 0), False, True), ((0, 1), True, False), ((0, None), True, False), ((1, 0), False, False)],
 )
 def test_stability_on_both_sides_of_a_bifurcation(unstable, loses, keeps):
-    sides = [None if n is None else SimpleNamespace(multipliers=SimpleNamespace(unstable=n)) for n in unstable]
-    bifurcation = Bifurcation(0.1, 1e-9, BifurcationKind.GRAZING, sides[0], *sides, turns=False)
+    sides = [None if n is None else SimpleNamespace(multipliers=SimpleNamespace(unstable_count=n)) for n in unstable]
+    bifurcation = Bifurcation(0.1, 1e-9, BifurcationKind.GRAZING, sides[0], *sides, is_turning_point=False)
     assert (bifurcation.loses_stability, bifurcation.keeps_stability) == (loses, keeps)
 
 
 def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
-    """The return has no square root there: its derivative jumps, and the stick grows like a root of the way."""
+    """The return map has no square root: its derivative jumps, and the duration of the stick grows like a root."""
     for a, upward in ((0.03, True), (0.04, False)):
         points = follow(families[law].at(a), (0.02, 0.05), STEPS, upward=upward)
         (bifurcation,) = locate_bifurcations(points)
@@ -93,7 +93,7 @@ def test_the_middle_block_begins_to_stick_at_a_grazing(families, law):
         assert not bifurcation.loses_stability
     near = [point for point in points if 1e-7 < point.orbit.a - bifurcation.a < 1e-4]
     near = [point for point in near if point.orbit.stop_counts == (1, 1, 1)]
-    slope = [float(point.contacts.stick[1]) ** 2 / (point.orbit.a - bifurcation.a) for point in near]
+    slope = [float(point.grazing_distances.stick[1]) ** 2 / (point.orbit.a - bifurcation.a) for point in near]
     assert len(slope) > 2
     assert slope == pytest.approx([slope[-1]] * len(slope), rel=0.1)
 
@@ -109,26 +109,26 @@ def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing():
     assert found.downward.end.kind == BifurcationKind.PITCHFORK
     assert found.downward.end.a == pytest.approx(CRITICAL["linearized"], abs=1e-10)
     assert found.upward.end.kind == BifurcationKind.GRAZING
-    # The stick of one end block vanishes, and with it the stability: a multiplier jumps over the unit circle.
+    # The stick of one end block vanishes and stability is lost: a multiplier jumps across the unit circle.
     assert found.upward.end.after.orbit.stop_counts in ((1, 1, 0), (0, 1, 1))
     assert np.abs(found.upward.end.before.multipliers.whole[0]) < 0.5
     assert np.abs(found.upward.end.after.multipliers.whole[0]) > 1.3
 
 
 def test_what_branches_off_joins_only_where_it_is_near():
-    """At the root of a multiplier's function an orbit far from any simpler one is at a fold."""
+    """At the root of the test function, an orbit far from any simpler one is at a fold."""
     (point, *_) = follow(settled(0.1), (0.09999, 0.10001), STEPS)
-    assert bifurcations.kind_at(point, (BifurcationKind.FOLD, "keeping")) == BifurcationKind.FOLD
+    assert bifurcations.kind_at(point, (BifurcationKind.FOLD, "symmetry_preserving")) == BifurcationKind.FOLD
 
 
 def test_stable_and_unstable_orbits_meet_where_they_graze(six):
     for bifurcation in (six.downward.end, six.upward.end):
         assert bifurcation.kind == BifurcationKind.GRAZING
-        assert bifurcation.turns
+        assert bifurcation.is_turning_point
         assert bifurcation.error < 1e-10
         assert sorted(bifurcation.after.orbit.stop_counts) == [2, 6, 6]
-        assert bifurcation.after.multipliers.unstable == 1
-    assert six.stable[0].orbit.a == pytest.approx(six.downward.end.a, abs=1e-9)
+        assert bifurcation.after.multipliers.unstable_count == 1
+    assert six.stable_orbits[0].orbit.a == pytest.approx(six.downward.end.a, abs=1e-9)
 
 
 def test_runs_leave_an_orbit_beyond_its_bifurcation(six):
@@ -151,7 +151,7 @@ def seven():
 def test_a_fold_against_orbits_found_on_either_side_of_it(seven):
     bifurcation = seven.upward.end
     assert bifurcation.kind == BifurcationKind.FOLD
-    assert bifurcation.turns
+    assert bifurcation.is_turning_point
     assert bifurcation.at.multipliers.whole[0] == pytest.approx(1.0, abs=1e-5)
     here = bifurcation.before.orbit
     gap = bifurcation.a - here.a
@@ -162,23 +162,23 @@ def test_a_fold_against_orbits_found_on_either_side_of_it(seven):
         at(here, bifurcation.a + 1e-8)
 
 
-def test_a_bifurcation_does_not_depend_on_the_side_that_it_is_come_to_from(seven):
-    again = segment(seven.stable[-1].orbit, (0.13, 0.16), 4, Following(largest_step=3e-4))
+def test_a_bifurcation_does_not_depend_on_the_direction_of_continuation(seven):
+    again = segment(seven.stable_orbits[-1].orbit, (0.13, 0.16), 4, ContinuationSettings(largest_step=3e-4))
     for one, other in ((seven.downward.end, again.downward.end), (seven.upward.end, again.upward.end)):
         assert one.a == pytest.approx(other.a, abs=1e-10)
-        assert (one.kind, one.turns) == (other.kind, other.turns)
+        assert (one.kind, one.is_turning_point) == (other.kind, other.is_turning_point)
 
 
 def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
     doubled = settled(0.135)
     assert sorted(doubled.stop_counts) == [12, 26, 26]
-    found = segment(doubled, (0.13, 0.15), 4, Following(largest_step=1e-4))
+    found = segment(doubled, (0.13, 0.15), 4, ContinuationSettings(largest_step=1e-4))
     assert found.upward.end.kind == BifurcationKind.PERIOD_DOUBLING
-    doubling = segment(found.upward.orbits[-1].joined, (0.13, 0.15), 4, STEPS).downward.end
+    doubling = segment(found.upward.orbits[-1].reduced_orbit, (0.13, 0.15), 4, STEPS).downward.end
     assert doubling.a == pytest.approx(found.upward.end.a, abs=1e-10)
     assert doubling.at.multipliers.whole[0] == pytest.approx(-1.0, abs=1e-7)
-    # The square of what the doubled orbit misses after half its period falls to 0 there.
-    near = [point.orbit for point in found.stable if 0.0 < doubling.a - point.orbit.a < 6e-4]
+    # The squared distance of the doubled orbit from its start after half its period falls to 0 there.
+    near = [point.orbit for point in found.stable_orbits if 0.0 < doubling.a - point.orbit.a < 6e-4]
     ends = [Runner(orbit.model).after(orbit.reference, 0.5 * orbit.period) for orbit in near]
     missed = [np.abs(end.vector() - orbit.reference.vector()).max() for end, orbit in zip(ends, near, strict=True)]
     slope, offset = np.polyfit([orbit.a for orbit in near], np.square(missed), 1)
@@ -188,7 +188,7 @@ def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
 def test_a_flip_may_break_the_mirror_symmetry(law):
-    """Two blocks that move as one part so that each does in a period what the other one does in the next."""
+    """Two synchronized blocks separate so that each does in one period what the other does in the next."""
     model = Model(Chain(2), law_of(law, 0.05))
     one = limit_cycle(model, model.begin(InitialState("one", (-0.9, -0.9), (0.1, 0.1))), 1000.0)
     (doubling,) = locate_bifurcations(follow(one, (0.045, 0.055)))
@@ -197,11 +197,11 @@ def test_a_flip_may_break_the_mirror_symmetry(law):
     start = ChainState(start.position + np.array([0.002, -0.002]), start.velocity, start.stuck)
     doubled = find_periodic_orbit(model.at(doubling.a + 2e-4), start, doubling.at.orbit.period, Symmetry.SYMMETRIC)
     branch = follow(doubled, (0.045, 0.055), upward=False)
-    assert branch[-1].joined.period == pytest.approx(0.5 * doubled.period, rel=1e-3)
+    assert branch[-1].reduced_orbit.period == pytest.approx(0.5 * doubled.period, rel=1e-3)
     (end,) = locate_bifurcations(branch)
     assert end.kind == BifurcationKind.PERIOD_DOUBLING
     assert end.a == pytest.approx(doubling.a, abs=1e-9)
-    # Found without its symmetry it is followed as what it is.
+    # An orbit found without its symmetry is continued in its minimal form.
     plain = find_periodic_orbit(doubled.model, doubled.reference, doubled.period, Symmetry.ASYMMETRIC)
     again = follow(plain, (0.045, 0.055), upward=False)
     assert [bifurcation.kind for bifurcation in locate_bifurcations(again)] == [BifurcationKind.PERIOD_DOUBLING]
@@ -225,7 +225,7 @@ def test_a_torus_branches_off_where_perturbations_stop_decaying():
 
 @pytest.mark.parametrize("succeeds", [True, False])
 def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds):
-    """Up to 5e-4, and after 200 orbits, or below 1e-9."""
+    """Steps grow to 5e-4; the branch ends after 200 orbits, or if steps fall below 1e-9."""
     lengths = []
 
     def step(points, length):
@@ -233,7 +233,7 @@ def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds)
         return points[-1] if succeeds else None
 
     monkeypatch.setattr(following, "smooth_step", step)
-    monkeypatch.setattr(following, "come_to_corner", lambda here, length: [])
+    monkeypatch.setattr(following, "approach_grazing", lambda here, length: [])
     found = follow(families["linearized"].at(0.08), (0.01, 0.1))
     assert len(found) == (200 if succeeds else 1)
     expected = [1e-4, 2e-4, 4e-4, *[5e-4] * 196] if succeeds else [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9]
@@ -241,7 +241,7 @@ def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds)
 
 
 def test_a_branch_ends_where_friction_drops_and_an_orbit_grazes():
-    """There a block that stops for however short a time starts with a jump: no orbit goes on from the grazing one."""
+    """Even the shortest stick ends with a jump, so that the branch ends at the grazing."""
     orbit = settled(0.05, law="carlson_langer")
     points = follow(orbit, (0.01, 0.06), STEPS, upward=False)
     assert 0.02 < points[-1].orbit.a < 0.05

@@ -1,4 +1,4 @@
-"""Steps along a branch that keep its stops, and corners: how one is come to, and what is beyond it."""
+"""Steps along a branch that keep its stops, the approach to a corner, and the continuation beyond it."""
 
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
@@ -9,7 +9,7 @@ import pytest
 from burridge_knopoff import Chain, ChainState, OrbitError, Symmetry
 from burridge_knopoff.model.own_units import OwnUnits
 from burridge_knopoff.periodic_orbits import border_collision
-from burridge_knopoff.periodic_orbits.parameter_line import along_a
+from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from tests.periodic_orbits.stand_in import only
 
@@ -24,12 +24,14 @@ from tests.periodic_orbits.stand_in import only
         ((0.2,), 0.1, np.inf),
     ],
 )
-def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(values, length, expected):
+def test_a_branch_point_lies_where_a_multiplier_reaches_1(values, length, expected):
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC)
     way = [SimpleNamespace(orbit=orbit, multipliers=only(1.0 + value), length=length) for value in values]
-    assert border_collision._joint_ahead(way) == pytest.approx(expected)
-    # A longer way has the same end.
-    ahead = border_collision._joint_ahead([SimpleNamespace(orbit=orbit, multipliers=only(10.0), length=9.0), *way])
+    assert border_collision._distance_to_branch_point(way) == pytest.approx(expected)
+    # Earlier points of the path do not matter.
+    ahead = border_collision._distance_to_branch_point(
+        [SimpleNamespace(orbit=orbit, multipliers=only(10.0), length=9.0), *way]
+    )
     assert ahead == pytest.approx(expected) or len(way) == 1
 
 
@@ -39,14 +41,14 @@ def test_a_joint_lies_ahead_where_a_multiplier_comes_to_1(values, length, expect
         ((1, 2), None, np.inf, True),
         ((2, 1), None, np.inf, False),
         (None, None, np.inf, False),  # none is found
-        # A simpler orbit ends a branch only where it joins it.
+        # A simpler orbit ends a branch only where the branch joins it.
         ((1, 2), "simpler", 0.19, True),
         ((1, 2), "simpler", 0.21, False),
         ((1, 2), "simpler", np.inf, False),
     ],
 )
 def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
-    found = BranchOrbit(SimpleNamespace(stop_counts=stop_counts), np.zeros(4), along_a(Chain(1)))
+    found = BranchOrbit(SimpleNamespace(stop_counts=stop_counts), np.zeros(4), line_along_a(Chain(1)))
 
     def step(point, length):
         if stop_counts is None:
@@ -54,13 +56,13 @@ def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
         return found
 
     monkeypatch.setattr(border_collision, "step_along", step)
-    monkeypatch.setattr(border_collision, "simpler_orbit", lambda orbit: simpler)
-    monkeypatch.setattr(border_collision, "_joint_ahead", lambda way: ahead)
+    monkeypatch.setattr(border_collision, "reduced_orbit", lambda orbit: simpler)
+    monkeypatch.setattr(border_collision, "_distance_to_branch_point", lambda way: ahead)
     taken = border_collision.smooth_step([SimpleNamespace(orbit=SimpleNamespace(stop_counts=(1, 2)))], 0.1)
     assert (taken is not None) == made
     if made:
         assert taken.orbit is found.orbit
-        assert taken.joined == simpler
+        assert taken.reduced_orbit == simpler
 
 
 @pytest.mark.parametrize(
@@ -68,7 +70,7 @@ def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
     [
         ((0.5, 0.9), (0.4, 0.6), 0.2),
         ((0.5, 0.9), (0.6, 0.6), 0.2),
-        # What grows, stays, or is not there is not ahead.
+        # A distance that grows, stays constant or is infinite predicts no grazing.
         ((0.5, np.inf), (0.6, np.inf), np.inf),
         ((0.5, 0.3), (0.5, 0.5), np.inf),
         ((0.5, np.inf), (0.4, 0.2), 0.4),
@@ -76,31 +78,31 @@ def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
 )
 def test_a_grazing_is_ahead_where_what_is_0_there_falls(before, here, expected):
     points = [
-        SimpleNamespace(contacts=SimpleNamespace(values=lambda told=told: np.array(told)), length=0.1)
+        SimpleNamespace(grazing_distances=SimpleNamespace(values=lambda told=told: np.array(told)), length=0.1)
         for told in (before, here)
     ]
-    assert border_collision.corner_ahead(*points) == pytest.approx(expected)
+    assert border_collision.distance_to_grazing(*points) == pytest.approx(expected)
 
 
 @dataclass(frozen=True)
 class Place:
-    """A point of a straight branch, which has a corner at 8e-4; what is 0 there falls like a power of the way left."""
+    """A point of a straight branch with a corner at 8e-4; the grazing distance is a power of the remaining length."""
 
     orbit: float
     length: float = 1e-3
-    joined: str | None = None
-    remaining: float = np.nan
+    reduced_orbit: str | None = None
+    distance_to_grazing: float = np.nan
     power: int = 1
     corner: float = 8e-4
 
     @property
-    def contacts(self):
+    def grazing_distances(self):
         return SimpleNamespace(values=lambda: np.array([(self.corner - self.orbit) ** self.power, np.inf]))
 
 
 @pytest.fixture
 def approach(monkeypatch):
-    """Return how a corner is come to from 0, with the steps that are tried; those beyond it find nothing."""
+    """Return the approach to a corner from 0, and the attempted steps; steps beyond the corner fail."""
 
     def come(length, fails=lambda tried: False, joint=np.inf, **told):
         tried = []
@@ -111,27 +113,27 @@ def approach(monkeypatch):
             place = way[-1].orbit + length
             if place > way[-1].corner or fails(len(tried)):
                 return None
-            return replace(way[-1], orbit=place, length=length, joined="simpler" if place > joint else None)
+            return replace(way[-1], orbit=place, length=length, reduced_orbit="simpler" if place > joint else None)
 
         monkeypatch.setattr(border_collision, "smooth_step", step)
-        way = border_collision.come_to_corner([Place(place, **told) for place in (-2e-3, -1e-3, 0.0)], length)
+        way = border_collision.approach_grazing([Place(place, **told) for place in (-2e-3, -1e-3, 0.0)], length)
         return way, tried
 
     return come
 
 
-def test_a_corner_is_come_to_by_steps_that_leave_three_hundredths_of_the_way(approach):
-    """Up to 1e-10 from it, after a hundredth of the length within which it lies."""
+def test_each_step_to_a_corner_leaves_three_percent_of_the_length(approach):
+    """The first step is a hundredth of the length, and the last point is within 1e-10 of the corner."""
     way, tried = approach(1e-3)
     left = 7.9e-4 * 0.03 ** np.arange(6)
     assert tried == pytest.approx([1e-5, *(0.97 * left[:-1])], rel=1e-4, abs=0.0)
     assert [point.orbit for point in way] == pytest.approx(8e-4 - left, rel=1e-9)
-    assert np.isnan([point.remaining for point in way[:-1]]).all()
-    assert way[-1].remaining == pytest.approx(1.92e-11, rel=1e-2, abs=0.0)
+    assert np.isnan([point.distance_to_grazing for point in way[:-1]]).all()
+    assert way[-1].distance_to_grazing == pytest.approx(1.92e-11, rel=1e-2, abs=0.0)
 
 
-def test_steps_that_fail_are_made_again_shorter(approach):
-    """And the next ones are more cautious for a while."""
+def test_failed_steps_are_repeated_with_a_shorter_length(approach):
+    """The following steps are a smaller share of the predicted length."""
     _, tried = approach(1e-3, lambda tried: tried in (1, 2))
     left = np.array([8e-4 - 1.6e-6])
     for share in (0.3104, 0.6208, 0.97):
@@ -141,20 +143,20 @@ def test_steps_that_fail_are_made_again_shorter(approach):
 
 @pytest.mark.parametrize(("length", "count"), [(1e-3, 13), (1.0, 15)])
 def test_a_corner_to_which_no_step_leads_is_given_up(approach, length, count):
-    """Where steps would be shorter than 1e-10, or after fifteen in vain."""
+    """The approach ends if steps become shorter than 1e-10, or after fifteen failures."""
     way, tried = approach(length, lambda tried: True)
     assert way == []
     assert tried == pytest.approx([0.01 * length * 0.4**k for k in range(count)], rel=1e-9, abs=0.0)
 
 
 def test_a_corner_that_comes_no_nearer_is_given_up(approach):
-    """What falls like a fourth power foretells a quarter of the way."""
+    """A distance that falls like a fourth power predicts a quarter of the remaining length."""
     way, tried = approach(1e-3, power=4)
     assert len(tried) == len(way) == 32
-    assert not [point for point in way if point.remaining > 0.0]
+    assert not [point for point in way if point.distance_to_grazing > 0.0]
 
 
-def test_no_corner_is_looked_for_beyond_the_length_within_which_it_lies(approach):
+def test_no_corner_is_searched_for_beyond_the_given_length(approach):
     way, tried = approach(1e-3, corner=1.0)
     assert tried == pytest.approx([1e-5, 1e-3])
     assert [point.orbit for point in way] == pytest.approx([1e-5, 1.01e-3])
@@ -162,13 +164,13 @@ def test_no_corner_is_looked_for_beyond_the_length_within_which_it_lies(approach
 
 def test_the_way_to_a_corner_ends_where_the_branch_joins_another_one(approach):
     way, tried = approach(1e-3, joint=5e-4)
-    assert [point.joined for point in way] == [None, "simpler"]
+    assert [point.reduced_orbit for point in way] == [None, "simpler"]
     assert len(tried) == 2
 
 
 @pytest.fixture
 def turn(monkeypatch):
-    """Return what is found beyond a corner, where steps along a tangent come to orbits of these stops in turn."""
+    """Return the orbit found beyond a corner if successive steps lead to orbits with these stops."""
 
     def turned(signatures, drops=False, simple=(), lost=(), here=(1, 2)):
         tried, tangents, left = [], [], iter(signatures)
@@ -186,31 +188,33 @@ def turn(monkeypatch):
                 raise OrbitError("none")
             return SimpleNamespace(orbit=SimpleNamespace(stop_counts=stop_counts))
 
-        monkeypatch.setattr(border_collision, "drops", lambda model: drops)
+        monkeypatch.setattr(border_collision, "has_friction_drop", lambda model: drops)
         monkeypatch.setattr(border_collision, "orbit_of", orbit_of)
         monkeypatch.setattr(border_collision, "tangent_of", lambda number, line: np.array([number, 0.0]))
         monkeypatch.setattr(border_collision, "step_along", step)
         monkeypatch.setattr(
-            border_collision, "simpler_orbit", lambda orbit: "one" if orbit.stop_counts in simple else None
+            border_collision, "reduced_orbit", lambda orbit: "one" if orbit.stop_counts in simple else None
         )
         reference = ChainState(np.array([0.5, 0.25]), np.zeros(2), np.zeros(2, dtype=bool))
         known = {"model": SimpleNamespace(blocks=2), "return_time": 1.0, "symmetry": None}
         orbit = SimpleNamespace(reference=reference, stop_counts=here, **known)
-        line = SimpleNamespace(coordinate=lambda model: 2e-6, model=lambda model, a: a, least=0.0, units=OwnUnits())
+        line = SimpleNamespace(
+            coordinate=lambda model: 2e-6, model=lambda model, a: a, lower_bound=0.0, units=OwnUnits()
+        )
         point = SimpleNamespace(orbit=orbit, line=line, tangent=np.array([4.0, -2.0, 0.0, 0.0, 0.0, -1.0]))
-        found = border_collision.turn_corner(point)
+        found = border_collision.switch_branch(point)
         return found and found.orbit.stop_counts, tried, tangents
 
     return turned
 
 
 def test_beyond_a_corner_other_stops_follow(turn):
-    """On either side of it; not none at all, the same ones, or several turns of a simpler orbit."""
+    """It may lie on either side; it must have stops, other stops, and must not repeat a simpler orbit."""
     none, same, twice = (0, 0), (1, 2), (2, 2)
     found, tried, tangents = turn([None, same, none, twice, (1, 1)], simple=(twice,))
     assert found == (1, 1)
     assert tried == [(1e-5, 1, 0), (1e-5, -1, 0), (1e-4, 1, 0), (1e-4, -1, 0), (1e-6, 1, 0)]
-    # The tangent is that of an orbit a little farther, at an a that is not negative.
+    # The tangent is that of an orbit slightly farther on, at an a that is not negative.
     assert tangents == [(0.0, pytest.approx(0.50001), pytest.approx(0.249995))]
     assert turn([], drops=True) == (None, [], [])
     assert turn([(1, 1)])[0] == (1, 1)
@@ -221,7 +225,7 @@ def test_beyond_a_corner_other_stops_follow(turn):
     [((3, 2, 3), True), ((2, 2, 2), True), ((3, 2, 2), False), ((2, 2, 3), False), ((0, 0, 0), False)],
 )
 def test_a_branch_does_not_go_on_from_a_corner_in_a_mirror(turn, beyond, goes_on):
-    """Nor with the stops that it came with, or with none: there orbits begin that break a symmetry."""
+    """It does not continue with its own stops or with none: at such a corner less symmetric orbits begin."""
     assert turn([beyond] * 24, here=(2, 2, 3))[0] == (beyond if goes_on else None)
 
 

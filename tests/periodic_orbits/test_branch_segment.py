@@ -1,10 +1,10 @@
-"""Which orbits a segment holds, told of made-up ones."""
+"""Which orbits belong to a segment, tested with stand-ins."""
 
 from types import SimpleNamespace
 
 import pytest
 
-from burridge_knopoff.periodic_orbits.branch_segment import CLOSE, BranchSegment, Half, _enough
+from burridge_knopoff.periodic_orbits.branch_segment import CLOSE, BranchSegment, HalfBranch, _stop_after_unstable
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
 
@@ -15,15 +15,15 @@ def an_orbit(a, period=1.0, stop_counts=(1, 2, 1), symmetry=Symmetry.ASYMMETRIC,
     )
 
 
-def point(a, *, unstable=0, length=0.01, corner=False, **look):
+def point(a, *, unstable=0, length=0.01, is_grazing=False, **look):
     orbit = an_orbit(a, **look)
-    multipliers = SimpleNamespace(unstable=unstable)
-    return SimpleNamespace(orbit=orbit, multipliers=multipliers, length=length, corner=corner)
+    multipliers = SimpleNamespace(unstable_count=unstable)
+    return SimpleNamespace(orbit=orbit, multipliers=multipliers, length=length, is_grazing=is_grazing)
 
 
 def half(*points, end=None):
-    """Return a half of which the stable orbits end at an a, if it is given."""
-    found = Half([point(0.1, length=0.0), *points])
+    """Return a half branch whose stable orbits end at an a, if it is given."""
+    found = HalfBranch([point(0.1, length=0.0), *points])
     bifurcations = [
         SimpleNamespace(a=a, loses_stability=lost) for a, lost in ((0.1, False), (end, True)) if a is not None
     ]
@@ -36,7 +36,7 @@ def places(points):
 
 
 def test_stable_orbits_end_at_the_first_bifurcation_that_loses_them():
-    """Also where the branch is stable again beyond it; an end that is not known is none."""
+    """This holds even if the branch is stable again beyond its end; an unknown end does not limit it."""
     downward = half(point(0.09), point(0.07, unstable=1), point(0.05))
     upward = half(point(0.11), point(0.13, unstable=1), point(0.15))
     ended = half(*downward.orbits[1:], end=0.08), half(*upward.orbits[1:], end=0.12)
@@ -47,16 +47,16 @@ def test_stable_orbits_end_at_the_first_bifurcation_that_loses_them():
         (downward, ended[1], [0.05, 0.09, 0.1, 0.11]),
         (*ended, [0.09, 0.1, 0.11]),
     ):
-        assert places(BranchSegment(low, high).stable) == expected
+        assert places(BranchSegment(low, high).stable_orbits) == expected
 
 
 def test_orbits_on_the_way_to_a_corner_are_not_shown():
     near = 0.5 * CLOSE
     whole = BranchSegment(
         half(point(0.09), point(0.089, length=near)),
-        half(point(0.11, length=near), point(0.12, length=near, corner=True)),
+        half(point(0.11, length=near), point(0.12, length=near, is_grazing=True)),
     )
-    assert places(whole.shown) == [0.09, 0.1, 0.12]
+    assert places(whole.drawn_orbits) == [0.09, 0.1, 0.12]
 
 
 @pytest.mark.parametrize(
@@ -75,10 +75,10 @@ def test_orbits_on_the_way_to_a_corner_are_not_shown():
 def test_an_orbit_is_held_by_its_place_its_stops_and_its_period(a, period, stop_counts, expected):
     whole = BranchSegment(half(point(0.09), end=0.08), half(point(0.11, period=1.1), end=0.125))
     orbit = an_orbit(a, period, stop_counts)
-    assert whole.holds(orbit, 1e-3) is expected
-    assert BranchSegment(Half([]), Half([])).holds(orbit, 1e-3) is False
+    assert whole.contains(orbit, 1e-3) is expected
+    assert BranchSegment(HalfBranch([]), HalfBranch([])).contains(orbit, 1e-3) is False
     mirrored = an_orbit(a, period, stop_counts[::-1])
-    assert whole.holds(mirrored, 1e-3) is expected
+    assert whole.contains(mirrored, 1e-3) is expected
 
 
 @pytest.mark.parametrize(
@@ -91,9 +91,9 @@ def test_an_orbit_is_held_by_its_place_its_stops_and_its_period(a, period, stop_
     ],
 )
 def test_another_orbit_of_the_same_stops_and_period_is_not_held(look, expected):
-    """In a ring the rotated images of two orbits may share both."""
+    """In a ring the rotated images of two orbits may share stops and period."""
     whole = BranchSegment(half(point(0.09)), half(point(0.11, mean_distance=0.3)))
-    assert whole.holds(an_orbit(0.105, **look), 1e-3) is expected
+    assert whole.contains(an_orbit(0.105, **look), 1e-3) is expected
 
 
 @pytest.mark.parametrize(("off", "scale", "expected"), [(9e-4, 1.0, True), (1.1e-3, 1.0, False), (9e-3, 10.0, True)])
@@ -101,12 +101,12 @@ def test_the_mean_distance_may_be_off_by_a_thousandth_for_v_0_1(off, scale, expe
     whole = BranchSegment(half(point(0.09)), half(point(0.11)))
     orbit = an_orbit(0.105, mean_distance=0.2 + off)
     orbit.model.scale = scale
-    assert whole.holds(orbit, 1e-3) is expected
+    assert whole.contains(orbit, 1e-3) is expected
 
 
-def test_two_orbits_after_the_first_unstable_one_are_enough():
-    enough, points, told = _enough(2), [], []
+def test_a_half_branch_ends_two_orbits_after_the_first_unstable_one():
+    is_complete, points, told = _stop_after_unstable(2), [], []
     for unstable in (0, 0, 2, 0, 1):
         points.append(point(0.1, unstable=unstable))
-        told.append(enough(points))
+        told.append(is_complete(points))
     assert told == [False, False, False, False, True]

@@ -1,4 +1,4 @@
-"""Periodic orbits with dashpots: a chain that is one without them, SciPy over a period, differences, derivatives.
+"""Periodic orbits with dashpots, compared with an equivalent chain without them, with SciPy and with differences.
 
 Dashpots γ m_i to the driver turn the linearized law 1 − aU' into one with a − γ in place of a (masses and thresholds of
 1): positions relative to uniform sliding move as without them.
@@ -43,7 +43,7 @@ def test_dashpots_to_the_driver_shift_the_loss_of_synchrony():
 
 @pytest.fixture(scope="module")
 def orbit():
-    """Return an asymmetric orbit of unequal dashpots."""
+    """Return an asymmetric orbit of a chain with unequal dashpots."""
     model = Model(Chain(3, damping=(0.05, 0.02), pulling_damping=(0.0, 0.01, 0.02)), law_of("nonlinear", 0.12))
     return limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=3000.0)
 
@@ -60,7 +60,7 @@ def test_multipliers_are_those_of_differences(orbit):
     expected = np.linalg.eigvals(found[0])
     order = np.argsort(-np.abs(expected))[:4]
     whole = np.abs(multipliers(orbit).whole)
-    # The motion along the orbit has the multiplier 1, which is left out.
+    # The flow has the multiplier 1, which is excluded.
     assert np.sort(np.append(whole, 1.0))[-4:] == pytest.approx(np.sort(np.abs(expected[order])), abs=1e-5)
 
 
@@ -75,7 +75,7 @@ def test_an_orbit_is_followed_to_other_dashpots():
 
 
 def test_derivatives_along_the_motion():
-    """Force, acceleration and their rates, with a stuck block among those that slip."""
+    """Force, acceleration and their rates, with a stuck block among slipping ones."""
     chain = Chain(4, damping=0.3, pulling_damping=0.1, mass=(1.0, 2.0, 1.0, 1.0))
     model = Model(chain, law_of("nonlinear", 0.3), 0.2)
     stuck = np.array([False, True, False, False])

@@ -1,4 +1,4 @@
-"""Orbits along the mass, spring or threshold of one block: without mirror symmetry, and up to where locking ends."""
+"""Orbits continued in the mass, spring or threshold of one block, without mirror symmetry, to the end of locking."""
 
 import numpy as np
 import pytest
@@ -18,23 +18,23 @@ from burridge_knopoff import (
     simulate,
     synchronized_orbit,
 )
-from burridge_knopoff.periodic_orbits.following import Following
+from burridge_knopoff.periodic_orbits.following import ContinuationSettings
 from tests.refused import refused
 from tests.scipy_flow import model_events
 
-WIDE = Following(first_step=1e-3, largest_step=1e-2)
+WIDE = ContinuationSettings(first_step=1e-3, largest_step=1e-2)
 MODEL = Model(Chain(3), law_of("linearized", 0.06))
 
 
 def end_of_synchrony(parameter, upward=True, model=MODEL):
-    """Return the first bifurcation of the orbit of synchrony at which it ends or loses its stability."""
+    """Return the first bifurcation at which the synchronized orbit ends or loses stability."""
     branch = follow(
         synchronized_orbit(model),
         (0.5, 2.0),
         WIDE,
         parameter=parameter,
         upward=upward,
-        enough=lambda points: points[-1].multipliers.unstable > 0,
+        is_complete=lambda points: points[-1].multipliers.unstable_count > 0,
     )
     return next(one for one in locate_bifurcations(branch) if one.loses_stability or not one.keeps_stability)
 
@@ -64,8 +64,8 @@ def test_synchrony_ends_where_the_stick_of_the_lighter_block_vanishes(grazing):
     assert grazing.before.orbit.stop_counts == (1, 1, 1)
     assert grazing.after.orbit.stop_counts == (0, 1, 1)
     assert grazing.loses_stability
-    assert not grazing.turns
-    # The same chain from its other end.
+    assert not grazing.is_turning_point
+    # The same chain, numbered from its other end.
     mirrored = end_of_synchrony("mass[1]")
     assert mirrored.value == pytest.approx(grazing.value, abs=1e-9)
     assert mirrored.before.orbit.stop_counts == (1, 1, 1)
@@ -77,7 +77,7 @@ def settled(model, orbit):
 
 
 def test_runs_are_periodic_inside_the_tongue_and_not_outside(grazing):
-    """At points of the curve in the plane of a and mass[3], 2e-4 to either side of it."""
+    """Compare the motion 2e-4 to either side of the curve in the plane of a and mass[3]."""
     curve = follow_bifurcation(grazing, ("mass[3]", "a"), (0.05, 0.085), WIDE)
     assert curve.errors.max() < 1e-9
     for orbit, (mass, _) in list(zip(curve.orbits, curve.values, strict=True))[::3]:
@@ -89,7 +89,7 @@ def test_runs_are_periodic_inside_the_tongue_and_not_outside(grazing):
 
 
 def test_mean_frequencies_stay_equal_beyond_the_tongue_of_synchrony(grazing):
-    """Beyond its end the motion is a torus, on which a third phase is free: one frequency alone is no locking."""
+    """Beyond the end the motion is a torus with a third free phase: a common frequency alone is not locking."""
     orbit = grazing.before.orbit
     run = settled(orbit.model.at(**{"mass[3]": grazing.value + 5e-3}), orbit)
     frequency, _ = block_frequencies(run.model, run.final)
@@ -104,15 +104,15 @@ def test_a_fold_in_the_mass_of_one_end_begins_at_the_pitchfork():
     start = ChainState(pushed, orbit.reference.velocity, orbit.reference.stuck)
     pair = limit_cycle(model, start, settling=6000.0)
     assert pair.symmetry == Symmetry.ASYMMETRIC
-    # Longer steps would jump over the fold to the other one of the pair.
-    short = Following(first_step=1e-5)
+    # Longer steps would jump across the fold to the other orbit of the pair.
+    short = ContinuationSettings(first_step=1e-5)
     (fold,) = [
         one
         for upward in (True, False)
         for one in locate_bifurcations(follow(pair, (0.999, 1.001), short, parameter="mass[3]", upward=upward))
         if one.kind == BifurcationKind.FOLD and one.loses_stability
     ]
-    steps = Following(first_step=1e-4, largest_step=1e-3, least_step=1e-7)
+    steps = ContinuationSettings(first_step=1e-4, largest_step=1e-3, smallest_step=1e-7)
     mass, a = follow_bifurcation(fold, ("mass[3]", "a"), (0.086, 0.092), steps).values.T
     assert a.min() == pytest.approx(0.08697290467, abs=1e-6)
     assert mass[a.argmin()] == pytest.approx(1.0, abs=1e-8)

@@ -1,4 +1,4 @@
-"""Multipliers made by hand: how many are unstable, and which bifurcation lies where one is 1 or −1."""
+"""Hand-made multipliers: how many are unstable, and which bifurcation occurs where one is 1 or −1."""
 
 from types import SimpleNamespace
 
@@ -14,7 +14,7 @@ NONE = np.array([])
 
 def test_unstable_is_what_lies_outside_the_unit_circle():
     found = Multipliers(np.array([-1.5, 0.6 + 0.8j, 0.6 - 0.8j, 1.0, 0.1]), np.array([2.0, -0.7]), power=2)
-    assert found.unstable == 2
+    assert found.unstable_count == 2
     assert np.abs(found.whole) == pytest.approx([4.0, 2.25, 1.0, 1.0, 1.0, 0.49, 0.01])
 
 
@@ -23,30 +23,30 @@ def test_unstable_is_what_lies_outside_the_unit_circle():
     [
         (Symmetry.ASYMMETRIC, BifurcationKind.PERIOD_DOUBLING),
         (Symmetry.SYNCHRONIZED, BifurcationKind.PERIOD_DOUBLING),
-        # −1 of a half return, in a mirror, is 1 of the whole.
+        # −1 of a reflected half return is +1 of the whole return.
         (Symmetry.SYMMETRIC, BifurcationKind.PITCHFORK),
     ],
 )
 def test_a_symmetric_orbit_does_not_double_its_period_but_breaks_its_symmetry(symmetry, minus):
     found = critical_values(SimpleNamespace(symmetry=symmetry), Multipliers(np.array([0.5, -0.25, 3.0]), NONE, 1))
     expected = {
-        (BifurcationKind.FOLD, "keeping"): -0.5 * -1.25 * 2.0,
-        (minus, "keeping"): 1.5 * 0.75 * 4.0,
-        (BifurcationKind.NEIMARK_SACKER, "keeping"): -1.125 * 0.5 * -1.75,
+        (BifurcationKind.FOLD, "symmetry_preserving"): -0.5 * -1.25 * 2.0,
+        (minus, "symmetry_preserving"): 1.5 * 0.75 * 4.0,
+        (BifurcationKind.NEIMARK_SACKER, "symmetry_preserving"): -1.125 * 0.5 * -1.75,
     }
     assert found == pytest.approx(expected)
 
 
-def test_mirror_blocks_that_move_as_one_part_at_a_pitchfork():
+def test_mirror_blocks_desynchronize_at_a_pitchfork():
     orbit = SimpleNamespace(symmetry=Symmetry.SYNCHRONIZED)
     found = critical_values(orbit, Multipliers(np.array([0.5]), np.array([3.0, 0.2]), 1))
     expected = {
-        (BifurcationKind.FOLD, "keeping"): -0.5,
-        (BifurcationKind.PERIOD_DOUBLING, "keeping"): 1.5,
+        (BifurcationKind.FOLD, "symmetry_preserving"): -0.5,
+        (BifurcationKind.PERIOD_DOUBLING, "symmetry_preserving"): 1.5,
         # There is no pair.
-        (BifurcationKind.NEIMARK_SACKER, "keeping"): 1.0,
-        (BifurcationKind.PITCHFORK, "breaking"): 2.0 * -0.8,
-        (BifurcationKind.PERIOD_DOUBLING, "breaking"): 4.0 * 1.2,
-        (BifurcationKind.NEIMARK_SACKER, "breaking"): -0.4,
+        (BifurcationKind.NEIMARK_SACKER, "symmetry_preserving"): 1.0,
+        (BifurcationKind.PITCHFORK, "symmetry_breaking"): 2.0 * -0.8,
+        (BifurcationKind.PERIOD_DOUBLING, "symmetry_breaking"): 4.0 * 1.2,
+        (BifurcationKind.NEIMARK_SACKER, "symmetry_breaking"): -0.4,
     }
     assert found == pytest.approx(expected)

@@ -1,4 +1,4 @@
-"""How a branch goes on, joins one of simpler orbits, or goes past it, and where it ends."""
+"""How a branch continues, joins a branch of simpler orbits or passes one, and where it ends."""
 
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -10,7 +10,7 @@ from burridge_knopoff import Chain, ChainState, Model, Symmetry, follow, law_of,
 from burridge_knopoff.periodic_orbits import following
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import locate_bifurcations
-from burridge_knopoff.periodic_orbits.following import Following
+from burridge_knopoff.periodic_orbits.following import ContinuationSettings
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from tests.periodic_orbits.stand_in import only, stand_in
 
@@ -20,41 +20,45 @@ from tests.periodic_orbits.stand_in import only, stand_in
     [
         ((1.0, -1.0), (0.5, 0.5), 0.0, True),
         ((-0.1, 0.1), (-0.5, -0.5), 0.0, True),
-        # It goes on; it turns at a fold; there is no simpler orbit.
+        # The branch continues; it has a fold; there is no simpler orbit.
         ((1.0, 1.0), (0.5, 0.5), 0.0, False),
         ((1.0, -1.0), (0.5, -0.5), 0.0, False),
         ((1.0, -1.0), (0.5, 0.5), np.inf, False),
-        # What is near is so within three hundredths, of which the square is the way to it in a.
+        # The distance tolerance is 0.03; the distance in a is of the order of its square.
         ((1.0, -1.0), (0.5, 0.5), 0.029, True),
         ((1.0, -1.0), (0.5, 0.5), 0.031, False),
     ],
 )
-def test_a_branch_turns_without_a_fold_where_it_touches_a_simpler_one(monkeypatch, slopes, values, away, touches):
-    monkeypatch.setattr(following, "simplest", lambda orbit, tolerance: "simpler" if away <= tolerance else orbit)
+def test_a_branch_turns_back_without_a_fold_at_a_simpler_orbit(monkeypatch, slopes, values, away, touches):
+    monkeypatch.setattr(following, "minimal_form", lambda orbit, tolerance: "simpler" if away <= tolerance else orbit)
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC)
     points = [
         SimpleNamespace(orbit=orbit, tangent=[slope], multipliers=only(1.0 + value))
         for slope, value in zip(slopes, values, strict=True)
     ]
-    assert following._passed(*points) == ("simpler" if touches else None)
+    assert following._passed_orbit(*points) == ("simpler" if touches else None)
 
 
-def test_several_turns_of_another_orbit_are_no_way_around_a_corner():
-    """At a = 0.11226 an orbit of 29 stops grazes; 3e-5 below it one of a single stop ends, which it does not become."""
+def test_repeats_of_another_orbit_do_not_continue_a_branch():
+    """At a = 0.11226 an orbit with 29 stops grazes; one with one stop, which ends 3e-5 below, does not continue it."""
     model = Model(Chain(3), law_of("linearized", 0.112265625))
     position = np.array([0.10663254, 0.07868783, 0.06869955])
     start = ChainState(position, np.array([0.0, 0.06015978, 0.02200926]), np.array([True, False, False]))
-    branch = follow(limit_cycle(model, start), (0.1122, 0.1123), upward=False, enough=lambda points: len(points) > 12)
-    corner = next(number for number, point in enumerate(branch) if point.corner)
+    branch = follow(
+        limit_cycle(model, start), (0.1122, 0.1123), upward=False, is_complete=lambda points: len(points) > 12
+    )
+    corner = next(number for number, point in enumerate(branch) if point.is_grazing)
     assert {point.orbit.stop_counts for point in branch[: corner + 1]} == {(29, 29, 10)}
     assert {point.orbit.stop_counts for point in branch[corner + 1 :]} == {(29, 29, 9)}
-    # Both kinds of orbit lie on one side: the branch turns back, and beyond the corner it is unstable.
+    # Both orbits exist on the same side: the grazing is a turning point, beyond which the branch is unstable.
     assert all(point.orbit.a > branch[corner].orbit.a for point in branch[corner + 1 :])
-    assert [point.multipliers.unstable for point in branch] == [0] * (corner + 1) + [1] * (len(branch) - corner - 1)
+    assert [point.multipliers.unstable_count for point in branch] == [0] * (corner + 1) + [1] * (
+        len(branch) - corner - 1
+    )
 
 
 def doubled(a):
-    """Return the orbit of (12, 26, 26) stops, which has begun as twice (6, 13, 13) at a = 0.136416."""
+    """Return the orbit with (12, 26, 26) stops, which branches off the one with (6, 13, 13) at a = 0.136416."""
     model = Model(Chain(3), law_of("linearized", a))
     position = np.array([-0.01583146, -0.00898694, -0.04390718])
     start = ChainState(position, np.array([0.21336224, 0.16773024, 0.2330488]), np.zeros(3, dtype=bool))
@@ -63,28 +67,30 @@ def doubled(a):
 
 @pytest.mark.parametrize("a", [0.135, 0.1355, 0.136])
 def test_no_step_leaps_to_a_simpler_orbit(a):
-    """From two of them the long step past the grazing used to end on the simple orbit, which is not near there."""
+    """A long step past the grazing must not jump to the simple orbit, which is not nearby."""
     orbit = doubled(a)
     assert orbit.stop_counts == (12, 26, 26)
     branch = follow(orbit, (0.1345, 0.137), upward=False)
-    corner = next(point for point in branch if point.corner)
+    corner = next(point for point in branch if point.is_grazing)
     assert corner.orbit.a == pytest.approx(0.1348243355, abs=1e-10)
-    assert all(point.joined is None for point in branch)
-    # The other way it does join it.
+    assert all(point.reduced_orbit is None for point in branch)
+    # In the other direction the branch does join it.
     branch = follow(orbit, (0.1345, 0.137))
-    assert branch[-1].joined.stop_counts == (6, 13, 13)
+    assert branch[-1].reduced_orbit.stop_counts == (6, 13, 13)
     (bifurcation,) = locate_bifurcations(branch)
     assert bifurcation.kind == BifurcationKind.PERIOD_DOUBLING
     assert bifurcation.a == pytest.approx(0.136416049, abs=1e-9)
-    assert bifurcation.at.multipliers.keeping == pytest.approx(bifurcation.at.multipliers.keeping.real)
-    assert np.abs(bifurcation.at.multipliers.keeping + 1.0).min() < 1e-8
+    assert bifurcation.at.multipliers.symmetry_preserving == pytest.approx(
+        bifurcation.at.multipliers.symmetry_preserving.real
+    )
+    assert np.abs(bifurcation.at.multipliers.symmetry_preserving + 1.0).min() < 1e-8
 
 
-def test_a_branch_is_told_where_it_begins():
-    """Also at the very end of its range; a range is one from low to high."""
+def test_a_branch_must_begin_within_its_interval():
+    """The orbit may lie exactly at an end of the interval; an interval runs from low to high."""
     orbit = limit_cycle(SLOW, synchronized_orbit(SLOW).reference)
     for a_range in ((0.08, 0.08), (0.08, 0.09), (0.07, 0.08)):
-        assert follow(orbit, a_range, Following(most_orbits=1))[0].orbit is orbit
+        assert follow(orbit, a_range, ContinuationSettings(max_orbits=1))[0].orbit is orbit
     with pytest.raises(ValueError, match=r"^interval: got \(0\.09, 0\.07\), expected \(low, high\) with low ≤ high$"):
         follow(orbit, (0.09, 0.07))
 
@@ -94,12 +100,12 @@ SLOW = Model(Chain(3), law_of("linearized", 0.08))
 
 @dataclass(frozen=True)
 class Step:
-    """What a step along a branch in a came to."""
+    """The result of a step along a branch in a."""
 
     orbit: SimpleNamespace
     length: float = 0.0
-    corner: bool = False
-    joined: str | None = None
+    is_grazing: bool = False
+    reduced_orbit: str | None = None
     tangent: tuple[float, ...] = (1.0,)
 
     @property
@@ -113,7 +119,7 @@ def a_step(a, length=0.0, **told):
 
 @pytest.fixture
 def walk(monkeypatch):
-    """Return the points of a branch from a = 0.1 on, with the lengths that are tried."""
+    """Return the points of a branch from a = 0.1, and the lengths of the attempted steps."""
 
     def walked(smooth, corners, turned, **options):
         lengths, smooth, corners, turned = [], iter(smooth), iter(corners), iter(turned)
@@ -124,68 +130,68 @@ def walk(monkeypatch):
 
         line = SimpleNamespace(value=lambda model: model.a)
         monkeypatch.setattr(following, "line_of", lambda orbit, parameter: line)
-        monkeypatch.setattr(following, "simpler_orbit", lambda orbit: None)
+        monkeypatch.setattr(following, "reduced_orbit", lambda orbit: None)
         monkeypatch.setattr(following, "begin_branch", lambda orbit, upward, line: Step(orbit))
         monkeypatch.setattr(following, "smooth_step", step)
-        monkeypatch.setattr(following, "come_to_corner", lambda points, length: next(corners))
-        monkeypatch.setattr(following, "turn_corner", lambda point: next(turned))
+        monkeypatch.setattr(following, "approach_grazing", lambda points, length: next(corners))
+        monkeypatch.setattr(following, "switch_branch", lambda point: next(turned))
         return follow(stand_in(PeriodicOrbit, model=SimpleNamespace(a=0.1)), (0.1, 0.2), **options), lengths
 
     return walked
 
 
-def test_a_branch_goes_on_from_a_corner_as_from_its_beginning(walk):
-    corner = a_step(0.13, 1e-9, corner=True)
+def test_after_a_corner_steps_start_again_with_the_first_length(walk):
+    corner = a_step(0.13, 1e-9, is_grazing=True)
     smooth = [a_step(0.11), a_step(0.12), None, a_step(0.2), a_step(0.21)]
     points, lengths = walk(smooth, [[a_step(0.125), corner]], [a_step(0.14)])
     assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.125, 0.13, 0.14, 0.2, 0.21]
     assert lengths == pytest.approx([1e-4, 2e-4, 4e-4, 1e-4, 2e-4])
-    # Nothing is known beyond the last corner.
+    # There is no orbit beyond the last corner.
     points, _ = walk(smooth[:3], [[corner]], [None])
     assert points[-1] is not None
-    assert points[-1].corner
+    assert points[-1].is_grazing
 
 
 def test_after_a_way_that_met_no_corner_the_next_step_is_as_long_as_its_last(walk):
-    """Or a tenth of what was too long."""
+    """Otherwise it is a tenth of the length that was too long."""
     points, lengths = walk([None, None, a_step(0.21)], [[a_step(0.11, 3e-5)], [a_step(0.12, 1e-9)]], [])
     assert lengths == pytest.approx([1e-4, 3e-5, 3e-6])
     assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.21]
 
 
 def test_a_branch_ends_where_it_joins_another_one(walk):
-    points, _ = walk([a_step(0.11), a_step(0.12, joined="simpler")], [], [])
-    assert [point.joined for point in points] == [None, None, "simpler"]
-    points, _ = walk([None], [[a_step(0.11), a_step(0.12, joined="simpler"), a_step(0.13)]], [])
-    assert [point.joined for point in points] == [None, None, "simpler"]
+    points, _ = walk([a_step(0.11), a_step(0.12, reduced_orbit="simpler")], [], [])
+    assert [point.reduced_orbit for point in points] == [None, None, "simpler"]
+    points, _ = walk([None], [[a_step(0.11), a_step(0.12, reduced_orbit="simpler"), a_step(0.13)]], [])
+    assert [point.reduced_orbit for point in points] == [None, None, "simpler"]
 
 
 def test_a_branch_ends_where_it_has_gone_past_another_one(walk, monkeypatch):
-    monkeypatch.setattr(following, "_passed", lambda first, second: "passed" if second.orbit.a == 0.12 else None)
+    monkeypatch.setattr(following, "_passed_orbit", lambda first, second: "passed" if second.orbit.a == 0.12 else None)
     points, _ = walk([a_step(0.11), a_step(0.12)], [], [])
-    assert [point.joined for point in points] == [None, None, "passed"]
+    assert [point.reduced_orbit for point in points] == [None, None, "passed"]
 
 
-def test_a_branch_ends_when_enough_is_known(walk):
+def test_a_branch_ends_when_it_is_complete(walk):
     told = []
 
     def enough(points):
         told.append(len(points))
         return len(points) == 3
 
-    assert len(walk([a_step(0.11), a_step(0.12)], [], [], enough=enough)[0]) == 3
+    assert len(walk([a_step(0.11), a_step(0.12)], [], [], is_complete=enough)[0]) == 3
     assert told == [1, 2, 3]
-    # Also on the way to a corner.
+    # This also applies to the approach to a corner.
     told.clear()
-    assert len(walk([None], [[a_step(0.11), a_step(0.12), a_step(0.13)]], [], enough=enough)[0]) == 3
+    assert len(walk([None], [[a_step(0.11), a_step(0.12), a_step(0.13)]], [], is_complete=enough)[0]) == 3
     assert told == [1, 2, 3]
 
 
 @pytest.mark.parametrize(("most", "count"), [(2, 2), (3, 3), (4, 5), (5, 5), (6, 6)])
 def test_a_branch_ends_with_as_many_orbits_as_are_asked_for(walk, most, count):
-    """But not on a corner, beyond which nothing would be known."""
-    way = [a_step(0.11), a_step(0.12), a_step(0.13, 1e-9, corner=True)]
-    settings = Following(most_orbits=most)
+    """It does not end at a corner, since the other side would be missing."""
+    way = [a_step(0.11), a_step(0.12), a_step(0.13, 1e-9, is_grazing=True)]
+    settings = ContinuationSettings(max_orbits=most)
     points, _ = walk([None, a_step(0.15), a_step(0.21)], [way], [a_step(0.14)], settings=settings)
     assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.13, 0.14, 0.15, 0.21][:count]
 

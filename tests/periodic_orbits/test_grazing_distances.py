@@ -1,4 +1,4 @@
-"""How near an orbit comes to its grazings: where, between two samples, a rate is 0."""
+"""Grazing distances of an orbit, located between two samples where a rate vanishes."""
 
 from dataclasses import replace
 
@@ -17,7 +17,13 @@ from burridge_knopoff import (
     simulate,
 )
 from burridge_knopoff.periodic_orbits.flow import flow, rate
-from burridge_knopoff.periodic_orbits.grazing_distances import Contacts, _derivatives, _root, contacts, drops
+from burridge_knopoff.periodic_orbits.grazing_distances import (
+    GrazingDistances,
+    _derivatives,
+    _root,
+    grazing_distances,
+    has_friction_drop,
+)
 from burridge_knopoff.periodic_orbits.periodic import orbit_of
 from burridge_knopoff.running.runner import Runner
 
@@ -34,7 +40,7 @@ def test_the_zero_of_a_cubic_is_found_from_its_ends(coefficients):
 
 
 def sampled(orbit, count=200_000):
-    """Return position, velocity and whether blocks stick, at so many equal steps of a period, from a run of its own."""
+    """Return position, velocity and whether blocks stick, at equidistant times in a period, from an independent run."""
     runner = Runner(orbit.model)
     runner.begin(orbit.reference)
     states = []
@@ -55,7 +61,7 @@ def six():
 
 
 def test_contacts_are_what_dense_samples_show(six):
-    found = contacts(six)
+    found = grazing_distances(six)
     position, velocity, stuck = sampled(six, 40_000)
     step, model = six.period / 40_000, six.model
     for block in range(3):
@@ -75,43 +81,45 @@ def test_contacts_are_what_dense_samples_show(six):
 
 
 def test_half_an_orbit_that_is_its_own_mirror_image_shows_all():
-    """The contacts of the whole of it, as an orbit of no symmetry, whose end blocks take turns to be nearest."""
+    """The grazing distances of the whole orbit, treated as an asymmetric one."""
     model = Model(Chain(3), law_of("linearized", 0.08))
     half = limit_cycle(
         model, model.begin(simulate(model, initial="plus", transient=0, window=10).initial), settling=1000.0
     )
     whole = find_periodic_orbit(model, half.reference, half.period, Symmetry.ASYMMETRIC)
     assert (half.symmetry, whole.symmetry) == (Symmetry.SYMMETRIC, Symmetry.ASYMMETRIC)
-    for name, values in vars(contacts(whole)).items():
-        assert getattr(contacts(half), name) == pytest.approx(values, abs=1e-9), name
-    # In the first half one of the end blocks comes nearer to a grazing than the other.
-    first = contacts(replace(half, symmetry=Symmetry.ASYMMETRIC))
+    for name, values in vars(grazing_distances(whole)).items():
+        assert getattr(grazing_distances(half), name) == pytest.approx(values, abs=1e-9), name
+    # In the first half period one end block comes closer to a grazing than the other.
+    first = grazing_distances(replace(half, symmetry=Symmetry.ASYMMETRIC))
     assert np.abs(first.speed[0] - first.speed[2]) > 1e-3
 
 
 @pytest.mark.parametrize("share", [0.13, 0.37, 0.62, 0.93])
 def test_contacts_do_not_depend_on_where_the_orbit_begins(six, share):
-    """Wherever the last of the intervals lies in which they are looked for."""
+    """The result does not depend on the position of the last interval that is searched."""
     moved = replace(six, reference=flow(six.model, six.reference, share * six.period)[0].state())
-    for name, values in vars(contacts(six)).items():
-        assert getattr(contacts(moved), name) == pytest.approx(values, abs=1e-7), name
+    for name, values in vars(grazing_distances(six)).items():
+        assert getattr(grazing_distances(moved), name) == pytest.approx(values, abs=1e-7), name
 
 
 def test_contacts_are_those_of_the_same_motion_in_other_units(six):
-    """With springs 900 times as strong all times are a thirtieth, and so are velocities."""
+    """With springs 900 times as stiff, all times and velocities are divided by thirty."""
     chain, start = six.model.chain, six.reference
     stiff = Chain(3, coupling=900.0 * chain.coupling, pulling=tuple(900.0 * chain.driving))
     model = Model(stiff, law_of("linearized", 30.0 * six.a), six.model.v / 30.0)
     moved = ChainState(start.position / 900.0, start.velocity / 30.0, start.stuck)
-    found = contacts(find_periodic_orbit(model, moved, six.return_time / 30.0, six.symmetry))
-    told = contacts(six)
+    found = grazing_distances(find_periodic_orbit(model, moved, six.return_time / 30.0, six.symmetry))
+    told = grazing_distances(six)
     for name, scale in {"stick": 30.0, "slip": 30.0, "speed": 30.0, "force": 1.0}.items():
         assert scale * getattr(found, name) == pytest.approx(getattr(told, name), rel=1e-5), name
 
 
 def test_all_that_falls_to_0_in_proportion(six):
     told = [np.array([2.0, 3.0, np.inf]), *(np.full(3, value) for value in (0.5, 0.2, 0.1, 0.3))]
-    assert Contacts(*told).values().tolist() == [4.0, 9.0, np.inf] + 3 * [0.25] + 3 * [0.2] + 3 * [0.1] + 3 * [0.3**2]
+    assert GrazingDistances(*told).values().tolist() == [4.0, 9.0, np.inf] + 3 * [0.25] + 3 * [0.2] + 3 * [0.1] + 3 * [
+        0.3**2
+    ]
 
 
 BACKWARD = ChainState(np.array([1.7, 0.4, 0.3]), np.array([-0.6, 0.3, 0.0]), np.array([False, False, True]))
@@ -119,7 +127,7 @@ BACKWARD = ChainState(np.array([1.7, 0.4, 0.3]), np.array([-0.6, 0.3, 0.0]), np.
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear", "stribeck"])
 def test_friction_pulls_a_block_forward_that_slips_backward(law):
-    """Against finite differences of the kernel's own motion."""
+    """Compare with finite differences of the motion in the kernel."""
     model = Model(Chain(3, threshold=(1.0, 1.2, 1.0)), law_of(law, 0.2), contact="symmetric")
     step = 1e-4
     later, runner = [], Runner(model)
@@ -143,12 +151,12 @@ def dropping():
 
 
 def two_blocks(contact, state):
-    """Return the orbit of two blocks that a state leads to, where friction drops by a fifth."""
+    """Return the orbit of two blocks that a state reaches if friction drops by a fifth."""
     model = Model(Chain(2), law_of("carlson_langer", 3.0, {"sigma": 0.2}), contact=contact)
     return limit_cycle(model, ChainState(*map(np.array, state), np.zeros(2, dtype=bool)), settling=3000.0, window=500.0)
 
 
-#: With slips that end while the springs pull backward; and with backward slips, and a block that turns round.
+#: Orbits with slips that end while the springs pull backward, with backward slips, and with a reversal.
 STATES = {
     "one_sided": ((-0.5, 0.4), (0.1, 0.1)),
     "symmetric": ((0.27043814, 0.44241565), (0.14660621, 0.10622318)),
@@ -164,34 +172,34 @@ def test_where_friction_drops_slips_end_with_a_deceleration(dropping, contact):
             before = [runner.after(orbit.reference, time - step).velocity[block] for step in (1e-4, 2e-4)]
             along = np.sign(before[0])
             least[block] = min(least[block], along * (before[1] - before[0]) / 1e-4)
-    found = contacts(orbit).deceleration
+    found = grazing_distances(orbit).deceleration
     assert np.isfinite(found).any()
     assert found == pytest.approx(least, abs=1e-3)
 
 
-def test_where_a_block_turns_round_no_stick_shrinks():
-    """It stops and starts at one instant, for as long as the springs pull it back beyond its threshold."""
+def test_a_reversal_is_no_short_stick():
+    """The block stops and starts at the same time if the springs pull it back beyond its threshold."""
     orbit = two_blocks("symmetric", STATES["symmetric"])
     time, kind = orbit.events_of(1)
     sticks = np.diff(time, append=time[:1] + orbit.period)[kind == 0]
     assert sorted(sticks == 0.0) == [False] * 3 + [True]
-    assert contacts(orbit).stick[1] == sticks[sticks > 0.0].min() > 1.0
+    assert grazing_distances(orbit).stick[1] == sticks[sticks > 0.0].min() > 1.0
 
 
 def test_a_deceleration_grows_with_the_threshold(dropping):
-    """With thresholds three times as high so are all lengths, velocities and forces, at a third of a."""
+    """With thresholds three times as high and a third of a, lengths, velocities and forces are tripled."""
     law, start = dropping.model.law, dropping.reference
     model = Model(Chain(3, threshold=3.0), law.at(law.a / 3.0), 3.0 * dropping.model.v)
     moved = ChainState(3.0 * start.position, 3.0 * start.velocity, start.stuck)
-    found = contacts(find_periodic_orbit(model, moved, dropping.return_time, dropping.symmetry)).deceleration
-    assert found == pytest.approx(3.0 * contacts(dropping).deceleration, rel=1e-6)
+    found = grazing_distances(find_periodic_orbit(model, moved, dropping.return_time, dropping.symmetry)).deceleration
+    assert found == pytest.approx(3.0 * grazing_distances(dropping).deceleration, rel=1e-6)
 
 
 @pytest.mark.parametrize(
     ("law", "told"),
     [
         (law_of("linearized", 0.1), False),
-        # What it is at rest rounds to the number below 1.
+        # Its value at rest rounds to the double below 1.
         (FormulaLaw(0.1, "0.7 + 0.2 + 0.1*exp(-a*u)"), False),
         (FormulaLaw(0.1, "0.7 + 0.2 + 0.099999*exp(-a*u)"), True),
         (law_of("carlson_langer", 0.1), True),
@@ -199,11 +207,11 @@ def test_a_deceleration_grows_with_the_threshold(dropping):
 )
 def test_rounding_is_no_drop_of_friction(law, told):
     assert float(law(0.0)) < 1.0 or law.name == "linearized"
-    assert drops(Model(Chain(3), law)) is told
+    assert has_friction_drop(Model(Chain(3), law)) is told
 
 
 def peaks(values, among):
-    """Return the values larger than those before and after, all three among some."""
+    """Return the local maxima among selected values."""
     inner = among[:-2] & among[1:-1] & among[2:] & (values[1:-1] > values[:-2]) & (values[1:-1] > values[2:])
     return values[1:-1][inner]
 
@@ -212,19 +220,19 @@ def peaks(values, among):
     ("threshold", "position", "velocity", "stuck"),
     [
         ((1.0, 1.0, 1.0), (-0.5, 0.7, -1.9), (-1.3, 1.2, -0.8), (False, False, False)),
-        # A block that holds while its neighbour is thrown forward, and backward.
+        # A block that sticks while its neighbour is thrown forward, and backward.
         ((1.5, 1.0), (0.9, 0.5), (0.0, 2.0), (True, False)),
         ((1.5, 1.0), (0.9, 0.5), (0.0, -2.0), (True, False)),
     ],
 )
 def test_what_slips_backward_or_is_pulled_back_is_as_near_to_grazing(threshold, position, velocity, stuck):
-    """Any motion has such contacts as an orbit has."""
+    """Any motion has grazing distances, as an orbit does."""
     chain = Chain(len(threshold), threshold=threshold)
     model = Model(chain, law_of("linearized", 0.2), contact="symmetric")
     motion = orbit_of(model, ChainState(*map(np.array, (position, velocity, stuck))), 6.0, Symmetry.ASYMMETRIC)
     at, rate, still = sampled(motion, 3000)
     force = chain.thresholds * float(model.law(model.v)) - at @ chain.stiffness.T
-    found = contacts(motion)
+    found = grazing_distances(motion)
     for k in range(chain.blocks):
         slow = [peaks(-side * rate[:, k], ~still[:, k] & (side * rate[:, k] > 0.0)) for side in (1.0, -1.0)]
         pulled = [peaks(side * force[:, k], still[:, k]) for side in (1.0, -1.0)]

@@ -1,4 +1,4 @@
-"""Orbits over a: how they are continued where Newton's method needs a near orbit to begin with."""
+"""Orbits over a: their continuation where Newton's method needs a nearby orbit as a guess."""
 
 import re
 
@@ -8,7 +8,7 @@ import pytest
 from burridge_knopoff import Chain, InitialState, Model, law_of, limit_cycle, synchronized_orbit
 from burridge_knopoff.periodic_orbits import known_orbits as orbits_over_a
 from burridge_knopoff.periodic_orbits.flow import OrbitError
-from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, beside
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, nearby_orbit
 
 
 @pytest.fixture
@@ -32,18 +32,18 @@ def test_steps_are_halved_until_the_orbit_is_found(known, monkeypatch):
         tried.append(a)
         if a - max(known.known) > 0.003:
             raise OrbitError("too far")
-        return beside(orbit, a)
+        return nearby_orbit(orbit, a)
 
-    monkeypatch.setattr(orbits_over_a, "beside", near_only)
+    monkeypatch.setattr(orbits_over_a, "nearby_orbit", near_only)
     found = known.at(here + 0.02)
     assert found.model.a == here + 0.02
     assert tried[:3] == pytest.approx([here + 0.02, here + 0.01, here + 0.005])
-    # The step that succeeds is kept.
+    # The successful step length is kept.
     assert len(tried) == pytest.approx(3 + 0.02 / 0.0025, abs=1)
 
 
-def test_where_it_is_lost_the_error_is_told_after_the_least_step(asymmetric):
-    """Where the branch turns back, at a = 0.13247: steps become half as long again and again."""
+def test_a_lost_orbit_is_an_error_after_the_smallest_step(asymmetric):
+    """The branch has a turning point at a = 0.13247, before which steps are halved repeatedly."""
     known = KnownOrbits(asymmetric)
     with pytest.raises(
         OrbitError, match=r"^a = 0\.1324\d+: no periodic orbit found .*, on the way to a = 0\.14$"
@@ -55,32 +55,32 @@ def test_where_it_is_lost_the_error_is_told_after_the_least_step(asymmetric):
     assert steps == pytest.approx(np.round(steps), abs=1e-6)
     assert (np.diff(steps) > 0.5).all()
     tried = float(re.search(r"0\.1324\d+", str(lost.value))[0])
-    assert 1.0 <= (tried - found[-1]) / orbits_over_a.LEAST_STEP < 2.0
+    assert 1.0 <= (tried - found[-1]) / orbits_over_a.SMALLEST_STEP < 2.0
 
 
 def test_steps_become_as_short_as_the_stick_is(known, monkeypatch):
-    """It vanishes with a, and with it how far Newton's method comes."""
+    """The stick vanishes with a, and with it the range of convergence of Newton's method."""
     known.known = {1e-4: known.at(1e-4)}
 
     def near_only(orbit, a):
         if min(abs(a - other) for other in known.known) > 3e-7:
             raise OrbitError("too far")
-        return beside(orbit, a)
+        return nearby_orbit(orbit, a)
 
-    monkeypatch.setattr(orbits_over_a, "beside", near_only)
+    monkeypatch.setattr(orbits_over_a, "nearby_orbit", near_only)
     assert known.at(0.99e-4).model.a == 0.99e-4
 
 
 def test_an_orbit_of_another_period_is_not_on_the_branch(known):
-    """Newton's method comes to the orbit gone round twice from a guess that is one."""
+    """From a guess that traverses the orbit twice, Newton's method converges to the doubled orbit."""
     (orbit,) = known.known.values()
-    assert beside(orbit, orbit.a + 1e-3).period == pytest.approx(orbit.period, rel=1e-2)
+    assert nearby_orbit(orbit, orbit.a + 1e-3).period == pytest.approx(orbit.period, rel=1e-2)
     with pytest.raises(OrbitError, match="no periodic orbit found near the guess"):
-        beside(orbit, 0.3)
+        nearby_orbit(orbit, 0.3)
 
 
 def test_orbits_of_any_symmetry_are_continued_to_where_runs_settle(asymmetric):
-    """At either a a run of its own ends on the orbit."""
+    """At both values of a an independent run ends on the orbit."""
     orbit = KnownOrbits(asymmetric).at(0.121)
     again = limit_cycle(orbit.model, asymmetric.reference, settling=10_000.0)
     assert (orbit.stop_counts, orbit.symmetry) == (again.stop_counts, again.symmetry)

@@ -1,11 +1,11 @@
-"""The equation of motion with masses, m U'' = s − θ Φ(U'), in what orbits are found and judged by."""
+"""The equation of motion with masses, m U'' = s − θ Φ(U'), in the computation of orbits."""
 
 import numpy as np
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
 from burridge_knopoff.periodic_orbits.flow import rate
 from burridge_knopoff.periodic_orbits.grazing_distances import _derivatives
-from burridge_knopoff.periodic_orbits.synchronized_bifurcations import unit
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import a_unit
 
 LIGHT = Model(Chain(3, coupling=2.0, threshold=(1.0, 1.5, 0.7)), law_of("nonlinear", 0.3), 0.2)
 HEAVY = Model(Chain(3, coupling=2.0, threshold=(1.0, 1.5, 0.7), mass=(1.0, 4.0, 0.5)), LIGHT.law, 0.2)
@@ -32,5 +32,5 @@ def test_forces_are_divided_by_masses():
 
 
 def test_the_scale_of_a_is_that_of_damping():
-    """In units of time and a that fit a mass m, a block of m moves as one of mass 1."""
-    assert unit(Chain(3, mass=4.0)) == 2.0 * unit(Chain(3))
+    """In suitable units of time and a, a block of mass m moves as one of mass 1."""
+    assert a_unit(Chain(3, mass=4.0)) == 2.0 * a_unit(Chain(3))

@@ -1,4 +1,4 @@
-"""Which orbits are others of more symmetry, or of a shorter period."""
+"""Reduction of orbits to forms of more symmetry or of a shorter period."""
 
 from types import SimpleNamespace
 
@@ -7,10 +7,10 @@ import pytest
 
 from burridge_knopoff import Chain, ChainState, Model, Symmetry, law_of
 from burridge_knopoff.periodic_orbits import minimal_orbit
-from burridge_knopoff.periodic_orbits.minimal_orbit import simplest
+from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 
 STILL = np.zeros(2, dtype=bool)
-#: No mirror image of itself.
+#: This chain is not its own mirror image.
 UNEQUAL = Chain(2, threshold=(1.0, 1.1))
 
 
@@ -22,7 +22,7 @@ UNEQUAL = Chain(2, threshold=(1.0, 1.1))
         # Distances grow with v.
         (9e-4, 10.0, 1.0, (1, 2), True),
         (0.9e-4, 0.1, 1.0, (1, 2), False),
-        # Newton's method has come to another orbit.
+        # Newton's method has converged to another orbit.
         (0.0, 1.0, 1.04, (1, 2), True),
         (0.0, 1.0, 1.06, (1, 2), False),
         (0.0, 1.0, 0.94, (1, 2), False),
@@ -47,4 +47,4 @@ def test_twice_a_simpler_orbit_is_near_it_with_its_stops_in_its_time(monkeypatch
     orbit, single = an_orbit(2.0, (2, 4)), an_orbit(time, stops)
     monkeypatch.setattr(minimal_orbit, "ReturnMap", lambda *_: SimpleNamespace(end=lambda start, after: end))
     monkeypatch.setattr(minimal_orbit, "find_periodic_orbit", lambda *_: single)
-    assert simplest(orbit, 1e-4) is (single if told else orbit)
+    assert minimal_form(orbit, 1e-4) is (single if told else orbit)

@@ -13,7 +13,7 @@ from burridge_knopoff import (
     BifurcationKind,
     Chain,
     ChainState,
-    Following,
+    ContinuationSettings,
     Model,
     follow,
     follow_bifurcation,
@@ -33,7 +33,7 @@ from tests.refused import refused
 CRITICAL = 0.0869729046660773
 MODEL = Model(Chain(3), law_of("linearized", 0.0865))
 
-#: For each parameter of the chain: an interval, and what does not change along a curve under the linearized law.
+#: For each parameter of the chain: an interval, and the invariant along a curve under the linearized law.
 SCALED = {
     "v": ((0.09, 0.11), lambda a, v: a),
     "threshold": ((0.95, 1.05), lambda a, threshold: a * threshold),
@@ -42,9 +42,9 @@ SCALED = {
 
 
 def bifurcation_near(orbit, a, reach=2e-3):
-    """Return the bifurcation at an a, on the branch of an orbit near by."""
+    """Return the bifurcation at an a, on the branch of a nearby orbit."""
     for upward in (True, False):
-        branch = follow(orbit, (a - reach, a + reach), upward=upward, enough=lambda points: len(points) > 60)
+        branch = follow(orbit, (a - reach, a + reach), upward=upward, is_complete=lambda points: len(points) > 60)
         for bifurcation in locate_bifurcations(branch):
             if abs(bifurcation.a - a) < 1e-8:
                 return bifurcation
@@ -53,7 +53,7 @@ def bifurcation_near(orbit, a, reach=2e-3):
 
 @pytest.fixture(scope="module")
 def seven_stops():
-    """Return an orbit of (4, 7, 7) stops, which ends at a fold and begins at a grazing where its branch turns."""
+    """Return an orbit with (4, 7, 7) stops, which begins at a grazing that is a turning point and ends at a fold."""
     model = MODEL.at(0.145)
     position = np.array([0.1, -0.2, -0.4]) - model.sliding_offset
     start = ChainState(position, np.full(3, 0.1), np.zeros(3, dtype=bool))
@@ -119,7 +119,7 @@ def test_the_mirror_image_of_an_orbit_has_the_same_curve(seven_stops):
 
 
 def test_under_another_law_positions_depend_on_two_numbers(families):
-    """a_c θ at v = 0.1 is a_c at v/θ, which is found without a curve."""
+    """a_c θ at v = 0.1 is a_c at v/θ, which is computed without a curve."""
     pitchfork = bifurcation_near(near(families["nonlinear"], 0.0887), 0.0887172229711765)
     curve = follow_bifurcation(pitchfork, ("a", "threshold"), (0.9, 1.1))
     for a, threshold in curve.values[:: len(curve.values) - 1]:
@@ -135,10 +135,13 @@ def test_at_small_velocities_laws_are_their_slope_at_rest(families):
 
 
 def test_the_curve_of_synchrony_in_a_and_coupling(families):
-    """Against a_c found at single couplings; it turns back in the coupling."""
+    """Compare with a_c at single couplings; the curve turns back in the coupling."""
     pitchfork = bifurcation_near(near(families["linearized"], CRITICAL), CRITICAL)
     curve = follow_bifurcation(
-        pitchfork, ("a", "coupling"), (0.9, 1.3), Following(first_step=4e-3, largest_step=2e-2, least_step=1e-4)
+        pitchfork,
+        ("a", "coupling"),
+        (0.9, 1.3),
+        ContinuationSettings(first_step=4e-3, largest_step=2e-2, smallest_step=1e-4),
     )
     a, coupling = curve.values.T
     last = int(coupling.argmax())
@@ -154,11 +157,11 @@ def test_the_curve_of_synchrony_in_a_and_coupling(families):
 
 
 def test_a_long_orbit_meets_the_same_grazings_along_the_threshold():
-    """One of period 157, between two grazings at which its branch turns back."""
+    """An orbit of period 157, between two grazings that are turning points."""
     model = MODEL.at(0.0813)
     orbit = limit_cycle(model, simulate(model, initial="plus", transient=0, window=1000).final)
     assert orbit.period > 157.0
-    few = Following(most_orbits=40)
+    few = ContinuationSettings(max_orbits=40)
     along_a = next(locate_bifurcations(follow(orbit, settings=few)))
     branch = follow(orbit, settings=few, parameter="threshold")
     assert all(abs(point.orbit.period - orbit.period) < 0.1 for point in branch)

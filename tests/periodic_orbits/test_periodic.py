@@ -1,4 +1,4 @@
-"""Periodic orbits of any stops, and their multipliers, against the synchronized orbit, differences and long runs."""
+"""Periodic orbits with any stops, and their multipliers, compared with finite differences and long runs."""
 
 from dataclasses import replace
 
@@ -7,15 +7,15 @@ import pytest
 
 from burridge_knopoff import Chain, ChainState, InitialState, Model, OrbitError, Symmetry, law_of, limit_cycle
 from burridge_knopoff.periodic_orbits.floquet import multipliers
-from burridge_knopoff.periodic_orbits.minimal_orbit import simplest
-from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit, refined
-from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
+from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
+from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit, refine_orbit
+from burridge_knopoff.periodic_orbits.return_map import ReturnMap, allowed_directions
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
 SYNCHRONIZED, SYMMETRIC, ASYMMETRIC = Symmetry
 PAPER, UNEVEN = Chain(3), Chain(3, coupling=(1.0, 2.0))
-#: Chain, law, a, U(0) from which long runs end on a closed orbit, its symmetry and how often each block stops on it.
+#: Chain, law, a, U(0) from which a long run ends on a periodic orbit, its symmetry and the stops of each block.
 ORBITS = {
     "synchronized": (PAPER, "linearized", 0.05, (-0.989, -0.993, -0.991), SYNCHRONIZED, (1, 1, 1)),
     "symmetric": (PAPER, "linearized", 0.05, (-0.787, -0.661, -0.869), SYMMETRIC, (1, 0, 1)),
@@ -25,7 +25,7 @@ ORBITS = {
     "uneven": (UNEVEN, "linearized", 0.05, (-1.15, -0.42, -1.22), ASYMMETRIC, (1, 0, 1)),
     "friction that drops": (PAPER, "carlson_langer", 0.15, (0.74, -0.17, -0.87), ASYMMETRIC, (4, 7, 7)),
 }
-#: U'(0) of all, but of the first.
+#: U'(0) of all except the first.
 VELOCITY = {"symmetric": (0.0, 0.101, 0.189)}
 
 
@@ -41,7 +41,7 @@ def orbits():
 
 
 def moved(orbit, direction, size):
-    """Return where the return of an orbit leads from a state beside the reference."""
+    """Return the return of a state next to the reference of an orbit."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + size * direction
     start = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
@@ -57,17 +57,17 @@ def test_a_settled_motion_returns_and_attracts(orbits, name):
     assert (orbit.symmetry, orbit.stop_counts) == ORBITS[name][4:]
     assert (float(orbit.model.law(0.0)) < 1.0) == (name == "friction that drops")
     found = multipliers(orbit)
-    assert found.unstable == 0
+    assert found.unstable_count == 0
     assert len(found.whole) == 2 * orbit.model.blocks - 1
-    # The monodromy is that of finite differences.
-    basis = directions(orbit.reference.stuck, ASYMMETRIC)
+    # The monodromy agrees with finite differences.
+    basis = allowed_directions(orbit.reference.stuck, ASYMMETRIC)
     difference = [(moved(orbit, d, 1e-6) - moved(orbit, d, -1e-6)) / 2e-6 for d in basis.T]
     assert orbit.monodromy @ basis == pytest.approx(np.stack(difference, axis=1), rel=1e-5, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", ORBITS)
 def test_the_reference_is_in_the_middle_of_the_longest_time_without_events(orbits, name):
-    """Also where the guess is a stop, or an event with which that time begins or ends, or right after it."""
+    """The guess may be a stop, an event at either end of the longest time without events, or a state right after it."""
     orbit = orbits[name]
     times = np.array([time for time, _, _ in orbit.events])
     gaps = np.diff(times, append=times[0] + orbit.period)
@@ -90,7 +90,7 @@ def test_the_symmetry_of_an_orbit_changes_none_of_its_multipliers(families, law,
 
 
 def test_how_long_blocks_stick(orbits):
-    """As a run with dense samples counts."""
+    """Compare with a densely sampled run."""
     orbit = orbits["asymmetric"]
     times = np.linspace(0.0, orbit.period, 4001)
     runner = Runner(orbit.model)
@@ -101,13 +101,13 @@ def test_how_long_blocks_stick(orbits):
 
 def test_a_refined_orbit_is_solved_to_rounding(orbits):
     for orbit in orbits.values():
-        found = refined(orbit)
+        found = refine_orbit(orbit)
         assert found.residual <= max(orbit.residual, 2e-14)
         assert found.period == pytest.approx(orbit.period, abs=1e-10)
 
 
 def test_uniform_sliding_is_no_orbit(families, law):
-    """It returns after any time; Newton's method comes to it from a guess that returns too early."""
+    """Uniform sliding returns after any time; Newton's method reaches it from a guess that returns too early."""
     model = families[law].at(0.08).model
     nearly = ChainState(np.array([1e-4, -1e-4, 1e-4]), np.full(3, model.v), np.zeros(3, dtype=bool))
     with pytest.raises(OrbitError, match="no block stops there"):
@@ -123,30 +123,30 @@ def test_the_half_of_a_symmetric_orbit_gives_the_whole(orbits):
     assert half.start(0).mirrored().position == pytest.approx(half.start(2).position, abs=1e-12)
 
 
-def test_an_orbit_gone_round_twice_is_told(orbits):
+def test_an_orbit_traversed_twice_is_detected(orbits):
     half = orbits["symmetric"]
     twice = find_periodic_orbit(half.model, half.reference, 2.0 * half.period, ASYMMETRIC)
-    found = simplest(twice, 1e-9)
+    found = minimal_form(twice, 1e-9)
     assert (found.symmetry, found.stop_counts) == (SYMMETRIC, half.stop_counts)
-    assert simplest(half, 1e-9) is half
+    assert minimal_form(half, 1e-9) is half
     known = orbits["synchronized"]
     twice = find_periodic_orbit(known.model, known.reference, 2.0 * known.period, SYNCHRONIZED)
     assert twice.stop_counts == (2, 2, 2)
-    assert simplest(twice, 1e-9).period == pytest.approx(known.period, abs=1e-12)
-    # What comes back in a mirror after a half does so after three halves too, not after two.
+    assert minimal_form(twice, 1e-9).period == pytest.approx(known.period, abs=1e-12)
+    # An orbit that is its mirror image after half a period is so after three halves as well, but not after two.
     thrice = find_periodic_orbit(half.model, half.reference, 3.0 * half.return_time, SYMMETRIC)
     assert thrice.stop_counts == (3, 0, 3)
-    assert simplest(thrice, 1e-9).period == pytest.approx(half.period, abs=1e-12)
+    assert minimal_form(thrice, 1e-9).period == pytest.approx(half.period, abs=1e-12)
 
 
 @pytest.mark.parametrize("name", ["synchronized", "symmetric"])
 def test_a_chain_that_is_not_its_own_mirror_image_has_no_such_orbit(orbits, name):
-    """However near it is to one that is."""
+    """This holds even very close to a symmetric orbit."""
     even = orbits[name]
     model = replace(even.model, chain=Chain(3, coupling=(1.0, 1.0 + 1e-7)))
     uneven = find_periodic_orbit(model, even.reference, even.period, ASYMMETRIC)
     assert uneven.period == pytest.approx(even.period, abs=1e-5)
-    assert simplest(uneven, 1e-4) is uneven
+    assert minimal_form(uneven, 1e-4) is uneven
 
 
 def test_an_orbit_starts_at_the_first_stop_of_a_block(orbits):
@@ -174,7 +174,7 @@ def test_what_is_no_orbit_is_refused(orbits):
 
 
 @pytest.mark.parametrize("name", ORBITS)
-def test_events_that_were_forgotten_are_found_again(orbits, name):
+def test_forgotten_events_are_recomputed(orbits, name):
     orbit = orbits[name]
     known, signature = orbit.event_rows, orbit.stop_counts
     orbit.forget_events()

@@ -1,11 +1,11 @@
-"""What branches off where synchrony is lost, against runs of its own and the normal form of a pitchfork."""
+"""Branching orbits at the loss of synchrony, compared with independent runs and the normal form of a pitchfork."""
 
 import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, OrbitError, Symmetry, law_of, multipliers, simulate
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
-from burridge_knopoff.periodic_orbits.pitchfork import asymmetry_of, branching_orbit
+from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit, end_block_asymmetry
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
 from burridge_knopoff.study.paper import PAPER_LAWS
 from tests.periodic_orbits.exact import slipping_state
@@ -18,33 +18,33 @@ def critical(families):
 
 
 def test_the_branch_is_the_attractor_beyond(families, critical, law):
-    """A run of its own, from a state that is only slightly asymmetric, ends on the orbit found by Newton's method."""
+    """An independent run from a slightly asymmetric state ends on the orbit found by Newton's method."""
     orbit = branching_orbit(critical[law], 1e-2)
     a = orbit.a
     assert a > critical[law].a
     assert orbit.symmetry == Symmetry.ASYMMETRIC
     assert orbit.reference.stuck[[0, 2]].all()
-    assert asymmetry_of(orbit) == pytest.approx(1e-2, abs=1e-14)
+    assert end_block_asymmetry(orbit) == pytest.approx(1e-2, abs=1e-14)
     assert orbit.residual <= 1e-14
     position, velocity = slipping_state(families[law].at(a))
     position[0] += 1e-3
     near = InitialState("near", position, velocity)
     run = simulate(law, a, near, transient=8000.0, window=100 * orbit.period, batches=2)
     assert run.mean_distance == pytest.approx(orbit.mean_distance, rel=1e-9)
-    # After the last stop of a period both blocks stick, x_1 − x_3 apart.
+    # After the last stop of a period both blocks stick, at the distance x_1 − x_3.
     both = run.event_position[:, 0] - run.event_position[:, 2]
     stuck = (run.event_velocity[:, 0] == 0.0) & (run.event_velocity[:, 2] == 0.0)
     assert np.abs(both[stuck]) == pytest.approx(1e-2, abs=1e-9)
 
 
 def test_the_pitchfork(families, critical, law):
-    """Offsets are positive and go like d², to the next even order; the orbits attract as much as they should."""
+    """Offsets are positive and grow as d² up to the next even order; the multipliers agree with the normal form."""
     d = np.array([2e-4, 4e-4, 8e-4])
     found = [branching_orbit(critical[law], float(value)) for value in d]
     offset = np.array([orbit.a for orbit in found]) - critical[law].a
     assert (offset > 0.0).all()
     assert offset / d**2 == pytest.approx(offset[2] / d[2] ** 2, rel=3e-5)
-    # Near a pitchfork the branch loses twice what the orbit in the middle gains.
+    # Near a pitchfork the decay rate on the branch is twice the growth rate of the central orbit.
     gains = [multipliers(families[law].at(orbit.a)).transverse.real - 1.0 for orbit in found]
     losses = [1.0 - abs(multipliers(orbit).whole[0]) for orbit in found]
     assert np.array(losses) / gains == pytest.approx(2.0, rel=2e-3)
@@ -69,7 +69,7 @@ def test_an_asymmetry_beyond_the_branch_is_refused(critical):
 
 
 def test_a_pitchfork_of_five_blocks():
-    """Its orbits, too, are apart by the root of the distance from a_c."""
+    """The distance between its orbits also grows as the root of the distance from a_c."""
     orbits = synchronized_orbits(Model(Chain(5), law_of("linearized", 0.08)))
     at = orbits.at(critical_a(bifurcations_of(orbits)))
     offset = [branching_orbit(at, d).a - at.a for d in (5e-4, 1e-3)]

@@ -1,4 +1,4 @@
-"""Steps along a branch: to orbits on it, forward, whatever instant of the orbit the tangent is taken at."""
+"""Steps along a branch lead forward to orbits on it, whichever reference state the tangent belongs to."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ import pytest
 from burridge_knopoff import Symmetry, find_periodic_orbit
 from burridge_knopoff.periodic_orbits import pseudo_arclength
 from burridge_knopoff.periodic_orbits.flow import flow
-from burridge_knopoff.periodic_orbits.parameter_line import along_a
+from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch, step_along, tangent_of, weights
 
 LENGTH = 1e-3
@@ -17,7 +17,7 @@ LENGTH = 1e-3
 def test_a_step_ends_at_an_orbit_whatever_its_reference(families, monkeypatch, upward, share):
     known = families["nonlinear"].at(0.05)
     orbit = find_periodic_orbit(known.model, known.reference, known.period, Symmetry.SYNCHRONIZED)
-    point = begin_branch(orbit, upward, along_a(orbit.model.chain))
+    point = begin_branch(orbit, upward, line_along_a(orbit.model.chain))
     usual = step_along(point, LENGTH)
     monkeypatch.setattr(pseudo_arclength, "safe_offset", lambda found: share * found.period)
     moved = step_along(point, LENGTH)
@@ -25,9 +25,9 @@ def test_a_step_ends_at_an_orbit_whatever_its_reference(families, monkeypatch, u
         assert (one.orbit.a > orbit.a) == upward
         # Forward, and of length 1.
         assert (one.tangent[-1] > 0.0) == upward
-        assert weights(orbit.model, along_a(orbit.model.chain)) @ one.tangent**2 == pytest.approx(1.0)
+        assert weights(orbit.model, line_along_a(orbit.model.chain)) @ one.tangent**2 == pytest.approx(1.0)
     assert moved.orbit.a == usual.orbit.a == pytest.approx(families["nonlinear"].at(usual.orbit.a).model.a)
     assert moved.orbit.period == pytest.approx(families["nonlinear"].at(usual.orbit.a).period, abs=1e-12)
     there = flow(usual.orbit.model, usual.orbit.reference, share * usual.orbit.period)[0].state()
     np.testing.assert_allclose(moved.orbit.reference.vector(), there.vector(), atol=1e-12)
-    assert np.abs(moved.tangent) == pytest.approx(np.abs(tangent_of(moved.orbit, along_a(orbit.model.chain))))
+    assert np.abs(moved.tangent) == pytest.approx(np.abs(tangent_of(moved.orbit, line_along_a(orbit.model.chain))))

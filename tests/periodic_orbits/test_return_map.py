@@ -1,4 +1,4 @@
-"""How returns change with a, next to where a law ends."""
+"""Derivatives of returns with respect to a, near the end of the range of a law."""
 
 from types import SimpleNamespace
 
@@ -9,11 +9,11 @@ from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.periodic_orbits import return_map
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
-from burridge_knopoff.periodic_orbits.parameter_line import along_a
+from burridge_knopoff.periodic_orbits.parameter_line import line_along_a
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-#: Friction of a block that begins to slip is a: no more than 1 is a law.
+#: The friction at the start of a slip is a, which must not exceed 1.
 LAW = FormulaLaw(1.0, "a/(1 + 0.08*u)", name="own")
 
 
@@ -23,7 +23,7 @@ def test_the_derivative_by_a_is_taken_from_the_side_that_the_law_allows():
         start = model.begin(PAPER_STATES["plus"])
         mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
         end = mapping.end(start, 1.0)
-        return mapping.parameter_derivative(start, 1.0, end, mapping.event_rows()[:, 1:], along_a(model.chain))
+        return mapping.parameter_derivative(start, 1.0, end, mapping.event_rows()[:, 1:], line_along_a(model.chain))
 
     assert np.abs(derivative(1.0)).max() > 0.05
     assert derivative(1.0) == pytest.approx(derivative(1.0 - 1e-6), abs=1e-4)
@@ -57,8 +57,10 @@ def test_the_derivative_by_a_is_that_of_the_same_events_of_each_block(monkeypatc
 
     monkeypatch.setattr(return_map, "Runner", runner)
     mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
-    found = mapping.parameter_derivative(end, 1.0, end, np.array([[0, 0], [1, 0]]), along_a(model.chain))
+    found = mapping.parameter_derivative(end, 1.0, end, np.array([[0, 0], [1, 0]]), line_along_a(model.chain))
     # The last is below: a smaller by 1e-8.
     assert found == pytest.approx([3.0, 3.0, 3.0, 0.0, 0.0, 0.0])
     monkeypatch.setattr(return_map, "Runner", lambda model, keep_events: ran([], end))
-    assert mapping.parameter_derivative(end, 1.0, end, np.zeros((0, 2)), along_a(model.chain)).tolist() == [0.0] * 6
+    assert (
+        mapping.parameter_derivative(end, 1.0, end, np.zeros((0, 2)), line_along_a(model.chain)).tolist() == [0.0] * 6
+    )

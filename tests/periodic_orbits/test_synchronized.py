@@ -21,7 +21,7 @@ from burridge_knopoff import (
 )
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.flow import flow
-from burridge_knopoff.periodic_orbits.synchronized_bifurcations import differenced_multiplier
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import finite_difference_multiplier
 from burridge_knopoff.running.runner import Runner
 from tests.periodic_orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
 
@@ -45,13 +45,13 @@ def test_the_state_returns_and_its_multiplier_in_closed_form(families, law, a):
     assert orbit.reference.position[0] == orbit.reference.position[2]
     assert (orbit.stop_counts[0], orbit.stop_counts[2]) == (1, 1)
     found = multipliers(orbit)
-    # Those of the end blocks' velocities, which a stop takes away.
-    assert abs(found.breaking[1]) < 1e-12
-    assert np.abs(found.keeping).min() < 1e-12
+    # The multipliers of the velocities of the end blocks, which a stop removes.
+    assert abs(found.symmetry_breaking[1]) < 1e-12
+    assert np.abs(found.symmetry_preserving).min() < 1e-12
     if law == "linearized":
         time, omega = orbit.period - orbit.stick_time(0), np.sqrt(2.0 - 0.25 * a * a)
         closed = np.exp(0.5 * a * time) * (np.cos(omega * time) - 0.5 * a / omega * np.sin(omega * time))
-        assert found.breaking[0] == pytest.approx(closed, abs=1e-12)
+        assert found.symmetry_breaking[0] == pytest.approx(closed, abs=1e-12)
 
 
 @pytest.mark.parametrize("a", [0.02, 0.08, 0.15])
@@ -59,7 +59,7 @@ def test_the_state_returns_and_its_multiplier_in_exact_arithmetic(families, law,
     orbit = families[law].at(a)
     position, velocity = slipping_state(orbit)
     run = after_a_period(orbit, position, velocity)
-    # Errors of the state grow by the multipliers at most, those of the period by the speed.
+    # Errors of the state grow at most by the multipliers, those of the period by the speed.
     assert np.abs(np.array(run.position, dtype=float) - position).max() < 5e-15
     assert np.abs(np.array(run.velocity, dtype=float) - velocity).max() < 5e-15
     assert len(run.events) == len(orbit.events)
@@ -68,7 +68,7 @@ def test_the_state_returns_and_its_multiplier_in_exact_arithmetic(families, law,
 
 @pytest.mark.parametrize("a", [0.02, 0.05, 0.15])
 def test_multipliers_against_finite_differences(families, law, a):
-    """The eigenvalues of the differenced period map are the multipliers; of stuck velocities there is no difference."""
+    """The eigenvalues of the finite-difference period map are the multipliers; stuck velocities cannot be perturbed."""
     orbit = families[law].at(a)
 
     def end(change):
@@ -144,12 +144,12 @@ def test_a_chain_that_is_not_its_own_mirror_image_is_refused(chain):
 
 @pytest.mark.parametrize("blocks", [2, 4, 5])
 def test_chains_of_any_length_have_the_orbit(law, blocks):
-    """A state that is moved off it by a hair comes back or goes away as the leading multiplier says."""
+    """A slightly displaced state returns or departs as the leading multiplier predicts."""
     orbit = synchronized_orbit(Model(Chain(blocks), law_of(law, 0.08)))
     assert orbit.symmetry == Symmetry.SYNCHRONIZED
     assert orbit.residual <= 1e-14
     found = multipliers(orbit)
-    assert differenced_multiplier(orbit) == pytest.approx(found.transverse, abs=1e-9)
+    assert finite_difference_multiplier(orbit) == pytest.approx(found.transverse, abs=1e-9)
     shift = np.zeros(2 * blocks)
     shift[0] = 1e-7
     start = ChainState(*np.split(orbit.reference.vector() + shift, 2), orbit.reference.stuck)
@@ -171,11 +171,11 @@ BUILT_IN = [law_of(name, 0.08) for name in ("exponential", "stribeck", "carlson_
 
 @pytest.mark.parametrize("law", [*BUILT_IN, FormulaLaw(0.08, "1 - a*c*tanh(u/c)", c=0.5)])
 def test_any_law_has_an_orbit_that_runs_end_on(law):
-    """The multiplier decides whether they do: where it is below 1 runs of slightly asymmetric states synchronize."""
+    """Where the multiplier is below 1, runs from slightly asymmetric states synchronize."""
     model = Model(Chain(3, threshold=(1.0, 0.8, 1.0)), law)
     orbit = synchronized_orbit(model)
     assert orbit.residual <= 1e-14
-    assert transverse(orbit) == pytest.approx(differenced_multiplier(orbit), abs=1e-7)
+    assert transverse(orbit) == pytest.approx(finite_difference_multiplier(orbit), abs=1e-7)
     position, velocity = slipping_state(orbit)
     position[0] += 1e-4
     settings = Settings(transient=4000.0, window=100.0, batches=2, events="all")
@@ -189,7 +189,7 @@ def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(
     doubling = {"linearized": 0.27232, "nonlinear": 0.29093}[law]
     for a, doubled in ((doubling - 0.002, False), (doubling + 0.002, True)):
         orbit = families[law].at(a)
-        assert (multipliers(orbit).keeping[0].real < -1.0) == doubled
+        assert (multipliers(orbit).symmetry_preserving[0].real < -1.0) == doubled
         position, velocity = slipping_state(orbit)
         position[1] += 1e-4
         initial = InitialState("near", position, velocity)
@@ -201,8 +201,8 @@ def test_exact_synchrony_doubles_its_period_where_a_symmetric_multiplier_passes(
 
 
 @pytest.mark.parametrize("coupling", [0.7, 1.2, 1.5, 2.0])
-def test_the_orbit_of_other_couplings_is_that_of_one_turn(coupling, law):
-    """A run from rest may end on synchronous motion of several turns; the orbits of one turn are one branch."""
+def test_the_orbit_at_other_couplings_has_one_cycle(coupling, law):
+    """A run from rest may end on synchronized motion of several cycles; the orbits with one cycle form one branch."""
     periods = []
     for a in (0.04, 0.05, 0.07, 0.1):
         orbit = synchronized_orbit(Model(Chain(3, coupling=coupling), law_of(law, a)))
@@ -210,6 +210,6 @@ def test_the_orbit_of_other_couplings_is_that_of_one_turn(coupling, law):
         assert orbit.stop_counts[1] <= 1
         assert orbit.residual < 1e-13
         periods.append(orbit.period)
-    # They are a little below that of one block on its own two springs, and grow with a.
+    # They are slightly below that of one block on two springs, and increase with a.
     assert (np.diff(periods) > 0.0).all()
     assert 5.3 < periods[0] < periods[-1] < 5.8

@@ -1,4 +1,4 @@
-"""Where synchrony is lost, a block begins to stick and the period doubles, against independent computations."""
+"""Loss of synchrony, grazing and period doubling, compared with independent computations."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -11,15 +11,15 @@ from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits import synchronized_bifurcations
 from burridge_knopoff.periodic_orbits.flow import flow
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
-from burridge_knopoff.periodic_orbits.pitchfork import apart
+from burridge_knopoff.periodic_orbits.pitchfork import displace_end_blocks
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
+    a_unit,
     bifurcations_of,
     critical_a,
     critical_a_error,
-    differenced_multiplier,
+    finite_difference_multiplier,
     grazing_a,
     symmetric_period_doubling_a,
-    unit,
 )
 from burridge_knopoff.study.paper import PAPER_LAWS
 from tests.periodic_orbits.exact import after_a_period, exact_transverse_multiplier, slipping_state
@@ -54,7 +54,7 @@ def test_critical_a_is_the_known_one(critical):
 
 
 def test_critical_a_in_exact_arithmetic(families, critical, law):
-    """In 40-digit arithmetic the multiplier at a_c is 1, and its slope tells what that means for a_c."""
+    """In 40-digit arithmetic the multiplier at a_c is 1; its slope converts the deviation into an error of a_c."""
     orbits, a = families[law], critical[law]
     slope = (transverse(orbits.at(a + 1e-4)) - transverse(orbits.at(a - 1e-4))) / 2e-4
     assert slope > 5.0
@@ -63,7 +63,7 @@ def test_critical_a_in_exact_arithmetic(families, critical, law):
 
 
 def test_grazing_a_in_exact_arithmetic(families, bifurcations, law):
-    """In 40-digit arithmetic block 2 sticks on one side of it and does not on the other."""
+    """In 40-digit arithmetic block 2 sticks on one side of the grazing and does not on the other."""
     a = grazing_a(bifurcations[law], block=1)
     for side, sticks in ((-1, False), (1, True)):
         orbit = families[law].at(a + side * 2e-12)
@@ -76,15 +76,15 @@ def test_grazing_a_in_exact_arithmetic(families, bifurcations, law):
 
 def test_symmetric_multiplier_at_the_flip(families, bifurcations, law):
     a = symmetric_period_doubling_a(bifurcations[law])
-    assert multipliers(families[law].at(a)).keeping[0] == pytest.approx(-1.0, abs=1e-12)
+    assert multipliers(families[law].at(a)).symmetry_preserving[0] == pytest.approx(-1.0, abs=1e-12)
 
 
 def test_no_change_is_told():
     assert np.isnan([critical_a([]), symmetric_period_doubling_a([]), grazing_a([], block=1)]).all()
 
 
-def test_grazing_beside_an_orbit_that_is_not_found():
-    """With stiff coupling it lies between values of a at which the multipliers are far from what they are there."""
+def test_grazing_next_to_an_orbit_that_is_not_found():
+    """With stiff coupling it lies between values of a at which the multipliers are very different."""
     orbits = synchronized_orbits(Model(Chain(3, coupling=30.0), law_of("linearized", 0.05)))
     a = grazing_a(bifurcations_of(orbits), block=1)
     assert 0.025 < a < 0.0375
@@ -92,8 +92,8 @@ def test_grazing_beside_an_orbit_that_is_not_found():
 
 
 @pytest.mark.parametrize("lost", [(0.0, 0.03), (0.05, 0.06), (0.2, 1.0)])
-def test_bifurcations_beside_a_range_in_which_the_orbit_is_lost_are_found(families, critical, monkeypatch, lost):
-    """Below it, above it, and on both sides of it."""
+def test_bifurcations_around_a_gap_of_the_orbit_are_found(families, critical, monkeypatch, lost):
+    """The branch may break off below, above, or on both sides."""
 
     class Partly(KnownOrbits):
         def at(self, a):
@@ -117,14 +117,15 @@ def test_bifurcations_beside_a_range_in_which_the_orbit_is_lost_are_found(famili
 @pytest.mark.parametrize("a", [0.02, 0.09, 0.2])
 def test_finite_differences_agree_with_the_tangent_map(families, law, a):
     orbit = families[law].at(a)
-    assert differenced_multiplier(orbit) == pytest.approx(transverse(orbit), abs=1e-9)
+    assert finite_difference_multiplier(orbit) == pytest.approx(transverse(orbit), abs=1e-9)
 
 
 def test_differences_of_blocks_1_and_3_fade_below_and_grow_above(families, critical, law):
     for offset in (-0.002, 0.002):
         orbit = families[law].at(critical[law] + offset)
         start, end = (
-            flow(orbit.model, apart(orbit.reference, 1e-8), turns * orbit.period)[0].state() for turns in (1, 101)
+            flow(orbit.model, displace_end_blocks(orbit.reference, 1e-8), turns * orbit.period)[0].state()
+            for turns in (1, 101)
         )
         first, last = (state.position[0] - state.position[2] for state in (start, end))
         assert last / first == pytest.approx(transverse(orbit) ** 100, rel=1e-5)
@@ -143,38 +144,38 @@ def test_critical_a_does_not_depend_on_v_under_the_linearized_law(families, crit
 
 @pytest.mark.parametrize(("strength", "threshold"), [(25.0, 1.0), (0.04, 1.0), (1.0, 0.125), (4.0, 3.0)])
 def test_transitions_are_found_on_the_scale_of_the_chain(critical, bifurcations, strength, threshold):
-    """Springs stronger by a factor make all motion faster by its root; what counts is a times the threshold."""
+    """Springs stiffer by a factor make all motion faster by its square root; a times the threshold is what matters."""
     springs = {"coupling": strength, "pulling": (strength, 2.0 * strength, strength)}
     orbits = synchronized_orbits(Model(Chain(3, threshold=threshold, **springs), law_of("linearized", 0.0)))
     factor = strength**0.5 / threshold
-    assert unit(orbits.model.chain) == pytest.approx(factor)
+    assert a_unit(orbits.model.chain) == pytest.approx(factor)
     found = bifurcations_of(orbits)
     assert critical_a(found) == pytest.approx(factor * critical["linearized"], rel=1e-9)
     assert grazing_a(found, block=1) == pytest.approx(factor * grazing_a(bifurcations["linearized"], block=1), rel=1e-9)
     assert critical_a_error(orbits, critical_a(found)) < 1e-10 * factor
 
 
-def test_two_blocks_part_in_a_flip():
-    """Each does in a period what the other one does in the next, so that the transverse multiplier is −1 there."""
+def test_two_blocks_desynchronize_in_a_period_doubling():
+    """Each block does in one period what the other does in the next, so that the transverse multiplier is −1."""
     orbits = synchronized_orbits(Model(Chain(2), law_of("linearized", 0.05)))
     found = bifurcations_of(orbits)
     a = critical_a(found)
     assert multipliers(orbits.at(a)).transverse == pytest.approx(-1.0, abs=1e-12)
-    # It is no period doubling of motion in which both move as one.
+    # It is not a period doubling of synchronized motion.
     assert np.isnan(symmetric_period_doubling_a(found))
 
 
-def test_five_blocks_part_where_the_leading_multiplier_is_1():
+def test_five_blocks_desynchronize_where_the_leading_multiplier_is_1():
     orbits = synchronized_orbits(Model(Chain(5), law_of("linearized", 0.08)))
     a = critical_a(bifurcations_of(orbits))
     assert [abs(multipliers(orbits.at(a + side)).transverse) > 1.0 for side in (-1e-6, 1e-6)] == [False, True]
 
 
 def test_the_error_of_critical_a_is_how_far_a_multiplier_that_is_off_moves_it(monkeypatch, families):
-    """One that rises by 5 a, and is too small by a hundredth, comes to 1 later by 0.002."""
+    """A multiplier with slope 5 that is too small by 0.01 reaches 1 at an a larger by 0.002."""
     monkeypatch.setattr(
         synchronized_bifurcations, "multipliers", lambda a: SimpleNamespace(transverse=1.0 + 5.0 * (a - 0.2))
     )
-    monkeypatch.setattr(synchronized_bifurcations, "differenced_multiplier", lambda a: 0.99 + 5.0 * (a - 0.2))
+    monkeypatch.setattr(synchronized_bifurcations, "finite_difference_multiplier", lambda a: 0.99 + 5.0 * (a - 0.2))
     orbits = SimpleNamespace(model=families["linearized"].model, at=lambda a: a)
     assert critical_a_error(orbits, 0.2) == pytest.approx(0.002, rel=1e-9)

@@ -1,4 +1,4 @@
-"""A chain in other units is the same chain: its orbits are found as well, as fast, and scale."""
+"""A chain in other units is the same chain: its orbits scale and are found equally well and fast."""
 
 import math
 
@@ -23,7 +23,7 @@ from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
     bifurcations_of,
     critical_a,
-    differenced_multiplier,
+    finite_difference_multiplier,
     grazing_a,
 )
 from burridge_knopoff.running.runner import Runner
@@ -47,7 +47,7 @@ def begun(model, time, length):
 
 @pytest.fixture(scope="module")
 def branch():
-    """Return a function that follows a branch of synchronized orbits, not held synchronous, in any units."""
+    """Return a function that continues a branch of synchronized orbits, treated as asymmetric, in any units."""
 
     def followed(time=1.0, length=1.0):
         model = paper(time, length, 0.0865)
@@ -59,7 +59,7 @@ def branch():
 
 @pytest.mark.parametrize("time", [2.0**10, 2.0**-9])
 def test_the_synchronized_orbit_is_the_same_to_the_bit(time):
-    """Where v and a stay the same numbers; other ones round otherwise."""
+    """For units in which v and a have the same values; otherwise rounding differs."""
     one, other = synchronized_orbit(paper()), synchronized_orbit(paper(time, time))
     assert other.period == one.period * time
     assert (other.reference.position == one.reference.position * time).all()
@@ -69,7 +69,7 @@ def test_the_synchronized_orbit_is_the_same_to_the_bit(time):
 
 @pytest.mark.parametrize(
     ("time", "length", "law"),
-    # The nonlinear law has a speed of its own.
+    # The nonlinear law has an intrinsic speed.
     [(*units, "linearized") for units in UNITS] + [(2.0**10, 2.0**10, "nonlinear"), (2.0**-9, 2.0**-9, "nonlinear")],
 )
 def test_the_synchronized_orbit_scales(time, length, law):
@@ -77,11 +77,11 @@ def test_the_synchronized_orbit_scales(time, length, law):
     assert other.period / time == pytest.approx(one.period, abs=1e-11)
     assert other.reference.position / length == pytest.approx(one.reference.position, abs=1e-11)
     assert abs(multipliers(other).whole) == pytest.approx(abs(multipliers(one).whole), abs=1e-10)
-    assert differenced_multiplier(other) == pytest.approx(multipliers(one).transverse, abs=1e-9)
+    assert finite_difference_multiplier(other) == pytest.approx(multipliers(one).transverse, abs=1e-9)
 
 
 def test_a_chain_a_thousand_times_as_slow_has_its_orbit():
-    """Its springs are a thousand times as weak and its blocks as heavy; the period is that of a run from a state."""
+    """Its springs are a thousand times softer and its blocks a thousand times heavier; a run gives the same period."""
     chain = Chain(3, coupling=0.001, pulling=(0.001, 0.002, 0.001), mass=1000.0)
     orbit = synchronized_orbit(Model(chain, law_of("linearized", 0.08)))
     assert orbit.period == pytest.approx(1000.0 * synchronized_orbit(paper()).period, rel=1e-12)
@@ -91,7 +91,7 @@ def test_a_chain_a_thousand_times_as_slow_has_its_orbit():
 
 @pytest.mark.parametrize("mass", [1.0, 2.0**-18])
 def test_a_fast_chain_takes_no_longer(monkeypatch, mass):
-    """Hundreds of times as fast: a run of 4000 units of 1/ω would be a million turns."""
+    """It is hundreds of times as fast: a run of 4000 units of 1/ω would take a million periods."""
     times, run = [], Runner.run
     monkeypatch.setattr(Runner, "run", lambda runner, until: times.append(until) or run(runner, until))
     springs = 2.0**18
@@ -117,8 +117,8 @@ def test_a_branch_scales(branch, time, length):
     for first, second in zip(one, other, strict=True):
         assert second.orbit.a * length / time == pytest.approx(first.orbit.a, abs=1e-9)
         assert second.orbit.period / time == pytest.approx(first.orbit.period, abs=1e-9)
-        assert second.contacts.shares(second.orbit.model.chain.own_units) == pytest.approx(
-            first.contacts.values(), rel=1e-6
+        assert second.grazing_distances.in_own_units(second.orbit.model.chain.own_units) == pytest.approx(
+            first.grazing_distances.values(), rel=1e-6
         )
     (pitchfork,), (found,) = locate_bifurcations(one), locate_bifurcations(other)
     assert found.kind == pitchfork.kind

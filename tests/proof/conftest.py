@@ -1,4 +1,4 @@
-"""The orbits of the linearized law in double precision, from which the proofs begin, and states of arcs."""
+"""The orbits of the linearized law in double precision, from which the proofs start, and states of arcs."""
 
 from itertools import product
 
@@ -12,7 +12,7 @@ from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.proof.arcs import State
 from burridge_knopoff.proof.balls import arithmetic
 from burridge_knopoff.proof.krawczyk import Enclosure
-from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit
+from burridge_knopoff.proof.orbit import POSITIONS, ProvedOrbit
 
 #: Whether blocks 1 and 3 slip, and whether block 2 does.
 SLIPS = list(product((False, True), repeat=2))
@@ -25,13 +25,13 @@ def family():
 
 
 def holds(ball, number, error="1e-45"):
-    """Tell whether a ball may hold a number of mpmath that is known to within an error: whether the two overlap."""
+    """Return whether a ball overlaps a number of mpmath with an error."""
     with arithmetic(), mpmath.workdps(60):
         return bool(ball.overlaps(arb(mpmath.nstr(number, 55), error)))
 
 
 def state_of(slips):
-    """Return a state with these blocks slipping, in balls, and its numbers: x, y, their rates, a difference and its."""
+    """Return a state in which these blocks slip, as balls, and its numbers x, y, x', y', d, d'."""
     rates = ["0.4" if slips[0] else "-1", "1.1" if slips[1] else "-1"]
     numbers = ["0.3", "-0.7", *rates, "0.9", "0.2" if slips[0] else "0"]
     with arithmetic():
@@ -40,7 +40,7 @@ def state_of(slips):
 
 
 def changed(orbit, arc, late):
-    """Return an orbit that is none, unless it is late by 0: one arc takes another time."""
+    """Return a wrong orbit in which one arc is longer by a delay; the true orbit if the delay is 0."""
     times = [time + (late if k == arc else 0) for k, time in enumerate(orbit.times)]
-    inner = (*orbit.enclosure.inner[:PLACES], *times)
+    inner = (*orbit.enclosure.inner[:POSITIONS], *times)
     return ProvedOrbit(orbit.arcs, orbit.a, Enclosure(inner, inner))

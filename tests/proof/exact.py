@@ -1,4 +1,4 @@
-"""The synchronized orbit at 50 digits by other means: all three blocks, matrix exponentials, Newton's method."""
+"""The synchronized orbit at 50 digits, computed independently: all three blocks, matrix exponentials, Newton."""
 
 from dataclasses import dataclass
 
@@ -8,7 +8,7 @@ from mpmath import mp, mpf
 from burridge_knopoff import Chain
 
 DIGITS = 50
-#: Which blocks slip on each arc, and the block whose event ends it; block 3 does as block 1.
+#: Which blocks slip on each arc, and the block whose event ends it; block 3 moves like block 1.
 ARCS = (((0, 1, 0), 0), ((1, 1, 1), 0), ((0, 1, 0), 1), ((0, 0, 0), 1))
 
 
@@ -31,7 +31,7 @@ def force(state, block, a):
 
 
 def follow(unknown, a):
-    """Return what is 0 at each event, the state at the end of the period, and its derivatives by the first state."""
+    """Return the event functions, the final state, and its derivatives with respect to the first state."""
     x, y, *times = unknown
     state = mp.matrix([x, y, x, -1, -1, -1, 1])
     tangent = mp.eye(7)
@@ -74,11 +74,11 @@ def exact_orbit(guess, a):
         solution = list(mpmath.findroot(equations, [mpf(value) for value in guess], tol=mpf(10) ** (8 - 2 * DIGITS)))
         own = mpf(a) if a is not None else solution[6]
         tangent = follow(solution[:6], own)[2]
-        # The derivative by x_1 = x_3 alone: what it makes of x_1 − x_2.
+        # The derivative of x_1 − x_2 with respect to x_1 = x_3.
         symmetric = tangent[0, 0] + tangent[0, 2] - tangent[1, 0] - tangent[1, 2]
         return Exact(own, solution[:6], transverse(tangent), symmetric)
 
 
 def transverse(tangent):
-    """Return what a period makes of x_1 − x_3."""
+    """Return the factor by which x_1 − x_3 changes in a period."""
     return (tangent[0, 0] - tangent[0, 2] - tangent[2, 0] + tangent[2, 2]) / 2

@@ -25,7 +25,7 @@ def test_an_arc_is_the_matrix_exponential(slips, a, time):
         state, numbers = state_of(slips)
         exact = three_blocks(numbers)
         arc = Arc(slips, LATERAL, Linearized())
-        end = arc.after(state, arb(a), arb(time))
+        end = arc.state_after(state, arb(a), arb(time))
         three = (slips[0], slips[1], slips[0])
         exact = mp.expm(matrix(three, mpf(a)) * mpf(time), method="taylor") * exact
         for k in (LATERAL, CENTER):
@@ -37,12 +37,12 @@ def test_an_arc_is_the_matrix_exponential(slips, a, time):
 
 
 @pytest.mark.parametrize("slips", SLIPS)
-def test_a_small_difference_goes_as_that_of_two_motions(slips):
-    """The equations are linear: any difference of blocks 1 and 3 obeys the same matrix."""
+def test_a_small_difference_is_that_of_two_motions(slips):
+    """The equations are linear, so that the difference of blocks 1 and 3 obeys the same matrix."""
     with mpmath.workdps(55), arithmetic():
         state, numbers = state_of(slips)
         exact = three_blocks(numbers)
-        end = Arc(slips, LATERAL, Linearized()).after(state, arb("0.1"), arb("1.7"))
+        end = Arc(slips, LATERAL, Linearized()).state_after(state, arb("0.1"), arb("1.7"))
         apart = exact.copy()
         apart[0], apart[2] = exact[0] + mpf("0.45"), exact[2] - mpf("0.45")
         if slips[0]:
@@ -56,9 +56,9 @@ def test_an_event_takes_the_velocity_away_only_where_a_block_stops():
     state, _ = state_of((True, True))
     center = State(state.position, (state.velocity[0], -1), state.difference)
     lateral = State(state.position, (-1, state.velocity[1]), (state.difference[0], 0))
-    assert Arc((True, True), CENTER, Linearized()).last(state) == center
-    assert Arc((True, True), LATERAL, Linearized()).last(state) == lateral
-    assert Arc((True, False), CENTER, Linearized()).last(state) is state
+    assert Arc((True, True), CENTER, Linearized()).state_after_event(state) == center
+    assert Arc((True, True), LATERAL, Linearized()).state_after_event(state) == lateral
+    assert Arc((True, False), CENTER, Linearized()).state_after_event(state) is state
 
 
 def test_arcs_are_named_by_what_ends_them():

@@ -1,4 +1,4 @@
-"""Balls as they leave the room: rounded outward, and never wider than they must be."""
+"""Conversion of balls to doubles and text: rounded outward, and no wider than necessary."""
 
 import math
 from fractions import Fraction

@@ -1,4 +1,4 @@
-"""Signs over whole arcs: dips between any samples are seen, roots at the ends are known."""
+"""Signs over whole arcs: every dip between samples is detected, and roots at the ends are excluded."""
 
 import math
 
@@ -10,7 +10,7 @@ from burridge_knopoff.proof.bounds import bounds, check_positive, jet
 
 
 def touching(height, at=1 / 3):
-    """Return a parabola whose least value, at a third, is a height."""
+    """Return a parabola with a given minimum at a third."""
     return lambda t: (t - at) * (t - at) + height
 
 
@@ -26,7 +26,7 @@ def test_a_dip_of_any_depth_is_seen(height):
         check_positive(touching(height), arb(1))
 
 
-def test_the_time_of_the_dip_is_told():
+def test_the_message_has_the_time_of_the_dip():
     with pytest.raises(ProofError) as error:
         check_positive(touching(-1e-9, 0.7), arb(1))
     assert float(str(error.value).split()[3]) == pytest.approx(0.7, abs=1e-4)
@@ -38,30 +38,30 @@ def started(t):
 
 
 def test_known_roots_at_the_ends_are_no_events():
-    check_positive(started, arb(2), starts=True, ends=True)
-    check_positive(started, arb(1.99), starts=True)
-    check_positive(lambda t: 2 - t, arb(2), ends=True)
+    check_positive(started, arb(2), root_at_start=True, root_at_end=True)
+    check_positive(started, arb(1.99), root_at_start=True)
+    check_positive(lambda t: 2 - t, arb(2), root_at_end=True)
 
 
 @pytest.mark.parametrize(
     ("function", "length", "known"),
     [
-        (started, 2.0, {"starts": True}),
-        (started, 2.0, {"ends": True}),
-        (started, 2.001, {"starts": True}),
-        (lambda t: -t * t, 1.0, {"starts": True}),
-        # A start whose second derivative is 0 as well is not decided.
-        (lambda t: t * t * t, 1.0, {"starts": True}),
+        (started, 2.0, {"root_at_start": True}),
+        (started, 2.0, {"root_at_end": True}),
+        (started, 2.001, {"root_at_start": True}),
+        (lambda t: -t * t, 1.0, {"root_at_start": True}),
+        # A start at which the second derivative also vanishes is undecided.
+        (lambda t: t * t * t, 1.0, {"root_at_start": True}),
         # A known root where the function rises through 0: it was negative before.
-        (lambda t: t - 1, 1.0, {"ends": True}),
-        # Roots that are none.
-        (lambda t: 1 + t, 1.0, {"starts": True}),
-        (lambda t: t + t * t, 1.0, {"starts": True}),
-        (lambda t: 2 - t, 1.0, {"ends": True}),
-        # A graze just before the end.
-        (lambda t: (1 - t) * ((t - 0.999) * (t - 0.999) - 1e-12), 1.0, {"ends": True}),
-        # One just after the start.
-        (lambda t: t * t * ((t - 0.001) * (t - 0.001) - 1e-12), 1.0, {"starts": True}),
+        (lambda t: t - 1, 1.0, {"root_at_end": True}),
+        # These are not roots.
+        (lambda t: 1 + t, 1.0, {"root_at_start": True}),
+        (lambda t: t + t * t, 1.0, {"root_at_start": True}),
+        (lambda t: 2 - t, 1.0, {"root_at_end": True}),
+        # A grazing just before the end.
+        (lambda t: (1 - t) * ((t - 0.999) * (t - 0.999) - 1e-12), 1.0, {"root_at_end": True}),
+        # A grazing just after the start.
+        (lambda t: t * t * ((t - 0.001) * (t - 0.001) - 1e-12), 1.0, {"root_at_start": True}),
     ],
 )
 def test_other_roots_are(function, length, known):
@@ -73,7 +73,7 @@ def test_the_proof_is_for_all_lengths_of_a_ball():
     with arithmetic():
         near, wide = arb(2, 1e-9), arb(2, 0.5)
     # Wherever the true end is, the function falls to 0 there.
-    check_positive(started, near, starts=True, ends=True)
+    check_positive(started, near, root_at_start=True, root_at_end=True)
     with pytest.raises(ProofError):
         check_positive(touching(-1e-9, 2.4), wide)
 

@@ -1,4 +1,4 @@
-"""The loss of synchrony, proved: a_c against the double code and 50 digits, and the family of orbits on both sides."""
+"""The proved loss of synchrony: a_c, compared with double precision and 50 digits, and the family of orbits."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -48,12 +48,12 @@ def test_the_multiplier_is_1_there_and_passes_it(found, family):
             assert bool(multiplier < 1) == below
             assert bool(multiplier > 1) != below
             assert abs((multiplier - 1) / arb(side) - found.orbit.slope) < 1e-9
-    assert found.unique.contains(found.a)
-    assert width(found.unique) > 2e-4
+    assert found.uniqueness_range.contains(found.a)
+    assert width(found.uniqueness_range) > 2e-4
 
 
 def test_a_guess_far_from_a_c_is_refused(family):
-    """Newton's method may go anywhere from there; Krawczyk's operator does not follow."""
+    """Newton's method may converge to anything from there, but Krawczyk's operator rejects it."""
     arcs, guess = arcs_of(family.at(0.2))
     with pytest.raises(ProofError, match="expected it in the interior of"):
         enclose(equations(arcs, critical=True), [*map(arb, guess), arb(0.2)], [1e-3] * 7)
@@ -75,9 +75,9 @@ def test_the_family_holds_the_orbits_of_the_double_code(branch, family):
         assert piece.orbit.period.contains(arb(orbit.period))
         found = multipliers(orbit)
         assert piece.orbit.multiplier.contains(arb(found.transverse.real))
-        assert piece.orbit.symmetric_multiplier.contains(arb(float(found.keeping[0].real)))
+        assert piece.orbit.symmetric_multiplier.contains(arb(float(found.symmetry_preserving[0].real)))
         with arithmetic():
-            piece.check_holds(prove_orbit(orbit, arb(a)).enclosure, arb(a))
+            piece.check_contains(prove_orbit(orbit, arb(a)).enclosure, arb(a))
         assert piece.orbit.slope > 0
 
 
@@ -85,30 +85,30 @@ def test_an_orbit_of_another_a_is_none_of_the_family(branch, family):
     for a, piece, at in ((0.09, branch[0], branch[0].orbit.a.mid()), (0.0861, branch[-1], arb(0.0861))):
         other = prove_orbit(family.at(a), arb(a)).enclosure
         with pytest.raises(ProofError, match="not proved to be an orbit of the family"):
-            piece.check_holds(other, at)
+            piece.check_contains(other, at)
 
 
 def test_pieces_that_do_not_join_are_refused(branch):
-    """The box of one piece is moved away from the orbit: what touches it is no longer known to be the same."""
+    """The box of one piece is moved away from the orbit, so that neighbouring pieces no longer share an orbit."""
     first, second = branch[:2]
     moved = replace(first, middle=[first.middle[0] + arb(0.01), *first.middle[1:]])
     edge = fmpq(86, 1000) + (fmpq(88, 1000) - fmpq(86, 1000)) / len(branch)
-    critical._check_joined(first, second, edge)
+    critical._check_same_orbit(first, second, edge)
     with pytest.raises(ProofError):
-        critical._check_joined(moved, second, edge)
+        critical._check_same_orbit(moved, second, edge)
 
 
 def test_every_pair_of_neighbours_is_joined(branch, family, monkeypatch):
     joined = []
-    check = critical._check_joined
-    monkeypatch.setattr(critical, "_check_joined", lambda *pair: (joined.append(pair), check(*pair)))
+    check = critical._check_same_orbit
+    monkeypatch.setattr(critical, "_check_same_orbit", lambda *pair: (joined.append(pair), check(*pair)))
     pieces = prove_branch(family.at(0.086), fmpq(86, 1000), fmpq(88, 1000))
     assert [pair[:2] for pair in joined] == list(pairwise(pieces))
     assert len(pieces) == len(branch) > 2
 
 
 def test_a_range_beyond_the_order_of_events_is_refused(family, monkeypatch):
-    """At 0.0757 all three blocks start at once: the family goes on, but not with these arcs."""
-    monkeypatch.setattr(critical, "DEEPEST", 3)
+    """At 0.0757 all three blocks start at the same time; the family continues with other arcs."""
+    monkeypatch.setattr(critical, "MAX_HALVINGS", 3)
     with pytest.raises(ProofError, match=r"a = 0\.075\d*: not proved: block 2|blocks 1 and 3|unknown"):
         prove_branch(family.at(0.0765), fmpq(75, 1000), fmpq(76, 1000))

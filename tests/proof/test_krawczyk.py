@@ -6,7 +6,14 @@ import pytest
 from flint import arb, arb_mat
 
 from burridge_knopoff.proof.balls import ProofError, arithmetic, width
-from burridge_knopoff.proof.krawczyk import derivatives, enclose, inflated, polished, solved, widest
+from burridge_knopoff.proof.krawczyk import (
+    derivatives,
+    enclose,
+    enclose_widest,
+    refine_guess,
+    solve_linear,
+    trial_radii,
+)
 
 RADII = [2.0**-k for k in range(8, 30)]
 
@@ -34,7 +41,7 @@ def test_a_solution_is_enclosed_and_the_only_one_in_its_box():
 
 @pytest.mark.parametrize(("middle", "radius"), [(1.0, 2.5), (1.5, 0.2), (1.3, 0.2), (1.0, 1.5)])
 def test_a_box_without_a_single_solution_that_can_be_seen_is_refused(middle, radius):
-    """Both solutions, none, none but near, and one in a box that is too wide to see it."""
+    """Boxes with both solutions, with none, with one nearby, and one box too wide for the proof."""
     with pytest.raises(ProofError, match=r"unknown \d: got .*, expected it in the interior of "):
         enclose(circle_and_line, [arb(middle)] * 2, [radius] * 2)
 
@@ -43,12 +50,12 @@ def test_a_double_solution_is_refused():
     with pytest.raises(ProofError, match="cannot be inverted"):
         enclose(lambda unknown: [unknown[0] * unknown[0]], [arb(0)], [0.1])
     with pytest.raises(ProofError):
-        widest(lambda unknown: [unknown[0] * unknown[0]], [arb(1e-30)], [0.1, 1e-6])
+        enclose_widest(lambda unknown: [unknown[0] * unknown[0]], [arb(1e-30)], [0.1, 1e-6])
 
 
-def test_two_solutions_nearby_are_told_apart():
-    """x² = 1e-8: the widest cube that is found has one of them only."""
-    found = widest(lambda unknown: [unknown[0] * unknown[0] - 1e-8], [arb(1e-4)], RADII)
+def test_two_nearby_solutions_are_distinguished():
+    """x² = 1e-8: the widest cube with a proof contains only one root."""
+    found = enclose_widest(lambda unknown: [unknown[0] * unknown[0] - 1e-8], [arb(1e-4)], RADII)
     assert found.inner[0].overlaps(arb(1e-8).sqrt())
     assert not found.outer[0].contains(-1e-4)
     assert width(found.outer[0]) > 5e-5
@@ -57,7 +64,7 @@ def test_two_solutions_nearby_are_told_apart():
 def test_the_proof_is_for_every_value_of_a_parameter():
     with arithmetic():
         c = arb(2, 0.01)
-        found = enclose(root_of, [arb(1.41421356)], inflated(root_of, [arb(1.41421356)], [c]), [c])
+        found = enclose(root_of, [arb(1.41421356)], trial_radii(root_of, [arb(1.41421356)], [c]), [c])
         for value in (1.99, 2.0, 2.01):
             assert found.inner[0].contains(arb(value).sqrt())
     # The true range of the roots is 0.00707 wide.
@@ -76,19 +83,19 @@ def test_derivatives_are_enclosed():
             assert matrix[1, 1].contains(-(x / 4) * (x / 2).cos())
 
 
-def test_a_guess_is_polished_to_all_digits():
-    (found,) = polished(root_of, [1.4], [arb(2)])
+def test_a_guess_is_refined_to_all_digits():
+    (found,) = refine_guess(root_of, [1.4], [arb(2)])
     with arithmetic():
         assert abs(found - arb(2).sqrt()) < 1e-55
     assert float(found) == math.sqrt(2.0)
     with pytest.raises(ProofError, match="cannot be inverted"):
-        polished(root_of, [0.0], [arb(2)])
+        refine_guess(root_of, [0.0], [arb(2)])
 
 
 def test_equations_whose_matrix_may_be_singular_are_refused():
     with arithmetic():
-        solution = solved(arb_mat([[2, 0], [0, arb(1, 0.5)]]), arb_mat([[1], [1]]))
+        solution = solve_linear(arb_mat([[2, 0], [0, arb(1, 0.5)]]), arb_mat([[1], [1]]))
         assert solution[1, 0].contains(arb(2))
         assert solution[1, 0].contains(arb(2) / 3)
         with pytest.raises(ProofError, match="cannot be inverted"):
-            solved(arb_mat([[1, 1], [1, arb(1, 1e-30)]]), arb_mat([[1], [2]]))
+            solve_linear(arb_mat([[1, 1], [1, arb(1, 1e-30)]]), arb_mat([[1], [2]]))

@@ -1,4 +1,4 @@
-"""Proved orbits against the double code and 50-digit arithmetic; what must not be proved is refused."""
+"""Proved orbits, compared with double precision and 50-digit arithmetic; false statements are rejected."""
 
 from contextlib import nullcontext
 from dataclasses import replace
@@ -15,8 +15,8 @@ from burridge_knopoff.proof.arcs import CENTER, LATERAL, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic, decimal, width
 from burridge_knopoff.proof.bounds import check_positive
 from burridge_knopoff.proof.closed import Linearized
-from burridge_knopoff.proof.krawczyk import derivatives, enclose, part, solved
-from burridge_knopoff.proof.orbit import PLACES, arcs_of, equations, followed, prove_orbit
+from burridge_knopoff.proof.krawczyk import derivatives, enclose, solve_linear, submatrix
+from burridge_knopoff.proof.orbit import POSITIONS, arcs_of, equations, follow_arcs, prove_orbit
 from tests.periodic_orbits.exact import slipping_state
 from tests.proof.conftest import changed, holds
 from tests.proof.exact import exact_orbit
@@ -37,7 +37,7 @@ def test_enclosures_hold_the_orbit_of_50_digits(proved):
         assert holds(ball, number)
         assert width(ball) < 1e-45
     with mpmath.workdps(50):
-        assert holds(proved.period, mpmath.fsum(exact.unknown[PLACES:]), "1e-44")
+        assert holds(proved.period, mpmath.fsum(exact.unknown[POSITIONS:]), "1e-44")
     assert holds(proved.multiplier, exact.transverse)
     assert holds(proved.symmetric_multiplier, exact.symmetric)
 
@@ -47,19 +47,19 @@ def test_enclosures_hold_the_orbit_of_50_digits(proved):
 def test_enclosures_hold_the_orbit_of_the_double_code(family, a):
     proved, orbit = proved_at(family, a), family.at(a)
     assert float(proved.period) == pytest.approx(orbit.period, abs=1e-13)
-    slipping = (LATERAL, CENTER)[proved.arcs[-1].ends]
+    slipping = (LATERAL, CENTER)[proved.arcs[-1].event_block]
     first = next(time for time, block, kind in orbit.events if (block, kind) == (slipping, 1))
     later = [(time - first) % orbit.period for time, block, _ in orbit.events if block < 2]
     expected = [*sorted(time for time in later if time > 0.0), orbit.period]
     assert [float(time) for time in proved.event_times] == pytest.approx(expected, abs=1e-13)
     found = multipliers(orbit)
     assert float(proved.multiplier) == pytest.approx(found.transverse.real, abs=1e-11)
-    assert float(proved.symmetric_multiplier) == pytest.approx(found.keeping[0].real, abs=1e-11)
-    assert (proved.arcs[0].ends == LATERAL) == (a > 0.0757)
+    assert float(proved.symmetric_multiplier) == pytest.approx(found.symmetry_preserving[0].real, abs=1e-11)
+    assert (proved.arcs[0].event_block == LATERAL) == (a > 0.0757)
 
 
 def test_an_orbit_is_proved_for_all_a_of_a_ball(family):
-    """The orbits of double precision at its ends lie well inside."""
+    """The orbits in double precision at both ends lie inside the enclosure."""
     with arithmetic():
         wide = prove_orbit(family.at(0.08), arb(0.08, 1e-6))
     for a in (0.0799991, 0.08, 0.0800009):
@@ -80,13 +80,13 @@ def test_the_slope_is_that_of_differences(proved, family):
 
 @pytest.mark.parametrize("a", [0.07, 0.08, 0.2])
 def test_the_symmetric_multiplier_is_the_derivative_of_the_return_map(family, a):
-    """By the implicit function theorem on the equations of the orbit; one eigenvalue is 0, so that it is the trace."""
+    """By the implicit function theorem; one eigenvalue is 0, so that the multiplier is the trace."""
     proved = proved_at(family, a)
     matrix = derivatives(equations(proved.arcs), [*proved.enclosure.inner, proved.a])
     places, times, events, ends = range(2), range(2, 6), range(4), range(4, 6)
     with arithmetic():
-        shift = solved(part(matrix, events, times), part(matrix, events, places))
-        back = part(matrix, ends, places) - part(matrix, ends, times) * shift
+        shift = solve_linear(submatrix(matrix, events, times), submatrix(matrix, events, places))
+        back = submatrix(matrix, ends, places) - submatrix(matrix, ends, times) * shift
         back = back + type(back)([[1, 0], [0, 1]])
         assert back.det().contains(0)
         assert back.trace().overlaps(proved.symmetric_multiplier)
@@ -94,10 +94,10 @@ def test_the_symmetric_multiplier_is_the_derivative_of_the_return_map(family, a)
 
 
 def test_a_shift_along_the_flow_returns(proved):
-    """The multiplier of the flow is 1: all blocks stick, and a shift of all of them alike comes back as it was."""
+    """The multiplier of the flow is 1: while all blocks stick, a common shift of all blocks returns unchanged."""
 
     def ends(unknown):
-        return followed(proved.arcs, unknown)[0][-1].position
+        return follow_arcs(proved.arcs, unknown)[0][-1].position
 
     change = derivatives(ends, [*proved.enclosure.inner, proved.a], [0, 1])
     with arithmetic():
@@ -110,7 +110,10 @@ def test_a_shift_along_the_flow_returns(proved):
 def test_bounds_of_speed_and_force_are_those_of_a_run(proved, family):
     state = InitialState("on", *slipping_state(family.at(0.08)))
     run = simulate("linearized", 0.08, state, transient=0.0, window=50.0, batches=2)
-    for found, bound in ((run.velocity.max(), proved.fastest()), (1.0 - run.least_spring_force, proved.tightest())):
+    for found, bound in (
+        (run.velocity.max(), proved.speed_range()),
+        (1.0 - run.least_spring_force, proved.force_margin_range()),
+    ):
         assert float(found) / 0.1 == pytest.approx(float(bound.upper()), rel=0.05)
         assert float(found) / 0.1 < bound.upper()
 
@@ -132,13 +135,13 @@ def test_a_ball_of_a_that_is_too_wide_is_refused(family):
     [
         (1, 0.0, None),
         # Blocks 1 and 3 have stopped before the end of their arc, or do not stop there.
-        (1, 1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop: not proved to go on"),
-        (1, -1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop: not proved to go on"),
+        (1, 1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop: not proved to keep sticking or slipping"),
+        (1, -1e-9, "blocks 1 and 3, the arc until blocks 1 and 3 stop: not proved to keep sticking or slipping"),
         (2, -0.01, "block 2, the arc until block 2 stop: .* no root at its end"),
         # Block 2 would have stopped, and slipped back, before the end of its arc.
-        (2, 0.1, "block 2, the arc until block 2 stop: not proved to go on"),
+        (2, 0.1, "block 2, the arc until block 2 stop: not proved to keep sticking or slipping"),
         # Blocks 1 and 3 would have started before.
-        (3, 0.1, "blocks 1 and 3, the arc until block 2 start: not proved to go on"),
+        (3, 0.1, "blocks 1 and 3, the arc until block 2 start: not proved to keep sticking or slipping"),
     ],
 )
 def test_the_true_arcs_are_certified_and_changed_ones_are_not(proved, arc, late, message):
@@ -147,13 +150,13 @@ def test_the_true_arcs_are_certified_and_changed_ones_are_not(proved, arc, late,
 
 
 def test_an_arc_on_which_the_other_block_stops_is_not_certified(proved):
-    """Block 2 is slowed down at the beginning of an arc until it comes to rest within: for an instant at last."""
+    """Block 2 is slowed down at the beginning of an arc until it comes to rest within the arc."""
     arc = Arc((True, True), LATERAL, Linearized())
     first = State((arb(0), arb(0)), (arb("0.5"), arb("-0.3")))
 
     def margin(push):
         start = replace(first, velocity=(first.velocity[0], first.velocity[1] + arb(push)))
-        return lambda t: arc.margin(CENTER, arc.after(start, proved.a, t), proved.a)
+        return lambda t: arc.margin(CENTER, arc.state_after(start, proved.a, t), proved.a)
 
     def least(push):
         return min(float(margin(push)(arb(k) / 100)) for k in range(201))
@@ -162,14 +165,14 @@ def test_an_arc_on_which_the_other_block_stops_is_not_certified(proved):
         assert least(-1.0) < 0.0 < least(0.0)
         rest = bisect(least, -1.0, 0.0, xtol=1e-7)
         check_positive(margin(rest + 1e-3), arb(2))
-        with pytest.raises(ProofError, match="it may come to 0 there"):
+        with pytest.raises(ProofError, match="it may vanish there"):
             check_positive(margin(rest - 1e-3), arb(2))
 
 
 @pytest.mark.parametrize("a", [0.01, 0.04])
 def test_an_orbit_on_which_not_all_blocks_stick_at_once_is_not_covered(family, a):
-    """At 0.01 block 2 never stops, at 0.04 it does so only after blocks 1 and 3 have started."""
-    with pytest.raises(ProofError, match=rf"a = {a}: not covered: all blocks stick at once, and each stops once a per"):
+    """At 0.01 block 2 never stops; at 0.04 it stops only after blocks 1 and 3 have started."""
+    with pytest.raises(ProofError, match=rf"a = {a}: not covered: expected all blocks to stick at once"):
         prove_orbit(family.at(a), arb(a))
 
 

@@ -1,4 +1,4 @@
-"""Arcs of the nonlinear law: Taylor steps with a remainder against mpmath, and boxes that hold no motion."""
+"""Arcs of the nonlinear law: Taylor steps with a remainder, compared with mpmath, and boxes that contain no motion."""
 
 import mpmath
 import pytest
@@ -15,7 +15,7 @@ from burridge_knopoff.proof.balls import ProofError, arithmetic, width
 from burridge_knopoff.proof.closed import Linearized
 from burridge_knopoff.proof.critical import prove_critical
 from burridge_knopoff.proof.krawczyk import derivatives
-from burridge_knopoff.proof.orbit import PLACES, followed, prove_orbit
+from burridge_knopoff.proof.orbit import POSITIONS, follow_arcs, prove_orbit
 from burridge_knopoff.proof.taylor import Nonlinear
 from tests.proof.conftest import SLIPS, changed, holds, state_of
 
@@ -28,7 +28,7 @@ def law():
 
 
 def motion(slips, a=A):
-    """Return the right-hand side of the equations as they stand in docs/model.md, for v ξ = x and a difference."""
+    """Return the right-hand side of the equations of docs/model.md, for v ξ = x and a difference."""
     v, a = mpf(V), mpf(a)
 
     def friction(rate):
@@ -84,7 +84,7 @@ def test_derivatives_are_those_of_differences():
         def ends(unknown):
             x, p, time, a = unknown
             start = State((x, state.position[1]), (p, state.velocity[1]), state.difference)
-            end = arc.after(start, a, time)
+            end = arc.state_after(start, a, time)
             return [*end.position, *end.velocity, *end.difference]
 
         at = [state.position[0], state.velocity[0], arb("1.7"), arb(A)]
@@ -103,7 +103,7 @@ def test_second_derivatives_in_time_obey_the_equations():
     arc = Arc(slips, LATERAL, law())
     with arithmetic(3):
         state, _ = state_of(slips)
-        end = arc.after(state, arb(A), arb_series([arb("0.6"), 1]))
+        end = arc.state_after(state, arb(A), arb_series([arb("0.6"), 1]))
         x, y = end.position
         assert x[1].overlaps(end.velocity[0][0])
         force = y[0] - 2 * x[0] + arc.flow.weakening(end.velocity[0][0], arb(A))
@@ -138,14 +138,14 @@ def test_what_has_no_bound_is_refused(speed, time, message):
 
 
 def test_a_step_that_no_box_holds_is_refused(monkeypatch):
-    """Picard's operator over so long a time maps no box into itself."""
+    """Over so long a time Picard's operator maps no box into itself."""
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 2))
-    with pytest.raises(ProofError, match=r"step 1 of an arc: no box is known|1 \+ aU': got"):
+    with pytest.raises(ProofError, match=r"step 1 of an arc: found no box|1 \+ aU': got"):
         law().path((True, True), state_of((True, True))[0], arb(A))(arb(1))
-    # Wide enough at the first try, and still not to be believed: what is mapped lies beyond it.
+    # The first box is wide, but its image is not contained in it.
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 4))
     monkeypatch.setattr(taylor, "WIDENINGS", 1)
-    with pytest.raises(ProofError, match=r"step 1 of an arc: no box is known to hold the motion"):
+    with pytest.raises(ProofError, match=r"step 1 of an arc: found no box that contains the motion"):
         law().path((True, True), state_of((True, True))[0], arb(A))(arb("0.5"))
 
 
@@ -164,26 +164,26 @@ def test_a_c_of_the_nonlinear_law(found, family):
     assert abs(critical_a(bifurcations_of(family)) - float(found.a)) < 2e-15
     assert found.orbit.multiplier.contains(1)
     assert found.orbit.slope > 5
-    assert found.unique.contains(found.a)
+    assert found.uniqueness_range.contains(found.a)
     orbit = family.at(float(found.a))
     assert float(found.orbit.period) == pytest.approx(orbit.period, abs=1e-13)
     assert float(found.orbit.symmetric_multiplier) == pytest.approx(
-        float(multipliers(orbit).keeping[0].real), abs=1e-11
+        float(multipliers(orbit).symmetry_preserving[0].real), abs=1e-11
     )
 
 
 def test_it_is_that_of_an_integration_of_25_digits(found):
-    """From the positions that were found, by mpmath's own Taylor series, through the events of a period."""
+    """Integrate a period from the enclosed positions with the Taylor series of mpmath."""
     inner = found.orbit.enclosure.inner
     with mpmath.workdps(25):
         numbers = [mpf(value.str(40, radius=False)) for value in (*inner, found.a)]
         z = [numbers[0], numbers[1], mpf(-1), mpf(-1), mpf(1), mpf(0)]
-        for arc, time in zip(found.orbit.arcs, numbers[PLACES:-1], strict=True):
+        for arc, time in zip(found.orbit.arcs, numbers[POSITIONS:-1], strict=True):
             z = list(mpmath.odefun(motion(arc.slips, numbers[-1]), 0, z)(time))
-            if arc.slips[arc.ends]:
-                assert abs(z[2 + arc.ends] + 1) < mpf(10) ** -17
-                z[2 + arc.ends] = mpf(-1)
-                if arc.ends == LATERAL:
+            if arc.slips[arc.event_block]:
+                assert abs(z[2 + arc.event_block] + 1) < mpf(10) ** -17
+                z[2 + arc.event_block] = mpf(-1)
+                if arc.event_block == LATERAL:
                     z[5] = mpf(0)
         assert abs(z[0] - numbers[0]) < mpf(10) ** -17
         assert abs(z[1] - numbers[1]) < mpf(10) ** -17
@@ -192,9 +192,9 @@ def test_it_is_that_of_an_integration_of_25_digits(found):
 
 def test_a_wrong_arc_is_not_certified(found):
     wrong = changed(found.orbit, 3, arb("0.1"))
-    with pytest.raises(ProofError, match="blocks 1 and 3, the arc until block 2 start: not proved to go on"):
+    with pytest.raises(ProofError, match="blocks 1 and 3, the arc until block 2 start: not proved to keep sticking"):
         wrong.check_arcs()
-    assert len(followed(wrong.arcs, [*wrong.enclosure.inner, wrong.a])[0]) == 5
+    assert len(follow_arcs(wrong.arcs, [*wrong.enclosure.inner, wrong.a])[0]) == 5
 
 
 def test_a_ball_of_a_that_is_too_wide_is_refused(family):

@@ -1,4 +1,4 @@
-"""What several tests of summaries begin from."""
+"""Fixtures of several tests of summaries."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,7 @@ def one_law(monkeypatch):
     def label(model, found, starts, time_limit):
         assert time_limit == 1230.0
         reached = [1 if len(found) else -1] * len(starts)
-        # The states under one convention of start, then those under the other.
+        # The states under one convention of the start, then under the other.
         for k in (0, len(starts) // 2):
             if starts[k].stuck.any():
                 reached[k] = -1

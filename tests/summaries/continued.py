@@ -1,4 +1,4 @@
-"""A hand-made continuation, of which tests know what becomes of it in the summaries."""
+"""A hand-made continuation with known summaries."""
 
 import numpy as np
 
@@ -12,7 +12,7 @@ SETTINGS = SearchSettings(samples=9, fraction_width=0.33, time_limit=123.0, life
 
 
 def continuation(law):
-    """Return synchrony and a torus, then a mirror pair that the torus turns into, then nothing.
+    """Return synchrony and a torus, then a mirror pair that the torus becomes, then nothing.
 
     Between the first two values of the grid one was put in, at which the torus alone was followed.
     """

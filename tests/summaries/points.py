@@ -1,4 +1,4 @@
-"""Point files of a grid, as they are run or altered."""
+"""Point files of a grid, original or altered."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from burridge_knopoff.summaries.points import Grid
 
 
 def write_points(grid: Grid, alter: Callable[[Trajectory], Trajectory] = lambda trajectory: trajectory) -> Grid:
-    """Run the points of a grid that have settings, write what the alteration makes of them, and return the grid."""
+    """Run the points of a grid, write them after an alteration, and return the grid."""
     for _, (law, initial, *names) in grid:
         if law in grid.settings:
             values = {key: named[name] for (key, named), name in zip(grid.parameters.items(), names, strict=True)}

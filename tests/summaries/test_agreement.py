@@ -1,4 +1,4 @@
-"""Verdicts on agreement follow the data, both ways."""
+"""Verdicts on agreement follow the data."""
 
 import dataclasses
 
@@ -21,7 +21,7 @@ SETTINGS = {"transient": 2000.0, "window": 400.0, "batches": 4}
 
 @pytest.fixture(scope="module")
 def runs():
-    """Runs from one initial state at two a under both laws."""
+    """Runs from one initial state at two values of a under both laws."""
     return {(law, a): simulate(law, a, "minus", **SETTINGS) for law in PAPER_LAWS for a in (0.05, 0.08)}
 
 
@@ -40,7 +40,7 @@ def compare(runs, tmp_path):
 
 
 def summarized(grid, *found, kind=None):
-    """Return the comparison, of runs of some kind if it is given."""
+    """Return the comparison, of runs of a given kind if there is one."""
     kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
     if kind is not None:
         kinds["run_kind"][...] = kind
@@ -55,7 +55,7 @@ def test_without_attractors_nobody_knows_which_runs_settled(compare):
 
 
 def attractors_of(grid, mean=0.0, error=0.0, branch=0, kind=-1, v=0.1):
-    """Return attractors of one ⟨J⟩, branch and kind at all a, to which all states lead by the study's conventions."""
+    """Return attractors of one ⟨J⟩, branch and kind at all a, which all states reach under the study's conventions."""
     laws, states, a = grid.laws, list(grid.initial), list(grid.a.values())
     labels = {"law": list(laws), "contact": ["here", "there"], "start": ["now", "then"], "initial": states, "a": a}
     slot = xarray.DataArray(np.zeros((len(laws), len(a), 2)), dims=("law", "a", "attractor"))
@@ -89,7 +89,7 @@ def test_two_synchronized_laws_agree(compare, runs):
         assert dataset["section_distance"].values[0, 0, k] == float(f"{wasserstein_distance(*upward):.12g}")
         errors = [first.mean_distance_error, other.mean_distance_error]
         assert dataset["mean_distance_error"].values[:, 0, k].tolist() == errors
-        # The laws do not stop and start the blocks at the same times, but at first in the same order.
+        # Under the two laws events occur at different times, but at first in the same order.
         count, until = dataset["event_order_count"].values[0, 0, k], dataset["event_order_time"].values[0, 0, k]
         assert 4 < count <= min(first.event_count, other.event_count)
         assert 0.0 < until <= 2400.0
@@ -111,11 +111,16 @@ def test_altered_data_changes_the_verdict(compare):
     assert dataset["agrees"].sel(other_law="nonlinear").values.tolist() == [[1, 0]]
     assert dataset["parting_a"].item() == 0.08
     assert dataset["difference"].values[0, 0, 1] == 0.2 - dataset["mean_distance"].values[0, 0, 1]
-    words = "they agree up to a = 0.05 and part at a = 0.08; they disagree at 1 of 2 values of a, the last 0.08"
-    settled = "minus, nonlinear law: the run is not on the attractor that its state reaches at a = 0.08"
+    words = (
+        "they agree up to a = 0.05 and first disagree at a = 0.08; they disagree at 1 of 2 values of a, "
+        "the last at 0.08"
+    )
+    settled = "minus, nonlinear law: the run has not reached the attractor of its initial state at a = 0.08"
     assert agreement.digest(dataset).endswith(f": {words}; the kind of motion differs at 1.\n{settled}\n")
     _, dataset = compare({("nonlinear", a): {"mean_distance": 0.2} for a in (0.05, 0.08)})
-    assert "they part at a = 0.05; they disagree at 2 of 2 values of a, the last 0.08" in agreement.digest(dataset)
+    assert "they first disagree at a = 0.05; they disagree at 2 of 2 values of a, the last at 0.08" in agreement.digest(
+        dataset
+    )
 
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
@@ -128,7 +133,7 @@ def test_the_order_of_events_is_compared_until_the_first_run_ends(compare, law):
     ("mean", "error", "branch", "settled"),
     [
         (0.2, 0.0, 4, 1),
-        # Within a hundredth of the larger one, or three errors of both.
+        # Within a hundredth of the larger value, or three errors.
         (0.2019, 0.0, 4, 1),
         (0.2021, 0.0, 4, 0),
         (0.1981, 0.0, 4, 1),
@@ -136,11 +141,11 @@ def test_the_order_of_events_is_compared_until_the_first_run_ends(compare, law):
         (0.213, 0.005, 4, 1),
         (0.23, 0.011, 4, -1),  # with errors as wide as that nobody knows
         (0.23, 0.009, 4, 0),
-        # What the state reaches is not known.
+        # The attractor that the state reaches is not known.
         (0.2, 0.0, -1, -1),
     ],
 )
-def test_a_run_may_end_elsewhere_than_its_state_leads(runs, compare, mean, error, branch, settled):
+def test_a_run_may_not_reach_the_attractor_of_its_state(runs, compare, mean, error, branch, settled):
     told = {key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs}
     _, found = compare(told, mean=mean, error=error, branch=branch)
     assert (found["settled"] == settled).all()
@@ -149,7 +154,7 @@ def test_a_run_may_end_elsewhere_than_its_state_leads(runs, compare, mean, error
 @pytest.mark.parametrize(
     ("own", "of_attractor", "mean", "kind"),
     [
-        # What a run leaves open its attractor tells, if the run has come to it.
+        # If the run has reached its attractor, an undetermined kind is taken from the attractor.
         (2, {"kind": 1, "branch": 4, "mean": 0.2}, 0.2, 1),
         (-1, {"kind": 2, "branch": 4, "mean": 0.2}, 0.2, 2),
         (2, {"kind": 1, "branch": 4, "mean": 0.3}, 0.2, 2),
@@ -159,9 +164,9 @@ def test_a_run_may_end_elsewhere_than_its_state_leads(runs, compare, mean, error
         (1, {"kind": 2, "branch": 4, "mean": 0.2}, 0.2, 2),
         (3, {"kind": 5, "branch": 4, "mean": 0.2}, 0.2, 3),
         (-1, {"kind": 4, "branch": 4, "mean": 1e-9}, 1e-9, 5),
-        # Another result than that of the attractor is that of the run.
+        # If the run differs from the attractor, its own kind is kept.
         (3, {"kind": 1, "branch": 4, "mean": 0.2}, 0.2, 3),
-        # On its way to synchrony, and not there.
+        # The run approaches synchrony; it does not.
         (1, {"kind": 0}, 9e-4, 0),
         (1, {"kind": 0}, 1.1e-3, 1),
         # Under a slow driver all distances are smaller.
@@ -196,7 +201,10 @@ def test_a_run_without_result_agrees_with_nothing(compare):
     assert np.isnan(dataset["section_distance"]).all()
     assert np.isnan(dataset["parting_a"].item())
     words = agreement.digest(dataset)
-    assert "no value of a could be compared. 2 values of a are undetermined: a run did not complete," in words
+    assert (
+        "no value of a could be compared. At 2 values of a the comparison is undetermined: a run did not complete,"
+        in words
+    )
     assert agreement.table(dataset).count("undetermined") == 6
     assert (dataset["kind"].sel(law="linearized") == -1).all()
     means = mean_distance.summarize(grid, 1e-6)
@@ -250,7 +258,7 @@ def test_one_law_has_nothing_to_be_compared_with(tmp_path):
         ((1.0, 1.111), (0.0, 0.0), (2, 2), 1),  # a tenth of the larger one
         ((1.111, 1.0), (0.0, 0.0), (2, 2), 1),
         ((1.0, 1.112), (0.0, 0.0), (2, 2), 0),
-        # Within three errors, here 0.15, of the tolerance nobody knows.
+        # Within three errors of the tolerance, here 0.15, the verdict is undetermined.
         ((1.0, 1.27), (0.03, 0.04), (2, 2), -1),
         ((1.0, 1.28), (0.03, 0.04), (2, 2), 0),
         ((2.0, 2.05), (0.03, 0.04), (2, 2), 1),
@@ -261,13 +269,13 @@ def test_one_law_has_nothing_to_be_compared_with(tmp_path):
         ((0.0, 2e-6), (0.0, 0.0), (1, 1), 0),
         ((0.0, 3e-7), (3e-7, 0.0), (0, 0), 1),  # synchrony, however slowly it is approached
         ((0.0, 3e-7), (3e-7, 0.0), (1, 1), -1),
-        # A torus and a closed orbit without synchrony are one kind here.
+        # A torus and a periodic orbit without synchrony count as the same kind.
         ((1.0, 1.0), (0.0, 0.0), (1, 2), 1),
         ((1.0, 1.0), (0.0, 0.0), (0, 1), 0),
         ((1.0, 1.0), (0.0, 0.0), (2, 3), 0),
         ((1.0, 1.0), (0.0, 0.0), (1, -1), -1),
         ((1.0, 1.0), (0.0, 0.0), (-1, -1), -1),
-        # Whatever the kinds are, these are two results.
+        # These disagree whatever their kinds.
         ((1.0, 1.2), (0.0, 0.0), (1, -1), 0),
         ((1.0, np.nan), (0.0, np.nan), (1, -1), -1),
     ],
@@ -290,7 +298,7 @@ def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
     assert values["parting_a"] == pytest.approx([0.1 if agrees == 0 else np.nan], nan_ok=True)
 
 
-def test_laws_part_at_the_least_a_at_which_they_disagree():
+def test_parting_a_is_the_smallest_a_of_disagreement():
     names = ("mean_distance", "mean_distance_error", "kind")
     told = np.array([[[[1.0, 1.0, 1.0]], [[1.0, 2.0, 3.0]]], np.zeros((2, 1, 3)), np.ones((2, 1, 3))])
     filled = ("difference", "difference_error", "same_kind", "agrees")

@@ -1,4 +1,4 @@
-"""The attractors of all laws in one file: what is one branch has one number and one name."""
+"""The attractors of all laws in one file: each branch has one number and one name."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.attractors.lookup import side_name
 from burridge_knopoff.report.tables import branch_table
 from burridge_knopoff.summaries import all_laws
-from burridge_knopoff.summaries.all_laws import named_alike, with_branches_between
+from burridge_knopoff.summaries.all_laws import common_branch_names, number_intermediate_branches
 from tests.summaries.continued import SETTINGS
 
 
@@ -35,7 +35,7 @@ def test_laws_are_put_together_under_common_numbers(one_law):
 
 
 def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law):
-    """All others have one of their own, over all laws."""
+    """All other branches have a unique number over all laws."""
     parts = [one_law(law) for law in ("linearized", "nonlinear", "exponential")]
     models = [Model(Chain(3), law_of(part.attrs["law"], 0.0), 0.2) for part in parts]
     answers = [{0: 0, 1: 1}, {0: 0}]
@@ -44,7 +44,7 @@ def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law)
         assert [model.a for model in firsts] == [model.a for model in seconds] == [0.05, 0.1, 0.2]
         assert {model.law.name for model in firsts} == {"linearized"}
         assert sorted(first) == sorted(second) == [0, 1]
-        # Of a mirror pair the side that counts as the first.
+        # For a mirror pair, the first side.
         assert sorted(second[1]) == [0, 1]
         assert first[1][1].position[0] == pytest.approx(2.0)
         assert first[1][1].stuck.tolist() == [True, False, False]
@@ -69,9 +69,9 @@ def test_numbers_follow_the_order_in_which_branches_appear_under_the_first_law()
     second = ranges((0, 0, 5, 0.0), (1, 0, 9, 0.3), (5, 0, 3, 0.1))
     numbers = [{n: n for n in range(5)}, {0: 0, 1: 1, 5: 5}]
     # Synchrony; 2 before 1, as its <J> is smaller; 3; the one of the second law alone; the short one.
-    assert all_laws.in_order([first, second], numbers) == {0: 0, 2: 1, 1: 2, 3: 3, 5: 4, 4: 5}
+    assert all_laws.number_in_order([first, second], numbers) == {0: 0, 2: 1, 1: 2, 3: 3, 5: 4, 4: 5}
     # Without synchrony no other branch is 0.
-    assert all_laws.in_order([ranges((3, 0, 4, 0.2), (7, 0, 4, 0.1))], [{3: 3, 7: 7}]) == {7: 1, 3: 2}
+    assert all_laws.number_in_order([ranges((3, 0, 4, 0.2), (7, 0, 4, 0.1))], [{3: 3, 7: 7}]) == {7: 1, 3: 2}
 
 
 @given(st.lists(st.tuples(st.integers(0, 8), st.integers(1, 2)), max_size=4))
@@ -79,7 +79,7 @@ def test_what_a_deeper_search_finds_in_addition_leaves_the_numbers_of_lasting_br
     lasting = (0, 0, 5, 0.0), (1, 3, 4, 0.2), (2, 1, 9, 0.3), (3, 6, 3, 0.4)
     more = [(10 + k, first, count, 0.05 * k) for k, (first, count) in enumerate(short)]
     numbers = [{number: number for number, *_ in (*lasting, *more)}]
-    found = all_laws.in_order([ranges(*lasting, *more)], numbers)
+    found = all_laws.number_in_order([ranges(*lasting, *more)], numbers)
     assert [found[number] for number, *_ in lasting] == [0, 2, 1, 3]
     assert sorted(found.values()) == list(range(4 + len(more)))
 
@@ -97,7 +97,7 @@ def test_on_a_side_the_motion_is_one_of_a_mirror_pair(name, side, expected):
     assert side_name(name, side) == expected
 
 
-def test_the_digest_tells_each_branch(one_law):
+def test_the_digest_describes_each_branch(one_law):
     found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
     assert all_laws.digest(found) == (
         "linearized, synchronized: at 1 of 3 values of a, 0.05; <J> 0.0000; synchronized; largest basin "
@@ -107,7 +107,7 @@ def test_the_digest_tells_each_branch(one_law):
         "linearized: 5 of 12 sampled states are undetermined; no attractor at a = 0.2\n"
     )
     found["sliding_attracts"][0, 2] = 1
-    sliding = "uniform sliding, which has no stops and is not looked for, attracts at a = 0.2\n"
+    sliding = "uniform sliding, which has no stops and is not searched for, attracts at a = 0.2\n"
     assert all_laws.digest(found).endswith(f"undetermined; {sliding}")
 
 
@@ -133,7 +133,10 @@ def test_a_branch_between_has_a_number_of_its_own():
     numbers = [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
     branches = [[0, 1], [3, -1], [4, 2]], [[0, 2], [3, 1], [-1, 9]]
     parts = [xr.Dataset({"branch": (("value", "attractor"), np.array(part))}) for part in branches]
-    assert with_branches_between(numbers, parts) == [{0: 0, 1: 1, 4: 4, 2: 6, 3: 7}, {0: 0, 2: 1, 3: 5, 1: 8, 9: 9}]
+    assert number_intermediate_branches(numbers, parts) == [
+        {0: 0, 1: 1, 4: 4, 2: 6, 3: 7},
+        {0: 0, 2: 1, 3: 5, 1: 8, 9: 9},
+    ]
     assert numbers == [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
 
 
@@ -143,6 +146,8 @@ def named(names):
 
 
 def test_names_are_those_at_the_values_of_the_grid():
-    found = named_alike(named({0: "synchronized", 3: "alternating (3)", 7: "mirror pair (7)"}), named({3: "pair (3)"}))
+    found = common_branch_names(
+        named({0: "synchronized", 3: "alternating (3)", 7: "mirror pair (7)"}), named({3: "pair (3)"})
+    )
     assert found["branch_name"].values.tolist() == ["synchronized", "pair (3)", "mirror pair (7)"]
     assert found["branch_name"].attrs == {"long_name": "what it is called"}

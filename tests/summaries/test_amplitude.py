@@ -1,4 +1,4 @@
-"""How far apart the end blocks are beyond a_c: runs against orbits found by Newton's method, and the fit of a power."""
+"""Asymmetry of the end blocks beyond a_c: runs compared with orbits from Newton's method, and the fitted power law."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def test_no_hysteresis(families, law):
 
 @pytest.mark.parametrize("law", PAPER_LAWS)
 def test_a_sweep_ends_on_the_branch(families, law):
-    """While both stick, blocks 1 and 3 are as far apart as on the orbit that Newton's method finds."""
+    """While both stick, the distance of blocks 1 and 3 is that on the orbit found by Newton's method."""
     orbit = branching_orbit(families[law].at(CRITICAL[law]), 1e-2)
     assert sweep(families[law], np.array([orbit.a])) == pytest.approx([1e-2], abs=1e-9)
 
@@ -45,6 +45,6 @@ def test_power_law_of_a_power_law():
     assert fit.error < 1e-9
     noisy = fit_power_law(x, 0.3 * x**0.75 * np.array([1.01, 0.99, 1.01, 0.99]))
     assert 1e-4 < noisy.error < 1e-2
-    # To ten decimals, on which all machines agree.
+    # The result has ten decimals, on which all machines agree.
     told = noisy.exponent, noisy.error, noisy.coefficient
     assert told == tuple(round(value, 10) for value in told)

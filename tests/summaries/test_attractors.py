@@ -1,4 +1,4 @@
-"""Attractors along a: what a hand-made continuation of two laws becomes in the summary and in its lines."""
+"""Attractors along a: the summary and the text of a hand-made continuation of two laws."""
 
 from dataclasses import replace
 
@@ -37,7 +37,7 @@ def test_features_are_sorted_by_branch_and_side(one_law):
         "slow": [[0, 1], [0, 0], none],
         "upward_branch": [[-1, 1], none, none],
         "downward_branch": [none, [1, 1], none],
-        # Of the four drawn states only.
+        # Only the four sampled states count.
         "basin_count": [[1, 2], [3, 1], [0, 0]],
         "basin_fraction": [[0.25, 0.5], [0.75, 0.25], [nan, nan]],
         "basin_fraction_low": [[fraction_interval(n, 4)[1] for n in row] for row in ([1, 2], [3, 1])] + [[nan, nan]],
@@ -57,7 +57,7 @@ def test_features_are_sorted_by_branch_and_side(one_law):
 
 
 def test_there_are_as_many_slots_as_attractors_at_one_a():
-    """One where there is never more than one, and where there is none at all."""
+    """There is one slot if there is never more than one attractor, and also if there is none."""
     both = continuation("linearized")
     for count in (1, 0):
         names = ("attractors", "lifetimes", "branch", "side")
@@ -80,7 +80,7 @@ def test_what_initial_states_and_sweeps_reach(one_law):
             back = [0, 1, -1] if contact == "symmetric" else [-1, -1, -1]
             assert reached.sel(initial="back", **where).values.tolist() == back
             assert side.sel(initial="here", **where).values.tolist() == [0, int(start == "moving"), 0]
-    # Upward from a = 0.05 in the order of the branches; downward from a = 0.1, where there is something to begin with.
+    # Upward from a = 0.05 in the order of the branches; downward from a = 0.1, the largest a with attractors.
     assert found["sweep_branch"].sel(direction="upward").values.tolist() == [[0, -1, -1], [1, 1, -1]]
     assert found["sweep_branch"].sel(direction="downward").values.tolist() == [[1, 1, -1], [1, 1, -1]]
     mean = found["sweep_mean_distance"]
@@ -95,7 +95,7 @@ def test_states_that_round_to_an_initial_state_are_all_corners_of_its_box():
     shifts = np.array([[*one.position, *one.velocity] for one in found]) - numbers
     assert np.abs(shifts) == pytest.approx(5e-4)
     assert len({tuple(row) for row in np.sign(shifts)}) == 64
-    # Blocks do not begin backward where they cannot slip so.
+    # With one-sided contact no block starts with a backward velocity.
     rest = InitialState("rest", (0.0, 0.0, 0.0), (0.0, 0.0, 0.1))
     assert min(velocity for one in attractors.corners(rest, "one_sided", 3) for velocity in one.velocity) == 0.0
     assert min(velocity for one in attractors.corners(rest, "symmetric", 3) for velocity in one.velocity) == -5e-4

@@ -1,4 +1,4 @@
-"""Maps of basins put together from hand-made tiles, and pairs of states labelled by a rule that is known."""
+"""Maps of basins from hand-made tiles, and pairs of states labelled by a known rule."""
 
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_exponent
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.summaries import basins
-from burridge_knopoff.summaries.map_rows import undetermined_alike
+from burridge_knopoff.summaries.map_rows import count_symmetric_undetermined
 
 PLANE = BasinSettings(pixels=4, first_position=(-1.0, 3.0), last_position=(0.0, 2.0), pairs=50, tiles=2)
 MODELS = [Model(Chain(3), law_of(law, a), 0.2, "symmetric") for law, a in (("nonlinear", 0.1), ("linearized", 0.3))]
@@ -33,12 +33,12 @@ def ruled(monkeypatch):
     monkeypatch.setattr(basins, "label_states", label_states)
 
 
-#: Two attractors that only the rule tells apart.
+#: Two attractors that only the rule distinguishes.
 KNOWN = KnownAttractors(MODELS[0], [None, None], np.array([0, 5]), np.array([0, -1]))
 
 
 def rule(position):
-    """Return 1 where U_1 + U_3 > 1.2, else 0; −1 where U_3 > 1.7."""
+    """Return 1 where U_1 + U_3 > 1.2, otherwise 0; −1 where U_3 > 1.7."""
     return np.where(position[:, 2] > 1.7, -1, (position[:, 0] + position[:, 2] > 1.2).astype(int))
 
 
@@ -78,7 +78,7 @@ def test_pairs_are_those_of_the_plane(ruled):
     assert found["separation"].values[[0, -1]] == pytest.approx([0.4, 0.4 / 3**12])
 
 
-def test_maps_are_put_together_and_told(ruled):
+def test_maps_are_merged_and_described(ruled):
     known, limit = [replace(KNOWN, model=model) for model in MODELS], SEARCH.label_limit
     near = [basins.pairs(one, PLANE, limit, SEARCH.seed, "moving") for one in known]
     tiles = [[basins.tile(one, k, PLANE, limit, "moving") for k in (0, 1)] for one in known]
@@ -106,14 +106,14 @@ def test_maps_are_put_together_and_told(ruled):
     assert {key: found.attrs[key] for key in expected} == expected
     assert [found.attrs[f"{name}_range"].tolist() for name in ("first", "last")] == [[-1.0, 3.0], [0.0, 2.0]]
     shares = "undetermined 25.00 %, synchronized 25.00 %, pair (5−) 50.00 %"
-    decided = f"decided at tau = {np.nanmean(found['decision_time'].values[0]):.0f} in the mean"
+    decided = f"mean decision time {np.nanmean(found['decision_time'].values[0]):.0f}"
     varying = "no single uncertainty exponent: it changes by 0.4375 +- 0.0625 over the separations"
     single = "uncertainty exponent 0.812 +- 0.025 (it changes by -0.250 +- 0.125 over the separations)"
     assert basins.digest(found) == (
         f"nonlinear, a = 0.1: {shares}; {single}; {decided}\nlinearized, a = 0.3: {shares}; {varying}; {decided}\n"
     )
     found["exponent_kind"][...] = ExponentKind.UNKNOWN
-    assert basins.digest(found).count("; uncertainty exponent unknown: too few pairs differ; ") == 2
+    assert basins.digest(found).count("; uncertainty exponent undetermined: too few pairs differ; ") == 2
 
 
 @pytest.mark.parametrize(("velocity", "alike"), [([0.1, 0.2, 0.1], 2), ([0.1, 0.2, 0.3], 0)])
@@ -122,9 +122,9 @@ def test_undetermined_states_that_are_their_own_mirror_images_are_counted(veloci
     branch = np.array([[-1, -1, -1], [0, 0, -1], [0, 0, -1]])
     places = {name: [0.5, 1.5, 2.5] for name in ("last_position", "first_position")}
     plane = {"plane_position": np.array([1.0, 3.0, 2.0]), "plane_velocity": np.array(velocity)}
-    assert undetermined_alike(xr.Dataset({"branch": (tuple(places), branch)}, places, plane)) == alike
-    # Of the inner positions all have to be alike.
+    assert count_symmetric_undetermined(xr.Dataset({"branch": (tuple(places), branch)}, places, plane)) == alike
+    # All inner positions must be mirror-symmetric.
     four = {"plane_velocity": np.full(4, 0.1)}
     for inner, expected in (([3.0, 3.0], 2), ([3.0, 2.0], 0)):
         four["plane_position"] = np.array([1.0, *inner, 2.0])
-        assert undetermined_alike(xr.Dataset({"branch": (tuple(places), branch)}, places, four)) == expected
+        assert count_symmetric_undetermined(xr.Dataset({"branch": (tuple(places), branch)}, places, four)) == expected

@@ -26,11 +26,11 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries import bifurcations
-from burridge_knopoff.summaries.bifurcations import _branches_of_segments, _rounded, digest, merge, one_law
+from burridge_knopoff.summaries.bifurcations import _branches_of_segments, _round_digits, digest, merge, one_law
 
-# Not evenly spaced. Synchrony is lost between the second and the third, and what follows becomes chaotic.
+# Not evenly spaced. Synchrony is lost between the second and third value; its successor becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]
-#: Of the attractor at each a.
+#: Properties of the attractor at each a.
 TOLD = {
     "branch": [0, 0, 1, 1, 1],
     "side": [0] * 5,
@@ -105,14 +105,14 @@ def told(rows, in_grid):
 @pytest.mark.parametrize(
     ("rows", "in_grid", "expected"),
     [
-        # Between values of the grid what does not change is not looked for.
+        # Between values of the grid, unchanged attractors are not searched for.
         ([{1: 1}, {}, {1: 1}], [1, 0, 1], []),
         ([{1: 1}, {}, {1: 1}], [1, 1, 1], [(0, 1, 1, 10, Change.END), (1, 2, 30, 1, Change.BEGINNING)]),
-        # A change between two that are near, however many values lie between.
+        # A change between two nearby values, regardless of how many values lie in between.
         ([{1: 1}, {1: 1}, {2: 3}, {1: 3}, {1: 3}], [1, 0, 0, 0, 1], [
             (1, 2, -1, 2, Change.BEGINNING), (1, 3, 1, 1, Change.CHANGE), (2, 3, 2, -1, Change.END),
         ]),
-        # What ends within a step is reached from the value of the grid below.
+        # An attractor that ends within a step is continued from the value of the grid below.
         ([{2: 1, 1: 1}, {1: 1}, {2: 1}], [1, 0, 1], [(1, 2, 1, 11, Change.END)]),
         ([{2: 1}, {1: 1}, {2: 1, 1: 1}], [1, 0, 1], [(0, 1, 21, 1, Change.BEGINNING)]),
     ],
@@ -128,7 +128,7 @@ def test_every_change_has_an_entry(grid, found):
         assert (same & (found["to_branch"] == change.to_branch)).any()
 
 
-def test_the_lifetime_of_chaos_is_told_beside_its_bifurcations(found):
+def test_bifurcations_have_the_lifetime_of_chaos(found):
     chaotic = (found["motion_before"] == MotionKind.CHAOTIC) | (found["motion_after"] == MotionKind.CHAOTIC)
     assert 0 < int(chaotic.sum()) < found.sizes["bifurcation"]
     assert (found["lifetime_low"].values[chaotic] == 1e5).all()
@@ -150,14 +150,14 @@ def test_bifurcations_are_those_of_the_orbits(found):
     assert (found["a_error"].values <= 1e-9).all()
 
 
-def test_a_bifurcation_lies_by_the_values_between_which_it_was_looked_for(found):
-    """Within a step of the grid; one that is passed between values at which the branch is known, if there are any."""
+def test_a_bifurcation_lies_near_the_values_that_bracket_it(found):
+    """A bifurcation belongs to a change within a step of the grid, or is passed between values on the branch."""
     low, high, a = (found[name].values for name in ("grid_low", "grid_high", "a"))
     passed = found["change"].values == Change.PASSED
     step = max(np.diff(A))
     assert ((low - step <= a) & (a <= high + step))[~passed].all()
     assert not ((a < low) | (a > high))[passed].any()
-    # That of synchrony at which the middle block begins to stick lies below the grid.
+    # The grazing at which the middle block begins to stick lies below the grid.
     (first,) = np.flatnonzero(passed & (a < A[0]))
     assert a[first] == pytest.approx(0.0355, abs=1e-4)
     assert np.isnan(low[first])
@@ -167,27 +167,27 @@ def test_a_bifurcation_lies_by_the_values_between_which_it_was_looked_for(found)
 
 
 def test_a_motion_that_attracts_lies_on_an_orbit_that_attracts():
-    """Next to synchrony that has lost its stability no orbit is found soon; in the end the blocks part."""
+    """Near unstable synchrony no orbit is found at first; in the end the blocks desynchronize."""
     model = MODEL.at(0.09)
     start = synchronized_orbit(model).reference
     position = start.position + np.array([1e-5, 0.0, -1e-5])
     with pytest.raises(OrbitError, match="no periodic orbit found"):
         limit_cycle(model, ChainState(position, start.velocity, start.stuck))
     orbit = _closed(model, position + model.sliding_offset, start.velocity)
-    assert multipliers(orbit).unstable == 0
+    assert multipliers(orbit).unstable_count == 0
     assert orbit.mean_distance == pytest.approx(0.0154, abs=1e-4)
 
 
 def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled():
-    """However long it is left to settle: exact synchrony stays where it is."""
+    """Exact synchrony persists, however long the settling time."""
     model = MODEL.at(0.09)
     start = synchronized_orbit(model).reference
     error = _closed(model, start.position + model.sliding_offset, start.velocity)
     assert str(error) == "a = 0.09: the closed orbit beside the motion is unstable"
 
 
-def test_the_values_beside_a_bifurcation_are_those_of_the_attractors(found, grid):
-    """To the last bit, so that they can be looked up."""
+def test_the_values_next_to_a_bifurcation_are_those_of_the_attractors(found, grid):
+    """They agree to the last bit, so that they can be looked up."""
     for name in ("grid_low", "grid_high"):
         beside = found[name].values
         assert np.isin(beside[np.isfinite(beside)], A).all()
@@ -229,13 +229,13 @@ def test_what_is_less_well_known_has_fewer_digits(found, name, digits):
 
 
 def test_a_negative_rounding_of_0_is_0():
-    assert not np.signbit(_rounded(np.array([-1e-13]), 10)).any()
+    assert not np.signbit(_round_digits(np.array([-1e-13]), 10)).any()
 
 
-def test_next_to_0_eleven_digits_behind_the_point_are_kept():
-    values = _rounded(np.array([1.23456789e-7, 1.23456789e-2, 4e-12]), 5)
+def test_near_0_eleven_decimal_places_are_kept():
+    values = _round_digits(np.array([1.23456789e-7, 1.23456789e-2, 4e-12]), 5)
     assert values.tolist() == [1.2346e-7, 1.2346e-2, 0.0]
-    assert _rounded(np.array([1.23456789e-8]), 10).tolist() == [1.235e-8]
+    assert _round_digits(np.array([1.23456789e-8]), 10).tolist() == [1.235e-8]
 
 
 def test_orbits_are_stable_on_one_side_of_the_bifurcation(found):
@@ -246,7 +246,7 @@ def test_orbits_are_stable_on_one_side_of_the_bifurcation(found):
 
 
 def test_a_bifurcation_without_an_orbit_has_no_numbers_of_one(grid, tmp_path):
-    """Chaos on both sides of every bifurcation: none is located, and each lies anywhere between two values of a."""
+    """With chaos on both sides of every bifurcation none is located; each is only bracketed by two values of a."""
     chaotic = grid.assign(kind=xr.full_like(grid["kind"], MotionKind.CHAOTIC))
     found = one_law(MODEL, chaotic, at_all_values(chaotic))
     assert found.sizes["orbit"] == 0
@@ -256,7 +256,7 @@ def test_a_bifurcation_without_an_orbit_has_no_numbers_of_one(grid, tmp_path):
         assert (found[name].values == -1).all()
     for name in ("period", "mean_distance", "stick_time", "multiplier", "multiplier_beyond"):
         assert np.isnan(found[name].values).all()
-    # Words in a file without any are words when it is read.
+    # Empty text variables are still text when the file is read.
     write_summary(found, tmp_path / "none.nc")
     again = merge([open_summary(tmp_path / "none.nc")] * 2)
     assert again["law"].values.tolist() == ["linearized"] * 4
@@ -275,7 +275,7 @@ def test_bifurcations_of_laws_come_one_after_the_other(found):
 
 
 def test_bifurcations_in_words(found):
-    """A line each, of what is known there."""
+    """Each bifurcation has a line."""
     shown = xr.concat([found.isel(bifurcation=[0], orbit=[])] * 5, "bifurcation", data_vars="minimal").load()
     values = {
         "law": ["linearized"] * 2 + ["mine"] * 3,
@@ -303,23 +303,24 @@ def test_bifurcations_in_words(found):
     for name, value in values.items():
         shown[name] = found[name].dims, np.array(value)
     assert digest(shown.assign_attrs(laws="linearized mine")).splitlines() == [
-        "linearized, a = 0.0869729047 +/- 1e-10: pitchfork; branch 0 ends, synchronized; above, it leads to branch 3; "
-        "period 5.69123, stops 1 1 1, beyond 1 1 1",
-        "linearized, a = 0.1 +/- 1e-09: neimark_sacker; branch 3, periodic to quasiperiodic; period 5.7, stops 1 1 1",
-        "mine, a = 0.1234567891 +/- 1e-10: grazing, turns; branch 3 goes on, periodic; period 34.4, stops 6 6 3, "
-        "beyond 6 6 2",
-        "mine, a = 0.2 +/- 5e-05: crisis; branch 4 begins, chaotic; chaos lasts for 1240 to inf in the mean",
-        "mine, a = 0.20125 +/- 0.0013: undetermined; branch 4, to another periodic motion",
+        "linearized, a = 0.0869729047 +/- 1e-10: pitchfork; branch 0 ends, synchronized; at larger a it leads to "
+        "branch 3; period 5.69123, stops 1 1 1, beyond it 1 1 1",
+        "linearized, a = 0.1 +/- 1e-09: Neimark–Sacker; branch 3 changes from periodic to quasiperiodic; period 5.7, "
+        "stops 1 1 1",
+        "mine, a = 0.1234567891 +/- 1e-10: grazing (turning point); branch 3 continues, periodic; period 34.4, "
+        "stops 6 6 3, beyond it 6 6 2",
+        "mine, a = 0.2 +/- 5e-05: crisis; branch 4 begins, chaotic; mean lifetime of chaos above 1240",
+        "mine, a = 0.20125 +/- 0.0013: undetermined; branch 4 changes to another periodic motion",
     ]
 
 
 def test_no_bifurcation_in_words(found):
-    """An empty text could not be told from one that was cut off."""
+    """An empty text could not be distinguished from a truncated one."""
     assert digest(found.isel(bifurcation=[])) == "No bifurcation was found between the values of a.\n"
 
 
 def test_a_segment_has_the_branch_of_most_attractors_on_it():
-    """Not of the one that it was followed from, here the first."""
+    """It is not the branch of the first attractor, from which the segment was continued."""
     places = {(0, 0): 0, (1, 0): 0, (2, 1): 0, (3, 0): 1}
     orbits = FollowedOrbits([None, None], [(0, 0), (3, 0)], places)
     assert _branches_of_segments(orbits, np.array([[10, -1], [3, -1], [4, 3], [7, -1]])) == [3, 7]

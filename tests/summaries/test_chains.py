@@ -85,7 +85,7 @@ def test_fractions_count_outcomes(files):
 def test_files_of_other_settings_do_not_mix(files):
     path = files[0].with_name("other.nc")
     write_summary(chain_file(3, 200.0), path)
-    with pytest.raises(ValueError, match=r"other\.nc: made with other settings"):
+    with pytest.raises(ValueError, match=r"other\.nc: made with settings that differ"):
         chains.merge([open_summary(name) for name in (*files, path)])
 
 
@@ -111,12 +111,12 @@ def test_states_for_which_it_is_not_known_whether_laws_agree_count_either_way():
 
 
 def train_model(model):
-    """Return a model of two blocks of which only the first one is pulled."""
+    """Return a model of two blocks in which only the first is pulled."""
     return replace(model, chain=Chain(2, pulling=(1.0, 0.0)))
 
 
 def test_two_blocks_are_what_their_states_end_on(compared):
-    """Kind and ⟨J⟩ are those of the motion that is reached, the order of events is that from the start."""
+    """Kind and ⟨J⟩ belong to the asymptotic motion, the order of events to the run from the start."""
     chains_of = [train_model, lambda law: law]
     for (c, chain), (j, state), (k, a) in product(enumerate(chains_of), enumerate(STATES), enumerate(GRID)):
         assert tuple(compared["initial_position"].values[j]) == state.position

@@ -22,7 +22,7 @@ def attracts(found: DetunedMotion) -> bool:
 @pytest.mark.parametrize(("law", "a"), [("linearized", 0.03), ("linearized", 0.06), ("nonlinear", 0.08)])
 @pytest.mark.parametrize("detuning", [0.1, 0.3])
 def test_the_end_blocks_stay_locked_with_unequal_masses(law: str, a: float, detuning: float) -> None:
-    """Alone, the heavier block would be slower by 5 or 12 %: without locking the two would part by 0.01 or more."""
+    """Alone, the heavier block would be slower by 5 or 12 %: unlocked frequencies would differ by 0.01 or more."""
     found = of_branch_1(law, a, detuning)
     assert found.frequency[2] == pytest.approx(found.frequency[0], abs=1e-8)
     assert found.frequency[1] > 1.5 * found.frequency[0]

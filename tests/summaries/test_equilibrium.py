@@ -1,4 +1,4 @@
-"""Uniform sliding: the paper's positions, the Jacobian by other means, and two simulated runs that part."""
+"""Uniform sliding: the paper's positions, an independent Jacobian, and two diverging runs."""
 
 import numpy as np
 import pytest
@@ -93,16 +93,16 @@ def test_eigenvalues_and_growth_rates(found):
     assert (found["equilibrium_drift"] < 1e-13).all()
 
 
-def test_elsewhere_is_no_equilibrium():
+def test_other_positions_are_no_equilibrium():
     model = Model(Chain(3), law_of("linearized", 0.08))
     drift, _ = simulate_sliding(model, sliding_position(model) + np.array([1e-3, 0.0, 0.0]))
     assert drift > 1e-4
 
 
 def growth(model, mode, rate, duration, push):
-    """Return by what a push along a mode has grown: of a whole run without events, without the tangent flow."""
+    """Return the growth of a perturbation along a mode in a run without events, without the tangent flow."""
     rest, shift = sliding_position(model), push * np.array(mode)
-    # Its velocity is the growth rate times its displacement at first.
+    # Initially its velocity is the growth rate times its displacement.
     state = InitialState("pushed", tuple(rest + shift), tuple(model.v + rate * shift))
     run = simulate(model, initial=state, settings=Settings(transient=0.0, window=duration, batches=2, trajectory=0.0))
     assert run.event_count == 0
@@ -155,7 +155,7 @@ def test_strong_damping_has_modes_that_do_not_oscillate():
 
 @pytest.mark.parametrize("law", PAPER_LAWS)
 def test_the_energy_about_sliding_grows_until_a_block_stops(law):
-    """As it does whatever the motion, for a law that falls with velocity: so sticks are unavoidable."""
+    """This holds for any motion under a law that decreases with velocity, so that sticks are unavoidable."""
     model = Model(Chain(3), law_of(law, 0.3))
     for seed in range(4):
         shift = 0.02 * np.random.default_rng(seed).uniform(-1.0, 1.0, 6)

@@ -14,10 +14,10 @@ def test_common_order():
     assert common_order(first, first) == (4, np.inf)
     second = sequence([1.1, 2.1, 2.9, 3.0], [1, 2, 2, 1], [0, 0, 1, 1])
     assert common_order(first, second) == (2, 2.9)
-    # One run goes on where the other has no more events.
+    # One run continues where the other has no more events.
     assert common_order(first, sequence([1, 2], [1, 2], [0, 0])) == (2, 3.0)
     assert common_order(sequence([], [], []), sequence([], [], [])) == (0, np.inf)
-    # The kind counts, not the block alone.
+    # The kind of the event matters as well as the block.
     assert common_order(first, sequence([1, 2], [1, 2], [0, 1])) == (1, 2.0)
 
 

@@ -1,4 +1,4 @@
-"""What the numbers of flag variables mean, in every file: a change of these breaks whoever reads the files."""
+"""Meanings of the flag variables in every file: a change would break programs that read the files."""
 
 import importlib
 

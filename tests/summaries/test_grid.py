@@ -1,4 +1,4 @@
-"""The summary over several parameters, against what the equations of motion say of v and a."""
+"""The summary over several parameters, compared with scalings of the equations of motion."""
 
 import numpy as np
 import pytest
@@ -45,7 +45,7 @@ def test_each_point_is_the_run_of_its_parameters(tmp_path):
 
 
 def test_only_end_blocks_of_one_mass_synchronize(tmp_path):
-    """The chain of a pair is its own mirror image at one of the masses, whichever comes first."""
+    """A chain that is its own mirror image at one of the masses only, in either order."""
     found = summary(tmp_path, "linearized", InitialState("same", (-0.9, -0.9), (0.1, 0.1)), a=[0.01], **MASSES)
     assert found["mean_distance"].dims == ("a", "mass_2")
     assert found["mass_2"].values.tolist() == [0.999999999, 1.0]
@@ -54,14 +54,14 @@ def test_only_end_blocks_of_one_mass_synchronize(tmp_path):
 
 
 def test_v_is_a_scale_of_the_linearized_law(tmp_path):
-    """Positions from uniform sliding, and velocities, in units of v: nothing else is in the equations of motion."""
+    """In units of v the equations of motion contain only these positions and velocities."""
     found = {}
     for v in (0.05, 0.1, 0.2):
         offset = Model(Chain(2), law_of("linearized", 0.1), v).chain.sliding_offset(1.0)
         state = InitialState("pair", tuple(offset + v * np.array([1.0, -1.5])), (1.2 * v, 0.7 * v))
         found[v] = summary(tmp_path / f"{v}", "linearized", state, a=[0.05, 0.3], v=[v]).squeeze("v")
     for v in (0.05, 0.2):
-        # From a single step on rounding differs, which chaos would amplify.
+        # Rounding differs after a single step, and chaos would amplify the difference.
         regular = found[0.1]["run_kind"].values != MotionKind.CHAOTIC
         assert regular.any()
         assert per_velocity(found[v])[regular] == pytest.approx(per_velocity(found[0.1])[regular], rel=1e-9)
@@ -77,5 +77,5 @@ def test_the_nonlinear_law_has_two_products_of_its_parameters(tmp_path):
     regular = usual["run_kind"].values != MotionKind.CHAOTIC
     assert regular.any()
     assert per_velocity(other)[regular] == pytest.approx(per_velocity(usual)[regular], rel=1e-9)
-    # Unlike under the linearized law, v is more than a scale.
+    # Unlike under the linearized law, v does not only set the scale.
     assert per_velocity(usual)[0, 0] != pytest.approx(per_velocity(usual)[0, 1], rel=1e-3)

@@ -1,4 +1,4 @@
-"""When J settles, which motions the exponents and section points tell, and where the section points are kept."""
+"""Settling of J, the kinds of motion that follow from exponents and section points, and the stored section points."""
 
 import dataclasses
 
@@ -39,7 +39,7 @@ def test_settling_times_of_runs(tmp_path):
     ended = {"linearized": "completed", "nonlinear": "step_limit"}
     write_points(grid, lambda own: dataclasses.replace(own, status=ended[own.model.law.name]))
     found = summarize(grid, 1e-6)["settling_time"]
-    # J at synchrony dies out like the transverse multiplier to the power of the number of periods.
+    # Near synchrony J decays like the transverse multiplier to the power of the number of periods.
     settled = found.sel(law="linearized", initial="minus", a=0.08)
     np.testing.assert_array_equal(settled.values, settling_time(run.time, run.distance, LEVELS))
     assert 500.0 < settled.sel(level=1e-6).item() < 1500.0
@@ -48,7 +48,7 @@ def test_settling_times_of_runs(tmp_path):
 
 
 def test_the_least_friction_in_the_window_is_not_that_of_the_transient(tmp_path):
-    """From plus the first slips are eight times as fast as those of the attractor."""
+    """From plus, the first slips are eight times as fast as those on the attractor."""
     grid = grid_of(tmp_path, ["plus"], {"0.0800": 0.08}, transient=500.0, window=100.0, batches=2)
     write_points(grid)
     found = summarize(grid, 1e-6).sel(initial="plus", a=0.08)
@@ -58,7 +58,7 @@ def test_the_least_friction_in_the_window_is_not_that_of_the_transient(tmp_path)
 
 
 def test_slips_of_the_linearized_law_are_a_multiple_of_the_driver_at_one_a():
-    """By stronger springs at a fixed V, a falls and v grows: aU' is av times a function of a alone."""
+    """With stiffer springs at fixed V, a decreases and v increases: aU' is av times a function of a alone."""
     speeds = []
     for v in (0.1, 0.02):
         model = Model(Chain(3), law_of("linearized", 0.08), v)
@@ -76,7 +76,7 @@ def with_section(trajectory, velocity, direction, **values):
 
 
 def same_section(trajectory, **values):
-    """Return a run with twenty upward section points at one velocity, as a closed orbit has them."""
+    """Return a run with twenty upward section points at one velocity, as on a periodic orbit."""
     return with_section(trajectory, np.full(20, 0.1), np.ones(20, np.int8), **values)
 
 

@@ -1,4 +1,4 @@
-"""The summary of the synchronized orbit: what it holds, and what it says where there is none."""
+"""The summary of the synchronized orbit: its contents, and its flags where there is no orbit."""
 
 from types import SimpleNamespace
 
@@ -43,7 +43,7 @@ def test_the_curve_is_that_of_the_orbits(found):
             expected = multipliers(orbit)
             assert values[0] == pytest.approx(expected.transverse, abs=1e-12)
             assert values[1] == pytest.approx(1.0, abs=1e-12)
-            assert values[2:4] == pytest.approx(expected.keeping[:2], abs=1e-12)
+            assert values[2:4] == pytest.approx(expected.symmetry_preserving[:2], abs=1e-12)
             assert values[4:].tolist() == [0.0, 0.0]
             assert values[0] == point["transverse_multiplier"].item()
             assert point["period"].item() == pytest.approx(orbit.period, abs=1e-13)
@@ -64,7 +64,7 @@ def test_the_bifurcation_is_told_from_the_orbits(found):
 
 
 def test_the_transition_is_that_of_the_stability_room(found):
-    """Each number for itself, the fit by another routine."""
+    """Each number is recomputed, the fit with another routine."""
     family, one = synchronized_orbits(models()[1]), found.sel(law="nonlinear")
     edges = bifurcations_of(family)
     critical = critical_a(edges)
@@ -73,7 +73,7 @@ def test_the_transition_is_that_of_the_stability_room(found):
     assert one["grazing_a"].item() == pytest.approx(grazing_a(edges, block=1), abs=1e-12)
     assert one["symmetric_period_doubling_a"].item() == pytest.approx(symmetric_period_doubling_a(edges), abs=1e-12)
     d = one["branch_asymmetry"].values
-    # From a thousandth of v on, five in a decade.
+    # Five values per decade, starting at a thousandth of v.
     assert d == pytest.approx(0.1 * 10 ** (np.arange(13) / 5 - 3), rel=1e-3)
     assert d[::5] == pytest.approx([1e-4, 1e-3, 1e-2], rel=1e-12)
     orbit = branching_orbit(family.at(critical), d[7])
@@ -99,7 +99,7 @@ def test_the_transition_is_that_of_the_stability_room(found):
 
 
 def test_the_law_at_the_same_slope(found):
-    """The stored differences are those of orbits found for themselves."""
+    """The stored differences agree with those of independently computed orbits."""
     nonlinear = models()[1]
     scaled = effective_a(nonlinear, 0.1)
     assert scaled == pytest.approx(0.1 / 1.01**2, rel=1e-15)
@@ -114,8 +114,8 @@ def test_the_law_at_the_same_slope(found):
 
 
 @pytest.mark.parametrize(("blocks", "v", "status"), [(2, 0.1, 3), (5, 0.1, 3), (3, 1000.0, 2)])
-def test_no_orbit_is_told_not_a_crash(blocks, v, status):
-    # Under a symmetric contact so fast a driver makes blocks slip backward: no block stops once a period.
+def test_a_missing_orbit_is_a_flag(blocks, v, status):
+    # With symmetric contact so fast a driver makes blocks slip backward: no block stops just once per period.
     none = summarize(models(chain=Chain(blocks), v=v, contact="symmetric"), [0.1, 0.2])
     assert (none["status"] == status).all()
     for name in ("period", "critical_a", "grazing_a", "multiplier", "branch_offset", "hysteresis"):
@@ -125,13 +125,13 @@ def test_no_orbit_is_told_not_a_crash(blocks, v, status):
 
 
 def test_other_laws_have_their_rows(found, monkeypatch):
-    """In the order of the study, without a comparison that is the paper's."""
+    """The laws have the order of the study, and the comparison of the paper's laws is missing."""
     # What branches off is told of the paper's laws.
     monkeypatch.setattr(orbits, "ASYMMETRIES", orbits.ASYMMETRIES[:2])
     monkeypatch.setattr(orbits, "OFFSETS", orbits.OFFSETS[:1])
     other = summarize(models(("exponential", "nonlinear", "carlson_langer")), [0.0, 0.1])
     assert other["law"].values.tolist() == ["exponential", "nonlinear", "carlson_langer"]
-    # Static friction that drops at the start of a slip feeds motion at a = 0 too.
+    # Friction that drops at the start of a slip drives the motion at a = 0 as well.
     assert other["status"].values.tolist() == [[1, 0], [1, 0], [2, 0]]
     assert not set(COMPARISON) & set(other)
     assert set(COMPARISON) < set(found)
@@ -139,7 +139,7 @@ def test_other_laws_have_their_rows(found, monkeypatch):
         same = found[name].sel(law="nonlinear", a=0.1), other[name].sel(law="nonlinear", a=0.1)
         assert same[0].item() == pytest.approx(same[1].item(), abs=1e-12)
     critical = other["critical_a"].sel(law="exponential").item()
-    # Under a drop a stick of block 2 does not begin at length 0: the orbit is lost, or jumps.
+    # If friction drops, a stick of block 2 does not begin with duration 0: the orbit ends or jumps.
     assert np.isnan(other["grazing_a"].sel(law="carlson_langer"))
     # Φ = exp(−aU') weakens less than 1 − aU' and more than 1/(1 + aU').
     assert found["critical_a"].values[0] < critical < found["critical_a"].values[1]
@@ -160,7 +160,7 @@ def test_friction_that_is_the_same_at_every_speed_is_neutral(formula, status):
 
 
 def test_sweeps_are_as_far_from_the_transition_as_the_chain_is_strong(monkeypatch):
-    """Thresholds ten times as high make a_c, and all about it, a tenth."""
+    """With thresholds ten times as high, a_c and all other values of a are a tenth."""
     told = []
     monkeypatch.setattr(orbits, "sweep", lambda orbits, values: told.append(values) or np.zeros(len(values)))
     model = Model(Chain(3, threshold=10.0), law_of("linearized", 0.0))
@@ -172,7 +172,7 @@ def test_sweeps_are_as_far_from_the_transition_as_the_chain_is_strong(monkeypatc
 @pytest.mark.parametrize("side", [1.0, -1.0])
 @pytest.mark.parametrize(("rises", "expected"), [(1.0, 1), (-1.0, -1)])
 def test_orbits_that_branch_off_where_synchrony_is_unstable_are_supercritical(monkeypatch, side, rises, expected):
-    """Whether the multiplier rises or falls through 1 as a grows."""
+    """The multiplier may increase or decrease through 1 as a increases."""
     critical = 0.2
 
     def multipliers_of(orbit):

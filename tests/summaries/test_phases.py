@@ -1,4 +1,4 @@
-"""What phases lead to: counted from labels that are known, and real ones of a few states."""
+"""Outcomes of initial phases: counts from known labels, and real labels of a few states."""
 
 from dataclasses import replace
 from functools import partial
@@ -16,7 +16,7 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.summaries import phases
-from burridge_knopoff.summaries.along_attractor import AlongAttractor, along_attractor
+from burridge_knopoff.summaries.attractor_observables import AttractorObservables, follow_attractor
 
 PHASES = PhaseSettings(
     amplitude=(0.05, 0.5), phase_difference=(30.0, 90.0, 180.0), inner_share=(0.0, 0.5), samples=5, seed=3
@@ -26,7 +26,7 @@ MODELS = [Model(Chain(3), law_of(law, 0.05)) for law in ("linearized", "nonlinea
 
 @pytest.fixture
 def ruled(monkeypatch):
-    """Three attractors; a state reaches the first where x_1 + x_2 > 0.4 v, none where it is < −0.4, else the last."""
+    """Three attractors; a state reaches the first if x_1 + x_2 > 0.4 v, none if it is < −0.4 v, otherwise the last."""
 
     def label_states(model, attractors, position, velocity, *, time_limit):
         assert time_limit == SEARCH.label_limit
@@ -35,14 +35,14 @@ def ruled(monkeypatch):
 
     monkeypatch.setattr(phases, "label_states", label_states)
     correlations = iter([1.0, -0.5, -0.7] * 100)
-    followed = partial(AlongAttractor, np.empty(0), velocity=np.empty((0, 3)))
+    followed = partial(AttractorObservables, np.empty(0), velocity=np.empty((0, 3)))
     monkeypatch.setattr(
-        phases, "along_attractor", lambda model, start: followed(velocity_correlation=next(correlations))
+        phases, "follow_attractor", lambda model, start: followed(velocity_correlation=next(correlations))
     )
 
 
 def known(model):
-    """Return three attractors of which only the rule tells which a state reaches."""
+    """Return three attractors; only the rule determines which one a state reaches."""
     one = type("One", (), {"motion": type("Motion", (), {"state": staticmethod(lambda: None)})})
     return KnownAttractors(model, [one] * 3, np.array([0, 7, 7]), np.array([0, 1, -1]))
 
@@ -83,14 +83,14 @@ def test_states_are_counted_by_what_they_reach(ruled):
 
 
 def test_a_state_is_the_same_whatever_other_shares_there_are(ruled):
-    """So that those on which the inner blocks slide uniformly stay when others are added."""
+    """The states with uniformly sliding inner blocks do not change when other shares are added."""
     alone = phases.one_law([known(MODELS[0])], replace(PHASES, inner_share=(0.5,)), SEARCH.label_limit)
     both = phases.one_law([known(MODELS[0])], PHASES, SEARCH.label_limit)
     assert both.sel(inner_share=[0.5]).drop_attrs().equals(alone.drop_attrs())
 
 
 def test_a_study_finds_what_its_phases_lead_to(small_studies):
-    """The attractors are found with short runs; synchrony is, and its velocities are the same."""
+    """The attractors are found with short runs; in synchrony the velocities are identical."""
     found = small_studies("paper").found["phases"]
     assert found["a"].values.tolist() == [0.05]
     found = found.sel(inner_share=0.0)
@@ -98,7 +98,7 @@ def test_a_study_finds_what_its_phases_lead_to(small_studies):
     assert synchronized.sel(amplitude=0.05, phase_difference=30.0).all()
     assert not synchronized.sel(amplitude=0.05, phase_difference=180.0).any()
     assert found["velocity_correlation"].where(synchronized).min() == pytest.approx(1.0)
-    # Its two sampled states have not found the attractor of opposite phases.
+    # The two sampled states have not reached the attractor with opposite phases.
     lost = found.sel(amplitude=0.05, phase_difference=180.0)
     assert (lost["undetermined_count"] == 2).all()
     assert lost["velocity_correlation"].isnull().all()
@@ -107,12 +107,12 @@ def test_a_study_finds_what_its_phases_lead_to(small_studies):
 
 @pytest.mark.parametrize(("difference", "least", "most"), [(20.0, 1.0 - 1e-9, 1.0), (180.0, -1.0, -0.99)])
 def test_velocities_go_together_or_against_each_other(difference, least, most):
-    """What close and opposite phases have come to after 3000 time units."""
+    """The states reached from close and from opposite phases after 3000 time units."""
     model = MODELS[0]
     position, velocity, _ = oscillating_states(model, *(np.array([x]) for x in (0.03, difference, 100.0)))
     start = ChainState(position[0] - model.sliding_offset, velocity[0], np.zeros(3, dtype=bool))
     end = Runner(model).after(start, 3000.0)
-    assert least <= along_attractor(model, end).velocity_correlation <= most
+    assert least <= follow_attractor(model, end).velocity_correlation <= most
 
 
 @pytest.mark.parametrize(("share", "least", "most"), [(0.0, 1.0, 1.0), (0.7, 0.6, 0.99)])
@@ -135,7 +135,7 @@ def test_inner_blocks_that_oscillate_break_the_rule_of_close_phases(share, least
 
 
 def test_the_correlation_is_that_of_the_velocities_from_the_state_on():
-    """Against NumPy, of a state that has yet to settle, twenty looks in a unit of time."""
+    """Compare with NumPy for a state that has not settled, with twenty samples per unit of time."""
     model = MODELS[0]
     start = model.begin(PAPER_STATES["plus"])
     runner, velocity = Runner(model), [start.velocity]
@@ -144,4 +144,4 @@ def test_the_correlation_is_that_of_the_velocities_from_the_state_on():
         runner.run(0.05 * look)
         velocity.append(runner.state().velocity)
     one, _, other = np.transpose(velocity)
-    assert along_attractor(model, start).velocity_correlation == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-9)
+    assert follow_attractor(model, start).velocity_correlation == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-9)

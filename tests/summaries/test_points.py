@@ -1,4 +1,4 @@
-"""Grids of point files: where they lie, what makes them, and what is refused in their place."""
+"""Grids of point files: their paths, their commands, and files that are rejected."""
 
 from pathlib import Path
 
@@ -31,7 +31,7 @@ def test_a_grid_is_its_points_in_order(grid, tmp_path):
     assert (model.v, model.law.a, model.law.name, model.chain.threshold) == (0.2, 0.2, "nonlinear", (1.0, 1.0, 0.9))
     for words in ("simulate --law nonlinear --a 0.2", "--initial plus", "--v 0.2", "--transient 10.0", "--window 20.0"):
         assert words in grid.command(*POINT)
-    other = grid.elsewhere(tmp_path / "other", {"linearized": {**SETTINGS, "solver": "map"}})
+    other = grid.copy_with(tmp_path / "other", {"linearized": {**SETTINGS, "solver": "map"}})
     assert {law: item.solver for law, item in other.settings.items()} == {"linearized": "map"}
     assert other.folder == tmp_path / "other"
     assert (other.initial, other.a, other.models) == (grid.initial, grid.a, grid.models)
@@ -42,7 +42,7 @@ def test_a_grid_is_its_points_in_order(grid, tmp_path):
         "settings": dict.fromkeys(grid.laws, SETTINGS),
         **grid.models,
     }
-    assert Grid.of(tmp_path, told) == grid
+    assert Grid.from_points(tmp_path, told) == grid
 
 
 def test_points_are_read(grid):
@@ -51,7 +51,7 @@ def test_points_are_read(grid):
     for name, values in read.items():
         assert np.array_equal(values, whole[name].values), name
     time, block, kind = all_events(read)
-    # Those with states are the last ones.
+    # The last events are those with states.
     assert len(time) == len(block) == len(kind) == whole["event_count"].item() > len(read["event_time"]) > 0
     assert (np.diff(time) >= 0.0).all()
     assert block[: len(read["earlier_event_block"])].tolist() == read["earlier_event_block"].tolist()

@@ -1,4 +1,4 @@
-"""The summary of what is proved: its numbers, its words, its bytes, and where it does not apply."""
+"""The summary of the proofs: its numbers, its text, its bytes, and where it does not apply."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_every_interval_is_about_the_number_of_the_double_code(found, model):
         times = [*((at[event] - first) % orbit.period for event in ((0, 1), (0, 0), (1, 0))), orbit.period]
         assert one["event_time"].values == pytest.approx(np.stack([times] * 2, axis=1), abs=TOLD)
         multiplier = multipliers(orbit)
-        expected = [multiplier.transverse.real, multiplier.keeping[0].real]
+        expected = [multiplier.transverse.real, multiplier.symmetry_preserving[0].real]
         assert one["multiplier"].values == pytest.approx(np.stack([expected] * 2, axis=1), abs=1e-11)
     assert of_law["critical_a"].values == pytest.approx([a_c] * 2, abs=2e-15)
 
@@ -55,7 +55,7 @@ def test_intervals_are_narrow_and_open_to_the_right_sides(found):
         assert (low <= high).all()
         assert (high - low < (1e-6 if name == "multiplier_slope" else 1e-10)).all()
     low, high = found["critical_a"].sel(end="low"), found["critical_a"].sel(end="high")
-    assert (high - low < proof.NARROW).all()
+    assert (high - low < proof.LARGEST_WIDTH).all()
     assert (found["critical_a_width"] < [1e-50, 1e-17]).all()
     assert found["family_between"].values[0].tolist() == found["only_between"].values[0].tolist() == [0.08, 0.1]
     assert np.isnan(found["family_between"].values[1]).all()
@@ -73,7 +73,7 @@ def test_the_digits_are_those_between_the_doubles(found, law):
     assert Fraction(error) < Fraction(1, 10**17 if law == "nonlinear" else 10**40)
 
 
-def test_the_words_hold_the_numbers_and_what_is_assumed(found):
+def test_the_text_has_the_numbers_and_the_assumptions(found):
     text = proof.digest(found)
     for law in ("linearized", "nonlinear"):
         assert f"{law} law: a_c = {found['critical_a_digits'].sel(law=law).item()}\n" in text

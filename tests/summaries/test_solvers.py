@@ -1,4 +1,4 @@
-"""Solvers against each other: differences and orders of events are those of the runs; other files are refused."""
+"""Comparison of solvers: differences and orders of events are those of the runs; other files are rejected."""
 
 import numpy as np
 import pytest
@@ -38,7 +38,7 @@ def files(tmp_path, runs):
     others = {}
     for solver in ("series", "rk4"):
         known = {law: settings(solver) for law, solvers in SOLVERS.items() if solver in solvers[1:]}
-        others[solver] = grid.elsewhere(tmp_path / "solvers" / solver, known)
+        others[solver] = grid.copy_with(tmp_path / "solvers" / solver, known)
     return grid, others
 
 
@@ -62,7 +62,7 @@ def test_the_runs_are_compared(files, runs):
     assert abs(torus["difference"].sel(solver="series")) < 1e-11
     assert torus["event_order_time"].sel(solver="series") == 500.0
     assert 1e-9 < abs(torus["difference"].sel(solver="rk4")) < 1e-3
-    # Chaos: a time-stepping solution has another order of events before long.
+    # In chaos a time-stepping solution soon has another order of events.
     assert 20.0 < dataset["event_order_time"].sel(law="linearized", solver="rk4", initial="plus", a=0.2) < 500.0
 
 

@@ -19,7 +19,7 @@ from tests.grids import grid_of
 from tests.summaries.points import write_points
 
 STOP, START = 0, 1
-#: Five blocks near uniform sliding that come to synchrony.
+#: Five blocks near uniform sliding that synchronize.
 FIVE = {"position": [-0.989, -0.993, -0.993, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1012, 0.1012, 0.1023]}
 EVENT_STATES = ("event_time", "event_block", "event_kind", "event_position", "event_velocity")
 NONE = pytest.approx(np.nan, nan_ok=True)
@@ -74,7 +74,7 @@ def test_no_frequency_without_a_cycle():
     assert np.isnan(leading_frequency(np.zeros(601), 30.0))
     assert np.isnan(leading_frequency(np.full(601, 0.1) + 1e-17 * np.cos(time), 30.0))
     assert np.isnan(leading_frequency(np.array([0.1]), 0.0))
-    # A trend alone has no cycle; beside one it does not hide it.
+    # A trend alone has no cycle, and does not hide one.
     assert leading_frequency(np.exp(-time / 40.0) + 0.5 * np.sin(time), 30.0) == pytest.approx(0.5 / np.pi, abs=3e-3)
 
 
@@ -91,7 +91,7 @@ def test_correlation():
     assert correlation(one, other) == pytest.approx(np.corrcoef(one, other)[0, 1], abs=1e-14)
     assert np.isnan(correlation(one, np.zeros(500)))
     assert np.isnan(correlation(np.full(500, 0.1), one))
-    # Rounding has no correlation, in either of the two.
+    # Rounding errors have no correlation, in either series.
     constant = 0.1 + 1e-12 * one
     assert np.isnan([correlation(constant, one), correlation(one, constant)]).all()
 
@@ -112,41 +112,41 @@ def test_the_synchronized_orbit(tmp_path):
         run = dataset.sel(law=law, initial="minus", a=0.05)
         assert run["cycle_time"].values == pytest.approx([orbit.period] * 3, rel=1e-9)
         assert (run["cycle_time_error"] < 1e-9).all()
-        # Whole periods, but for the ends of the window.
+        # Whole periods, except at the ends of the window.
         share = [orbit.stick_time(block) / orbit.period for block in range(3)]
         assert run["stick_fraction"].values == pytest.approx(share, abs=orbit.period / 400.0)
         assert run["stop_rate"].values == pytest.approx([1.0 / orbit.period] * 3, abs=1.01 / 400.0)
         assert run["velocity_frequency"].values == pytest.approx([1.0 / orbit.period] * 3, abs=1e-5)
-        # The events with states fill the window, but for a part of a period at either end.
+        # The events with states fill the window, except for part of a period at each end.
         assert run["velocity_frequency_error"].values == pytest.approx(0.5 / 400.0, rel=0.02)
         assert run["velocity_correlation"].item() == pytest.approx(1.0, abs=1e-12)
         assert run["least_velocity"].values.tolist() == [0.0, 0.0, 0.0]
-        # The end blocks swing alike; the middle one, which is held from both sides, less.
+        # The end blocks have the same amplitude; the middle block, coupled on both sides, has a smaller one.
         amplitude = run["position_amplitude"].values
         assert amplitude[0] == pytest.approx(amplitude[2], rel=1e-6)
         assert 0.07 < amplitude[1] < amplitude[0] < 0.12
 
 
 def test_events_before_those_with_states_count_as_well(tmp_path):
-    """However the events are kept, the same stops are counted."""
+    """The stops are the same, whichever events are stored with states."""
     kept = [
         summarize(points(tmp_path / events, "plus", 0.08, events=events, event_window=width), **SETTINGS)
         for events, width in (("window", 50.0), ("window", 400.0), ("all", 1.0))
     ]
-    # The longer velocities are known, the better their frequencies are.
+    # Frequencies are more accurate for longer series of velocities.
     same = [name for name in kept[0] if not name.startswith("velocity_")]
     assert kept[0][same].identical(kept[1][same])
     assert kept[0][same].identical(kept[2][same])
     errors = [float(item["velocity_frequency_error"].max()) for item in kept]
     assert errors[0] > errors[1] == errors[2]
-    # Blocks 1 and 3 slip in turns, while block 2 stops more than twice as often.
+    # Blocks 1 and 3 slip alternately, while block 2 stops more than twice as often.
     run = kept[0].sel(law="linearized", initial="plus", a=0.08)
     assert run["velocity_correlation"] < -0.5
     assert run["stop_rate"].values[1] > 2.0 * run["stop_rate"].values[0]
 
 
 def test_a_block_that_never_moves_and_one_that_never_stops(tmp_path):
-    """The first block is pulled back and sticks; the second one slips for half a period of its own, π/√2."""
+    """The first block is pulled back and sticks; the second slips for half its natural period, π/√2."""
     held = InitialState("held", (3.0, -1.0), (0.0, 0.1))
     grid = points(tmp_path, held, 0.05, transient=0.5, window=1.0, start="tested", trajectory=1.0)
     run = summarize(grid, 0.5, 1.0, 2).sel(law="linearized", a=0.05, initial="held")
@@ -169,7 +169,7 @@ def test_a_run_that_did_not_complete_has_nothing(tmp_path):
 
 
 def velocities(law, a, initial, **settings):
-    """Return a run of which all samples are kept, and the same as a study keeps it."""
+    """Return a run with all samples stored, and the same run as a study stores it."""
     settings = {"transient": 500.0, "window": 600.0, "batches": 2, "trajectory_sampling": 0.1, **settings}
     run = simulate(law, a, initial, trajectory=settings["window"], **settings)
     kept = {**vars(run), "trajectory_time": run.trajectory_time[:100], "velocity": run.velocity[:100]}
@@ -187,7 +187,7 @@ def velocities(law, a, initial, **settings):
     ],
 )
 def test_frequencies_are_those_of_the_motion(law, a, initial):
-    """Held against samples of the whole motion, of a tenth of a unit."""
+    """Compare with samples of the whole motion, 0.1 apart."""
     run, kept, model = velocities(law, a, initial)
     found, duration = long_velocity(kept, model, 500.0)
     assert duration == pytest.approx(600.0, rel=0.02)
@@ -195,7 +195,7 @@ def test_frequencies_are_those_of_the_motion(law, a, initial):
         expected = leading_frequency(run.velocity[:, block], np.ptp(run.trajectory_time))
         assert leading_frequency(found[:, block], duration) == pytest.approx(expected, abs=1e-4)
     assert correlation(found[:, 0], found[:, -1]) == pytest.approx(correlation(*run.velocity.T[[0, -1]]), abs=0.02)
-    # Samples that last longer than the events are taken as they are, also if only by a little.
+    # If the samples last longer than the events, even slightly, they are returned.
     assert long_velocity(vars(run), model, 500.0)[0] is run.velocity
     for more, taken in ((1e-3, True), (-1e-3, False)):
         samples = {**kept, "trajectory_time": np.array([0.0, duration + more])}
@@ -209,7 +209,7 @@ def test_frequencies_are_those_of_the_motion(law, a, initial):
 
 
 def test_frequencies_are_those_of_the_same_motion_in_other_units():
-    """With springs 400 times as strong all times are a twentieth, which a tenth of a unit would not resolve."""
+    """With springs 400 times as stiff all times are divided by 20, and a spacing of 0.1 would be too coarse."""
     chain, state = Chain(3), InitialState("plus", [0.989, -0.993, -0.991], [0.099, 0.1012, 0.1023])
     stiff = Chain(3, coupling=400.0 * chain.coupling, pulling=tuple(400.0 * chain.driving))
     fast = {"transient": 25.0, "window": 30.0, "batches": 2, "trajectory_sampling": 0.005}
@@ -234,8 +234,8 @@ def test_events_before_the_window_have_no_part_in_frequencies():
     assert (long_velocity({**kept, **later}, model, 300.0)[0] == found).all()
 
 
-def test_a_block_that_stands_still_has_no_frequency():
-    """The other one stops and starts beside it."""
+def test_a_block_at_rest_has_no_frequency():
+    """The other block stops and starts."""
     model = Model(Chain(2, coupling=0.01, threshold=(1.0, 20.0)), law_of("linearized", 0.1), 0.1)
     run = simulate(
         model,

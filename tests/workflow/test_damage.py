@@ -94,7 +94,7 @@ def grids():
     config = yaml.safe_load(TINY)
     study = load_study(config, "study.yaml")
     points = {**study.points, "a": {"0.2000": 0.2}}
-    return lambda results: Grid.of(results / "points", points)
+    return lambda results: Grid.from_points(results / "points", points)
 
 
 def readers(results: Path):

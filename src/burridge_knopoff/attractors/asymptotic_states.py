@@ -130,7 +130,7 @@ def _slow_synchrony(model: Model, end: ChainState, settings: SearchSettings, mot
         orbit = limit_cycle(model, symmetric)
     except OrbitError:
         return Ending()
-    if orbit.symmetry != Symmetry.SYNCHRONIZED or multipliers(orbit).unstable:
+    if orbit.symmetry != Symmetry.SYNCHRONIZED or multipliers(orbit).unstable_count:
         return Ending()
     found = Classifier(model, settings.transient, settings.window, motion).measure(symmetric)
     return _ending_of(found) if found is not None else Ending()

@@ -213,7 +213,7 @@ def _settle(track: EdgeTrack, duration: float) -> PeriodicOrbit | None:
     """Follow the boundary until it leads to a saddle orbit; None if it does not within that time."""
 
     def accepted(orbit: PeriodicOrbit, first: float, last: float, _: float) -> bool:
-        return last <= max(CLOSER * FAR, first / CLOSER) and multipliers(orbit).unstable == 1
+        return last <= max(CLOSER * FAR, first / CLOSER) and multipliers(orbit).unstable_count == 1
 
     part = duration / FIRST_PART
     while part <= duration:

@@ -195,6 +195,6 @@ def _crossed(sections: list[np.ndarray], initial: str, a: Range) -> np.ndarray:
 
 def _many(sections: list[np.ndarray], points: int) -> np.ndarray:
     """Tell which sections have more than `points` points in the second half of the run."""
-    from burridge_knopoff.summaries.along_attractor import distinct
+    from burridge_knopoff.summaries.attractor_observables import count_distinct
 
-    return np.array([distinct(velocity[len(velocity) // 2 :]) > points for velocity in sections], dtype=bool)
+    return np.array([count_distinct(velocity[len(velocity) // 2 :]) > points for velocity in sections], dtype=bool)

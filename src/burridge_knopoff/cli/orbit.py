@@ -78,15 +78,17 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
     from burridge_knopoff.study.formatting import counted
 
     found = multipliers(orbit)
-    stability = f"unstable: {counted(found.unstable, 'multiplier')}" if found.unstable else "stable: no multiplier"
+    stability = (
+        f"unstable: {counted(found.unstable_count, 'multiplier')}" if found.unstable_count else "stable: no multiplier"
+    )
     lines = [
         f"symmetry     {orbit.symmetry.name.lower()}",
         f"period       {orbit.period:.9f}",
         f"stability    {stability} outside the unit circle",
         f"multipliers  1 (the flow), {_complex(found.whole)}; the others are 0",
     ]
-    if len(found.breaking):
-        lines.append(f"             mirror-breaking perturbations: {_complex(found.breaking**found.power)}")
+    if len(found.symmetry_breaking):
+        lines.append(f"             mirror-breaking perturbations: {_complex(found.symmetry_breaking**found.power)}")
     lines += [
         f"stops        {' '.join(map(str, orbit.stop_counts))} (each block, in a period)",
         f"residual     {orbit.residual:.1e} after a return",

@@ -82,7 +82,7 @@ def entries(one: xarray.Dataset, changes: Sequence[BranchChange], followed: Foll
         n, own_kind = int(branch[place]), int(kind[place])
         values = np.array([a[k] for k, row in enumerate(slots) if n in row])
         for bifurcation in segment.downward.bifurcations + segment.upward.bifurcations:
-            if bifurcation.keeps_stability and not bifurcation.turns:
+            if bifurcation.keeps_stability and not bifurcation.is_turning_point:
                 beside = (
                     max(values[values <= bifurcation.a], default=np.nan),
                     min(values[values >= bifurcation.a], default=np.nan),

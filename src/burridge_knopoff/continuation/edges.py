@@ -21,7 +21,7 @@ from burridge_knopoff.periodic_orbits.following import follow
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
-from burridge_knopoff.periodic_orbits.return_map import mirror
+from burridge_knopoff.periodic_orbits.return_map import mirror_order
 
 # Difference of ⟨J⟩, for v = 0.1, up to which two edge states of one kind between the same branches are one.
 SAME_MEAN = 1e-3
@@ -130,10 +130,12 @@ def followed_edges(edges: Sequence[Edge], largest: float) -> tuple[list[list[Bra
 
 
 def _segment(orbit: PeriodicOrbit, largest: float) -> list[BranchOrbit]:
-    def enough(points: list[BranchOrbit]) -> bool:
-        return points[-1].multipliers.unstable != 1
+    def is_complete(points: list[BranchOrbit]) -> bool:
+        return points[-1].multipliers.unstable_count != 1
 
-    down, up = (follow(orbit, (LEAST_A, largest), FOLLOWING, upward=upward, enough=enough) for upward in (False, True))
+    down, up = (
+        follow(orbit, (LEAST_A, largest), FOLLOWING, upward=upward, is_complete=is_complete) for upward in (False, True)
+    )
     segment = [*down[:0:-1], *up]
     for point in segment:
         _ = point.orbit.mean_distance
@@ -196,4 +198,4 @@ def _stops(orbit: PeriodicOrbit, block: int) -> Iterator[np.ndarray]:
         yield own
     image = values[stops & (values[:, 0] == blocks + 1 - block), 2:]
     if orbit.model.chain.is_mirror_symmetric and len(image):
-        yield image[:, mirror(blocks)]
+        yield image[:, mirror_order(blocks)]

@@ -16,15 +16,15 @@ from burridge_knopoff.continuation.branch_changes import BranchChange, is_follow
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.limit_cycle import limit_cycle
 from burridge_knopoff.motion.section_returns import state_of
-from burridge_knopoff.periodic_orbits.branch_segment import BranchSegment, Half, half
+from burridge_knopoff.periodic_orbits.branch_segment import BranchSegment, HalfBranch, follow_half_branch
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError
-from burridge_knopoff.periodic_orbits.following import Following
+from burridge_knopoff.periodic_orbits.following import ContinuationSettings
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.processes import shared_out
 
 #: How closed orbits are followed, and how many unstable ones beyond a bifurcation, for the figure.
-FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
+FOLLOWING = ContinuationSettings(first_step=1e-4, largest_step=2.5e-3, smallest_step=1e-7, max_orbits=120)
 BEYOND = 4
 
 #: Smallest a down to which orbits are followed; at a = 0 no periodic orbit is isolated, and sticks vanish.
@@ -59,7 +59,7 @@ class FollowedOrbits:
     def hold(self, place: Place, orbit: PeriodicOrbit, since: int = 0) -> bool:
         """Tell whether an orbit has been followed, on a segment from that number on, and remember on which."""
         numbers = range(since, len(self.segments))
-        number = next((n for n in numbers if self.segments[n].holds(orbit, SAME_PERIOD)), None)
+        number = next((n for n in numbers if self.segments[n].contains(orbit, SAME_PERIOD)), None)
         if number is not None:
             self.of_place[place] = number
         return number is not None
@@ -114,7 +114,7 @@ def _places(one: xarray.Dataset, changes: Sequence[BranchChange]) -> list[Place]
     return [(int(k), int(slot)) for k, slot in np.argwhere(closed & wanted)]
 
 
-def _is_lost(model: Model, found: PeriodicOrbit | Half | OrbitError) -> bool:
+def _is_lost(model: Model, found: PeriodicOrbit | HalfBranch | OrbitError) -> bool:
     """Tell whether there is no orbit but an error in its place, which is printed."""
     if isinstance(found, OrbitError):
         print(f"{model.law.name}: {found}")
@@ -154,7 +154,7 @@ def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> Periodi
         except OrbitError:
             # One that attracts slowly is told later from others beside it.
             found = limit_cycle(model, state, LATER)
-        if multipliers(found).unstable:
+        if multipliers(found).unstable_count:
             raise OrbitError(f"a = {model.a:.12g}: the closed orbit beside the motion is unstable")
     except OrbitError as error:
         return error
@@ -162,18 +162,18 @@ def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> Periodi
     return found
 
 
-def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> Half | OrbitError:
+def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> HalfBranch | OrbitError:
     """Follow an orbit one way, and find the bifurcations that it meets, or return why it cannot be followed."""
     try:
         # From one end of a wide grid to the other as well.
-        step = max(FOLLOWING.largest_step, largest / orbit.model.chain.own_units.slope / FOLLOWING.most_orbits)
-        found = half(orbit, upward, (LEAST_A, largest), BEYOND, replace(FOLLOWING, largest_step=step))
+        step = max(FOLLOWING.largest_step, largest / orbit.model.chain.own_units.slope / FOLLOWING.max_orbits)
+        found = follow_half_branch(orbit, upward, (LEAST_A, largest), BEYOND, replace(FOLLOWING, largest_step=step))
         # Found here, these go with the orbits to the process that asks for them.
         _ = (
             [(bifurcation.stick_time, bifurcation.mean_distance) for bifurcation in found.bifurcations],
             [point.multipliers for point in found.orbits],
         )
-        _ = [point.orbit.mean_distance for point in found.shown]
+        _ = [point.orbit.mean_distance for point in found.drawn_orbits]
     except OrbitError as error:
         return error
     for point in found.orbits:

@@ -14,5 +14,5 @@ from burridge_knopoff.summaries.points import Grid, open_point
 
 def make(given: Given, figure: str, from_study: Mapping[str, Any]) -> Figure:
     """Return a figure of runs, by initial state; from_study : properties of the study that it shows."""
-    module, grid = import_module(f"burridge_knopoff.figures.{figure}"), Grid.given(given)
+    module, grid = import_module(f"burridge_knopoff.figures.{figure}"), Grid.from_job(given)
     return module.draw({initial: open_point(grid, law, initial, a) for _, (law, initial, a) in grid}, **from_study)

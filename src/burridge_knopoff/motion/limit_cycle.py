@@ -11,9 +11,9 @@ from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.motion.set_distance import distance
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
-from burridge_knopoff.periodic_orbits.minimal_orbit import simplest
+from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
-from burridge_knopoff.periodic_orbits.return_map import mirror
+from burridge_knopoff.periodic_orbits.return_map import mirror_order
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.settings import DURATION
@@ -89,7 +89,7 @@ def orbit_of_events(
         except OrbitError:
             continue
         if accepted(found, *_distances(found, values), size):
-            return simplest(found, CLOSENESS[0])
+            return minimal_form(found, CLOSENESS[0])
     return None
 
 
@@ -107,7 +107,7 @@ def _returns(
     state, begun = values[own[0], 2:], times[own[0]]
     repeated = [(times[k] - begun, Symmetry.ASYMMETRIC, values[k, 2:]) for k in own[1:]]
     if model.chain.is_mirror_symmetric:
-        order = mirror(model.blocks)
+        order = mirror_order(model.blocks)
         if np.abs((state - state[order]) / scale).max() <= CLOSENESS[0]:
             repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, _, at in repeated]
         else:
@@ -124,7 +124,9 @@ def _returns(
 
 def _stays(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:
     """Return whether a motion stays on an orbit, or comes closer to it if the orbit attracts."""
-    return last <= (CLOSENESS[0] if multipliers(orbit).unstable else max(CLOSENESS[0], min(first, FARTHER * size)))
+    return last <= (
+        CLOSENESS[0] if multipliers(orbit).unstable_count else max(CLOSENESS[0], min(first, FARTHER * size))
+    )
 
 
 def _distances(orbit: PeriodicOrbit, values: np.ndarray) -> tuple[float, float]:

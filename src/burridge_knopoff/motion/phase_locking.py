@@ -59,7 +59,7 @@ def locked_orbit(model: Model, returns: np.ndarray, time: float) -> PeriodicOrbi
         orbit = find_periodic_orbit(model, state_of(returns[-1]), time, Symmetry.ASYMMETRIC)
     except OrbitError:
         return None
-    return orbit if multipliers(orbit).unstable == 0 and _approaches(returns, orbit) else None
+    return orbit if multipliers(orbit).unstable_count == 0 and _approaches(returns, orbit) else None
 
 
 def _approaches(returns: np.ndarray, orbit: PeriodicOrbit) -> bool:

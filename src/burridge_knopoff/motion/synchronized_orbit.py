@@ -17,7 +17,7 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
-from burridge_knopoff.periodic_orbits.synchronized_bifurcations import unit
+from burridge_knopoff.periodic_orbits.synchronized_bifurcations import a_unit
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of
@@ -61,7 +61,7 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
     """
     if not model.chain.is_mirror_symmetric:
         raise OrbitError("chain: got one that is not its own mirror image, expected one in which blocks move as one")
-    seeds = [unit(model.chain) * a for a in SEEDS]
+    seeds = [a_unit(model.chain) * a for a in SEEDS]
     for find in (_of_one_turn, _settled):
         for a in seeds:
             try:

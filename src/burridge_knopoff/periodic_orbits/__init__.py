@@ -1,1 +1,1 @@
-"""Periodic orbits: how they are found and followed, their multipliers, and the bifurcations at which they change."""
+"""Periodic orbits: their computation and continuation, their multipliers and their bifurcations."""

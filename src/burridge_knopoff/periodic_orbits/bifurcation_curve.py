@@ -1,8 +1,8 @@
 """Curves of bifurcations in the plane of two parameters.
 
-Each step predicts the next point of the curve by the secant through the last two, and searches along the line
-perpendicular to it in the plane. Thus the curve may turn back in either parameter, and orbits may exist on one side of
-it only, as at a fold.
+Each step predicts the next point of the curve from the secant through the last two points, and searches along the line
+perpendicular to it in the plane. The curve may therefore turn back in either parameter, and orbits may exist on only
+one side of it, as at a fold.
 
 Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 10.3.
 """
@@ -20,18 +20,19 @@ from burridge_knopoff.model.parameters import value_of
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcation_plane import BifurcationPlane, CurvePoint
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
-from burridge_knopoff.periodic_orbits.border_collision import SHORTER
+from burridge_knopoff.periodic_orbits.border_collision import STEP_REDUCTION
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
-from burridge_knopoff.periodic_orbits.following import FASTER, Following, ends_of
+from burridge_knopoff.periodic_orbits.following import STEP_GROWTH, ContinuationSettings, interval_ends
 from burridge_knopoff.periodic_orbits.parameter_line import model_at
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import tangent_of
 from burridge_knopoff.values import instance_of, refusal
 
 #: Steps along a curve, in the units of `follow`.
-STEPS = Following(first_step=1e-3, largest_step=2e-2, least_step=1e-7)
+STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-2, smallest_step=1e-7)
 
-# Cosine of the largest angle between two steps of a curve, which sharper turns make shorter, down to this length.
+# Cosine of the largest angle between successive steps of a curve, and the length down to which larger angles shorten
+# the step.
 STRAIGHT = 0.98
 CORNER = 1e-5
 
@@ -40,7 +41,7 @@ CORNER = 1e-5
 class BifurcationCurve:
     """A curve of bifurcations in the plane of two parameters.
 
-    kind : of all bifurcations on it; parameters : names of both parameters
+    kind : of all bifurcations on the curve; parameters : names of both parameters
     values, errors : of both parameters, in order along the curve, shape (n, 2)
     orbits : the orbit at each point
 
@@ -67,24 +68,24 @@ def follow_bifurcation(
     bifurcation: Bifurcation,
     parameters: tuple[str, str] = ("a", "v"),
     interval: tuple[float, float] = (-math.inf, math.inf),
-    settings: Following = STEPS,
+    settings: ContinuationSettings = STEPS,
 ) -> BifurcationCurve:
-    """Return the curve of a bifurcation in the plane of two parameters, followed both ways from it.
+    """Return the curve of a bifurcation in the plane of two parameters, continued both ways from a known bifurcation.
 
-    bifurcation : as `locate_bifurcations` yields it, found along any parameter
-    parameters : names of two parameters, as `Model.at` takes them
-    interval : (low, high) of the second parameter, at which the curve ends; by default it ends where it is lost
-    settings : lengths of steps in the plane, and the maximum number of points each way; `Following` gives their unit
+    bifurcation : as `locate_bifurcations` yields it, located along any parameter
+    parameters : names of two parameters, as in `Model.at`
+    interval : (low, high) of the second parameter, at which the curve ends; by default it ends where no step succeeds
+    settings : lengths of steps in the plane, in the units of `ContinuationSettings`, and the maximum number of points
+        each way
 
     The curve also ends where the bifurcation becomes another one, for example a grazing where the orbit grazes twice.
-    Its ends may lie one step beyond the interval. `errors` are half the widths of brackets perpendicular to the curve,
-    at a grazing the distance left.
+    Its ends may lie one step beyond the interval. `errors` are half the widths of brackets perpendicular to the curve;
+    at a grazing they are the remaining distance to it.
 
-    Raises OrbitError if the bifurcation is not found again where it was, and ValueError, one line, for a wrong
-    argument.
+    Raises OrbitError if the given bifurcation cannot be reproduced, and ValueError, one line, for a wrong argument.
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 10.3;
-    docs/bifurcations.md says how it is applied where orbits graze.
+    docs/bifurcations.md explains the method where orbits graze.
 
     >>> from burridge_knopoff import Chain, Model, follow, follow_bifurcation, law_of, locate_bifurcations
     >>> from burridge_knopoff import synchronized_orbit
@@ -96,46 +97,50 @@ def follow_bifurcation(
     True
     """
     instance_of(bifurcation, Bifurcation, "bifurcation")
-    instance_of(settings, Following, "settings")
+    instance_of(settings, ContinuationSettings, "settings")
     names = tuple(parameters) if isinstance(parameters, list | tuple) else ()
     if len(names) != 2 or not all(isinstance(name, str) for name in names) or names[0] == names[1]:
         raise refusal("parameters", parameters, "the names of two parameters")
-    ends = ends_of(interval)
+    ends = interval_ends(interval)
     plane = BifurcationPlane(bifurcation, names)
     orbit = plane.orbit
     first = plane.point(
         orbit, np.array([0.0, 1.0]), orbit.model, orbit.reference, orbit.return_time, settings.first_step
     )
-    ways = [list(_way(plane, first, side, settings, ends)) for side in (-1.0, 1.0)]
+    ways = [list(_follow_one_way(plane, first, side, settings, ends)) for side in (-1.0, 1.0)]
     points = [*ways[0][::-1], first, *ways[1]]
     values = np.array([[value_of(point.orbit.model, name) for name in names] for point in points])
     errors = np.array([point.errors for point in points])
     return BifurcationCurve(bifurcation.kind, names, values, errors, [point.orbit for point in points])
 
 
-def _way(
-    plane: BifurcationPlane, first: CurvePoint, side: float, settings: Following, interval: tuple[float, float]
+def _follow_one_way(
+    plane: BifurcationPlane,
+    first: CurvePoint,
+    side: float,
+    settings: ContinuationSettings,
+    interval: tuple[float, float],
 ) -> Iterator[CurvePoint]:
-    """Yield the points after the first one, in the direction in which the second parameter grows or falls."""
+    """Yield the points after the first one; at first the second parameter increases (side 1) or decreases (−1)."""
     direction, length = np.array([0.0, side]), settings.first_step
     before, here, count = None, first, 1
-    while count < settings.most_orbits and length >= settings.least_step:
+    while count < settings.max_orbits and length >= settings.smallest_step:
         if not interval[0] <= value_of(here.orbit.model, plane.names[1]) <= interval[1]:
             return
         try:
             following = _step(plane, before, here, direction, length)
         except OrbitError:
-            length *= SHORTER
+            length *= STEP_REDUCTION
             continue
         change = plane.place(following.orbit.model) - plane.place(here.orbit.model)
         turned = change / np.linalg.norm(change)
-        # The first direction is a guess. A curve has a corner where the orbit grazes on the way.
+        # The first direction is a guess. The curve has a corner where the orbit also grazes elsewhere.
         if before is not None and length > CORNER and turned @ direction < STRAIGHT:
-            length *= SHORTER
+            length *= STEP_REDUCTION
             continue
         yield following
         before, here, direction = here.orbit, following, turned
-        length, count = min(FASTER * length, settings.largest_step), count + 1
+        length, count = min(STEP_GROWTH * length, settings.largest_step), count + 1
 
 
 def _step(
@@ -151,7 +156,7 @@ def _step(
         vector = vector + share * (vector - last.vector())
         time += share * (time - before.return_time)
     elif plane.kind != BifurcationKind.FOLD:
-        # There the orbit changes in proportion to the parameters; at a fold it does not.
+        # The orbit changes in proportion to the parameters, except at a fold.
         tangent = tangent_of(orbit, plane.line(orbit.model, np.array([-direction[1], direction[0]])))
         vector = vector + length / tangent[-1] * tangent[:-2]
         time += length / float(tangent[-1]) * float(tangent[-2])

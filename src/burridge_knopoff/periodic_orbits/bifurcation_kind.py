@@ -1,4 +1,4 @@
-"""The bifurcations that may end or change an attractor as a parameter varies, for orbits, files and figures."""
+"""Kinds of bifurcations of periodic orbits and attractors, for orbits, files and figures."""
 
 from __future__ import annotations
 
@@ -16,16 +16,16 @@ REAL = 1e-6
 
 
 class BifurcationKind(IntEnum):
-    """Kinds of bifurcations and crises (bifurcations), numbered as in netCDF files.
+    """Kinds of bifurcations, including crises, numbered as in netCDF files.
 
-    grazing : a stick or a slip of a periodic orbit shrinks to nothing or is born
+    grazing : a stick or a slip of a periodic orbit appears or vanishes
     fold : two orbits meet and vanish, multiplier +1
     period_doubling : the period doubles, multiplier −1
     neimark_sacker : a pair of complex multipliers leaves the unit circle, a torus branches off
     pitchfork : mirror symmetry breaks, multiplier +1 of a symmetry-breaking perturbation
     crisis : an attractor that is not a periodic orbit ends
 
-    words : its name in figures; mark : matplotlib's marker of it there, empty if it is only known to lie in a range
+    words : name in texts and figures; mark : matplotlib marker in figures, empty if only a range of a is known
 
     >>> from burridge_knopoff import BifurcationKind
     >>> BifurcationKind.FOLD.name, int(BifurcationKind.NEIMARK_SACKER)
@@ -41,7 +41,7 @@ class BifurcationKind(IntEnum):
         kind._value_, kind.words, kind.mark = number, words, mark
         return kind
 
-    UNDETERMINED = -1, "unknown"
+    UNDETERMINED = -1, "undetermined"
     GRAZING = 0, "grazing", "v"
     FOLD = 1, "fold", "s"
     PERIOD_DOUBLING = 2, "period doubling", "D"
@@ -52,12 +52,12 @@ class BifurcationKind(IntEnum):
 
 @dataclass(frozen=True)
 class MultiplierTest:
-    """A kind of bifurcation as a root of a smooth function of the multipliers along a branch of orbits.
+    """A test function: a smooth function of the multipliers that has a root at a kind of bifurcation along a branch.
 
-    value : returns the function of some multipliers, complex, shape (n,)
-    part : of the perturbations whose multipliers it is of: `keeping` the symmetry of the orbit, `breaking` it, or both
-    symmetric : whether it is of orbits that are their own mirror image half a period later, of others, or None of all
-    is_root : returns whether a root is the bifurcation, from the multipliers there; None if every root is
+    value : the function of some multipliers, complex, shape (n,)
+    part : the perturbations whose multipliers are used: `symmetry_preserving`, `symmetry_breaking` or both
+    symmetric : True for orbits that are their own mirror image half a period later, False for others, None for all
+    is_root : whether a root is the bifurcation, given the multipliers there; None if every root is
     """
 
     kind: BifurcationKind
@@ -66,29 +66,29 @@ class MultiplierTest:
     symmetric: bool | None = None
     is_root: Callable[[np.ndarray], bool] | None = None
 
-    def belongs(self, part: str, symmetry: Symmetry) -> bool:
-        """Return whether it is a test of these perturbations of orbits of a symmetry."""
+    def is_applicable(self, part: str, symmetry: Symmetry) -> bool:
+        """Return whether the test applies to these perturbations of orbits with this symmetry."""
         other = self.symmetric not in (None, symmetry == Symmetry.SYMMETRIC)
-        return self.part in ("both", part) and not (part == "keeping" and other)
+        return self.part in ("both", part) and not (part == "symmetry_preserving" and other)
 
 
 def _pairs(own: np.ndarray) -> np.ndarray:
-    """Return the products of two multipliers each."""
+    """Return the products of all pairs of multipliers."""
     return np.array([one * other for one, other in combinations(own, 2)])
 
 
 def _is_complex(own: np.ndarray) -> bool:
-    """Return whether the two multipliers whose product is nearest to 1 are complex, not those of a saddle."""
+    """Return whether the pair of multipliers whose product is closest to 1 is complex, not real as at a saddle."""
     one, _ = min(combinations(own, 2), key=lambda pair: abs(pair[0] * pair[1] - 1.0))
     return abs(one.imag) > REAL
 
 
-#: The kinds that multipliers tell. Each has one test in the same part of the perturbations.
+#: Tests of the kinds that multipliers determine. Each kind has at most one test per part of the perturbations.
 MULTIPLIER_TESTS = (
-    MultiplierTest(BifurcationKind.FOLD, lambda own: np.prod(own - 1.0), "keeping"),
-    MultiplierTest(BifurcationKind.PITCHFORK, lambda own: np.prod(own - 1.0), "breaking"),
-    MultiplierTest(BifurcationKind.PITCHFORK, lambda own: np.prod(own + 1.0), "keeping", symmetric=True),
+    MultiplierTest(BifurcationKind.FOLD, lambda own: np.prod(own - 1.0), "symmetry_preserving"),
+    MultiplierTest(BifurcationKind.PITCHFORK, lambda own: np.prod(own - 1.0), "symmetry_breaking"),
+    MultiplierTest(BifurcationKind.PITCHFORK, lambda own: np.prod(own + 1.0), "symmetry_preserving", symmetric=True),
     MultiplierTest(BifurcationKind.PERIOD_DOUBLING, lambda own: np.prod(own + 1.0), symmetric=False),
-    # Also 0 if the product of two real multipliers is 1, at an ordinary saddle.
+    # The function also vanishes if the product of two real multipliers is 1, which is no bifurcation.
     MultiplierTest(BifurcationKind.NEIMARK_SACKER, lambda own: np.prod(_pairs(own) - 1.0), is_root=_is_complex),
 )

@@ -1,7 +1,7 @@
-"""The place of a bifurcation on a line in the plane of two parameters.
+"""The location of a bifurcation on a line in the plane of two parameters.
 
-The orbit is on a branch there, with the coordinate along the line as another unknown, and the bifurcation is a root
-along this branch. A grazing is approached from the side of the orbits with the stops of the first one.
+Along the line the orbits form a branch, with the coordinate on the line as an additional unknown, and the bifurcation
+is a root along this branch. A grazing is approached from the side on which the orbits have the stops of the first one.
 """
 
 from __future__ import annotations
@@ -14,17 +14,17 @@ import numpy as np
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.parameters import value_of
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
-from burridge_knopoff.periodic_orbits.bifurcations import ROUNDING, SIDES, Bifurcation, kind_at
-from burridge_knopoff.periodic_orbits.border_collision import CAUTIOUS, REACHED, SHORTER
+from burridge_knopoff.periodic_orbits.bifurcations import BRACKETS, ROUNDING, Bifurcation, kind_at
+from burridge_knopoff.periodic_orbits.border_collision import CORNER_DISTANCE, LARGEST_SHARE, STEP_REDUCTION
 from burridge_knopoff.periodic_orbits.floquet import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
-from burridge_knopoff.periodic_orbits.following import FASTER
-from burridge_knopoff.periodic_orbits.grazing_distances import contacts
+from burridge_knopoff.periodic_orbits.following import STEP_GROWTH
+from burridge_knopoff.periodic_orbits.grazing_distances import grazing_distances
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, orbit_of, safe_offset
 from burridge_knopoff.periodic_orbits.pseudo_arclength import (
     BranchOrbit,
-    in_symmetry_of,
+    adapt_symmetry,
     line_of,
     solve_ahead,
     tangent_of,
@@ -32,19 +32,19 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import (
 )
 from burridge_knopoff.values import refusal
 
-# First step of the search for a root along a branch, the change at which it ends, and the most iterations.
+# First step of the search for a root along a branch, the change at which it ends, and the maximum number of iterations.
 PROBE = 1e-6
 CONVERGED = 1e-12
 ITERATIONS = 40
 
-# A root is searched for within so many lengths of the step; the return time may change by this fraction.
+# A root is searched for within this many step lengths, and the return time may change by this fraction.
 FARTHEST = 10.0
 CHANGE = 0.1
 
 
 @dataclass(frozen=True, eq=False)
 class CurvePoint:
-    """A point of the curve; `offset` is the time by which the reference was moved on along the orbit."""
+    """A point of the curve; `offset` is the time by which the reference was shifted along the orbit."""
 
     orbit: PeriodicOrbit
     errors: np.ndarray
@@ -54,21 +54,21 @@ class CurvePoint:
 class BifurcationPlane:
     """The plane of two parameters, and the function that vanishes at one kind of bifurcation of an orbit.
 
-    Raises ValueError, one line, if the bifurcation is of a symmetry that one of the parameters breaks.
+    Raises ValueError, one line, if the bifurcation requires a symmetry that one of the parameters breaks.
 
-    Places in the plane are in the units of `line_of` at the bifurcation.
+    Points of the plane are in the units of `line_of` at the bifurcation.
     """
 
     def __init__(self, bifurcation: Bifurcation, names: tuple[str, str]) -> None:
         orbit = bifurcation.at.orbit
         for name in names:
-            orbit = in_symmetry_of(line_of(orbit, name), orbit)
+            orbit = adapt_symmetry(line_of(orbit, name), orbit)
         self.orbit, self.kind, self.names = orbit, bifurcation.kind, names
         self.units = np.array([line_of(orbit, name).rates[0] for name in names])
         self.own_units = orbit.model.chain.own_units
         self.symmetry, self.stops = orbit.symmetry, orbit.stop_counts
         if self.kind == BifurcationKind.GRAZING:
-            self.contact = int(bifurcation.at.contacts.shares(self.own_units).argmin())
+            self.component = int(bifurcation.at.grazing_distances.in_own_units(self.own_units).argmin())
         else:
             values = {key: abs(value) for key, value in critical_values(orbit).items() if key[0] == self.kind}
             if not values:
@@ -77,7 +77,7 @@ class BifurcationPlane:
             self.key = min(values, key=values.__getitem__)
 
     def place(self, model: Model) -> np.ndarray:
-        """Return the place of a model in the plane."""
+        """Return the point of a model in the plane."""
         return np.array([value_of(model, name) for name in self.names]) / self.units
 
     def line(self, model: Model, direction: np.ndarray) -> ParameterLine:
@@ -93,15 +93,15 @@ class BifurcationPlane:
     ) -> CurvePoint:
         """Return the point of the curve on the line through a model perpendicular to a direction.
 
-        near : an orbit near by; guess, time : of the orbit; length : of the step
+        near : a neighbouring orbit; guess, time : of the orbit; length : of the step
 
-        Raises OrbitError if there is none within some steps.
+        Raises OrbitError if no such point is found within FARTHEST steps.
         """
         line = self.line(model, direction)
         tangent = tangent_of(near, self.line(near.model, direction))
 
         def orbit_at(distance: float) -> PeriodicOrbit:
-            found = solve_ahead(model, guess, time, self.symmetry, line, tangent, distance, enough=0.0)
+            found = solve_ahead(model, guess, time, self.symmetry, line, tangent, distance, target_residual=0.0)
             if abs(found.return_time - time) > CHANGE * time or not any(found.stop_counts):
                 raise OrbitError(f"{line.place(model)}: no orbit found near the guess")
             return found
@@ -120,14 +120,14 @@ class BifurcationPlane:
         return CurvePoint(found, np.maximum(errors * self.units, ROUNDING), offset)
 
     def _root(self, orbit: PeriodicOrbit, line: ParameterLine, longest: float) -> tuple[PeriodicOrbit, np.ndarray]:
-        """Return the orbit at which the function of the multipliers vanishes, and half the widths of its bracket."""
+        """Return the orbit at which the test function vanishes, and half the widths of the bracket in the plane."""
         tangent = tangent_of(orbit, line)
 
         def orbit_at(distance: float) -> PeriodicOrbit:
             if abs(distance) > longest:
                 raise OrbitError(f"{line.place(orbit.model)}: no bifurcation found near the guess")
             start = orbit.model, orbit.reference, orbit.return_time
-            return solve_ahead(*start, self.symmetry, line, tangent, distance, enough=0.0)
+            return solve_ahead(*start, self.symmetry, line, tangent, distance, target_residual=0.0)
 
         def value(distance: float) -> float:
             return critical_values(orbit_at(distance))[self.key]
@@ -139,14 +139,14 @@ class BifurcationPlane:
                 break
             before, here = here, here - values[1] * (here - before) / (values[1] - values[0])
             values = values[1], value(here)
-        for side in SIDES:
+        for side in BRACKETS:
             low, high = orbit_at(here - side), orbit_at(here + side)
             if critical_values(low)[self.key] * critical_values(high)[self.key] < 0.0:
                 return orbit_at(here), 0.5 * np.abs(self.place(high.model) - self.place(low.model))
         raise OrbitError(f"{self.kind.name.lower()}: no root found near the guess")
 
     def _grazing(self, orbit: PeriodicOrbit, line: ParameterLine) -> tuple[PeriodicOrbit, np.ndarray]:
-        """Return an orbit next to the one that grazes, on the side of its own stops, and what is left in the plane."""
+        """Return an orbit next to the grazing one, on the side with its own stops, and the remaining distances."""
         tangent, length = tangent_of(orbit, line), PROBE
         distance = self._distance(orbit)
         for _ in range(ITERATIONS):
@@ -157,25 +157,25 @@ class BifurcationPlane:
                 if found.stop_counts != self.stops:
                     raise OrbitError(f"stops: got {found.stop_counts}, expected {self.stops}")
             except OrbitError:
-                length *= SHORTER
+                length *= STEP_REDUCTION
                 continue
             left = self._distance(found)
             if left == distance:
                 break
             ahead = length * left / (distance - left)
-            if abs(ahead) < REACHED:
+            if abs(ahead) < CORNER_DISTANCE:
                 return found, np.abs(self.place(found.model) - self.place(orbit.model)) * abs(ahead / length)
             following = tangent_of(found, line)
             tangent = following if following @ (weights(found.model, line) * tangent) > 0.0 else -following
-            orbit, distance, length = found, left, CAUTIOUS * ahead
+            orbit, distance, length = found, left, LARGEST_SHARE * ahead
         raise OrbitError(f"{line.place(orbit.model)}: no grazing found near the guess")
 
     def _distance(self, orbit: PeriodicOrbit) -> float:
-        return float(contacts(orbit).values()[self.contact])
+        return float(grazing_distances(orbit).values()[self.component])
 
 
 def _first_with(stops: tuple[int, ...], orbit_at: Callable[[float], PeriodicOrbit], longest: float) -> PeriodicOrbit:
-    """Return the orbit with these stops at the least distance tried, on either side."""
+    """Return the orbit with these stops at the smallest distance tried, on either side."""
     distance = 0.0
     while distance < longest:
         for side in (1.0, -1.0):
@@ -185,5 +185,5 @@ def _first_with(stops: tuple[int, ...], orbit_at: Callable[[float], PeriodicOrbi
                 continue
             if orbit.stop_counts == stops:
                 return orbit
-        distance = max(FASTER * distance, PROBE)
+        distance = max(STEP_GROWTH * distance, PROBE)
     raise OrbitError(f"stops: got others, expected {stops}")

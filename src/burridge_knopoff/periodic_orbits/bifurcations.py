@@ -1,10 +1,10 @@
 """Bifurcations along a branch of periodic orbits: grazing, fold, period doubling, Neimark-Sacker, pitchfork.
 
 Grazings are corners of the branch, which `following` reaches. Every other kind is a change of sign, between two orbits,
-of a function of the multipliers; its root along the branch is found with additional orbits. The function of a fold also
-changes sign where a branch joins a branch of simpler orbits: orbits of less symmetry begin as symmetric orbits, and
-orbits of twice the period as orbits of the single period. The simpler orbit there distinguishes a pitchfork and a
-period doubling, seen from the branch that begins, from a fold.
+of a function of the multipliers, whose root along the branch is found with additional orbits. The test function of a
+fold also changes sign where a branch joins a branch of simpler orbits: less symmetric orbits begin as symmetric orbits,
+and orbits of twice the period as orbits of the single period. On the branch that begins, a pitchfork and a period
+doubling are distinguished from a fold by this simpler orbit.
 
 Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2.
 """
@@ -20,39 +20,39 @@ from burridge_knopoff.periodic_orbits.bifurcation_kind import MULTIPLIER_TESTS, 
 from burridge_knopoff.periodic_orbits.floquet import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.following import follow
-from burridge_knopoff.periodic_orbits.minimal_orbit import simplest
+from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_along
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.values import each_instance_of
 
-# Lengths along a branch to which roots are found, and within which they are bracketed, in turn.
+# Accuracy in length along a branch to which roots are found, and half-widths of their brackets, to be tried in turn.
 TOLERANCE = 1e-14
-SIDES = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7)
+BRACKETS = (1e-11, 1e-10, 1e-9, 1e-8, 1e-7)
 
 # Rounding error of a parameter of about 1; smaller errors are not reported.
 ROUNDING = 1e-12
 
-# Range, in steps, searched for the end of a branch around the point where it has joined another branch.
-NEAR_JOINT = 2.0
+# Range, in steps, in which the branch point is searched for around the point where a branch has joined another one.
+BRANCH_POINT_RANGE = 2.0
 
-# A stick this short, in the chain's own unit, next to a grazing is the one that shrinks to nothing, as a square root.
+# At a grazing a stick this short, in the chain's own unit, is the one whose duration vanishes, as a square root.
 NO_STICK = 1e-4
 
-# Distance, for v = 0.1 in the chain's own units, within which an orbit at a root is a more symmetric one or one of a
-# shorter period: near a root the distance is itself a square root.
-JOINED = 1e-4
+# Distance, for v = 0.1 in the chain's own units, within which an orbit at a root counts as more symmetric or of a
+# shorter period; near a root this distance varies as a square root.
+REDUCTION_DISTANCE = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
 class Bifurcation:
     """A bifurcation on a branch of periodic orbits.
 
-    value, error : parameter along which the branch was followed, and half the width of its bracket
-    at : the orbit there, as accurately as known; where the branch joins one of simpler orbits, the simpler orbit
-    before, after : orbits on the branch on either side; `after` is None where the branch ends or joins a branch of
-        simpler orbits
-    turns : whether the branch turns back in the parameter there
+    value, error : parameter along which the branch was continued, and half the width of its bracket
+    at : the orbit at the bifurcation; if the branch joins a branch of simpler orbits there, the simpler orbit
+    before, after : orbits on the branch on either side; `after` is None if the branch ends or joins a branch of simpler
+        orbits
+    is_turning_point : whether the branch turns back in the parameter there
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
@@ -69,7 +69,7 @@ class Bifurcation:
     at: BranchOrbit
     before: BranchOrbit
     after: BranchOrbit | None
-    turns: bool
+    is_turning_point: bool
 
     def __repr__(self) -> str:
         at = f"{self.parameter} = {self.value:.12g} +- {self.error:.1g}"
@@ -77,7 +77,7 @@ class Bifurcation:
 
     @property
     def parameter(self) -> str:
-        """The parameter along which the branch was followed."""
+        """The parameter along which the branch was continued."""
         return self.before.line.parameter
 
     @property
@@ -87,40 +87,40 @@ class Bifurcation:
 
     @property
     def period(self) -> float:
-        """Period of the stable orbits there: at a period doubling twice that of the orbit itself."""
+        """Period of the orbits on the branch: on the doubled branch at a period doubling, twice that of `at`."""
         return round(self.before.orbit.period / self.at.orbit.period) * self.at.orbit.period
 
     @property
     def mean_distance(self) -> float:
-        """⟨J⟩ over a period of the orbit there."""
+        """⟨J⟩ over a period of the orbit at the bifurcation."""
         return self.at.orbit.mean_distance
 
     @property
     def stick_time(self) -> float:
-        """Shortest stick of the orbit there; 0 if it shrinks to nothing."""
-        shortest = float(self.at.contacts.stick.min())
+        """Shortest stick of the orbit at the bifurcation; 0 if its duration vanishes."""
+        shortest = float(self.at.grazing_distances.stick.min())
         none = NO_STICK * self.at.orbit.model.chain.own_units.time
         return 0.0 if self.kind == BifurcationKind.GRAZING and shortest < none else shortest
 
     @property
     def loses_stability(self) -> bool:
-        """Whether the orbits before are stable, and those after are unstable or do not exist."""
-        return self.before.multipliers.unstable == 0 and not self.keeps_stability
+        """Whether the orbits before are stable and those after are unstable or do not exist."""
+        return self.before.multipliers.unstable_count == 0 and not self.keeps_stability
 
     @property
     def keeps_stability(self) -> bool:
         """Whether the orbits on both sides are stable."""
         sides = (self.before, self.after)
-        return all(point is not None and point.multipliers.unstable == 0 for point in sides)
+        return all(point is not None and point.multipliers.unstable_count == 0 for point in sides)
 
 
 def locate_bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
-    """Yield the bifurcations along a followed branch in order, each computed on demand.
+    """Yield the bifurcations along a branch in order, each computed on demand.
 
     branch : as `follow` returns it; raises ValueError, one line, for anything else
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.3 and 10.2;
-    docs/bifurcations.md says how the kinds are distinguished.
+    docs/bifurcations.md explains how the kinds are distinguished.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, locate_bifurcations, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
@@ -136,20 +136,20 @@ def locate_bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
 def _bifurcations(branch: Sequence[BranchOrbit]) -> Iterator[Bifurcation]:
     for k, point in enumerate(branch):
         following = branch[k + 1] if k + 1 < len(branch) else None
-        if point.corner:
+        if point.is_grazing:
             yield _grazing(point, following)
-        elif following is not None and following.joined is not None:
-            yield from _joining(point, following)
+        elif following is not None and following.reduced_orbit is not None:
+            yield from _branch_points(point, following)
         elif following is not None:
             yield from _roots(point, following)
 
 
 def _grazing(point: BranchOrbit, following: BranchOrbit | None) -> Bifurcation:
     """Return the grazing at a corner; the error of the parameter is the remaining length to the corner."""
-    left = point.remaining * float(point.tangent[-1]) * point.line.rates[0]
-    turns = following is not None and point.tangent[-1] * following.tangent[-1] < 0.0
+    left = point.distance_to_grazing * float(point.tangent[-1]) * point.line.rates[0]
+    is_turning_point = following is not None and point.tangent[-1] * following.tangent[-1] < 0.0
     return Bifurcation(
-        point.value + left, max(abs(left), ROUNDING), BifurcationKind.GRAZING, point, point, following, turns
+        point.value + left, max(abs(left), ROUNDING), BifurcationKind.GRAZING, point, point, following, is_turning_point
     )
 
 
@@ -181,7 +181,7 @@ def _root(
         root = float(brentq(value, 0.0, max(known), xtol=TOLERANCE, rtol=1e-12))
         value(root)
         at = known[root]
-        for side in SIDES:
+        for side in BRACKETS:
             if value(root - side) * value(root + side) < 0.0:
                 break
         else:
@@ -190,23 +190,23 @@ def _root(
         return None
     low, high = known[root - side], known[root + side]
     kind = kind_at(at, key)
-    turns = first.tangent[-1] * second.tangent[-1] < 0.0
-    # Breaking a symmetry other than the mirror's, such as that of a ring, gives a multiplier +1 that is not a fold.
-    if kind is None or (kind == BifurcationKind.FOLD and not turns):
+    is_turning_point = first.tangent[-1] * second.tangent[-1] < 0.0
+    # If a symmetry other than the mirror symmetry breaks, such as that of a ring, a multiplier is +1 without a fold.
+    if kind is None or (kind == BifurcationKind.FOLD and not is_turning_point):
         return None
     error = max(0.5 * abs(high.value - low.value), abs(at.value - low.value), ROUNDING)
-    return root, Bifurcation(at.value, error, kind, at, first, second, turns)
+    return root, Bifurcation(at.value, error, kind, at, first, second, is_turning_point)
 
 
-def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcation]:
-    """Return the bifurcation at which a branch has joined one of simpler orbits, located along the latter."""
-    simple = following.joined
+def _branch_points(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcation]:
+    """Return the bifurcation at which a branch has joined a branch of simpler orbits, located along the latter."""
+    simple = following.reduced_orbit
     if simple is None:
         return []
     lengths = point.line.rates[0] * (point.length + following.length)
-    reach = NEAR_JOINT * abs(following.value - point.value) + lengths
+    reach = BRANCH_POINT_RANGE * abs(following.value - point.value) + lengths
     around = following.value - reach, following.value + reach
-    kind = _joint_kind(point.orbit, simple)
+    kind = _branch_point_kind(point.orbit, simple)
     found = []
     for upward in (True, False):
         found += [
@@ -223,18 +223,18 @@ def _joining(point: BranchOrbit, following: BranchOrbit) -> list[Bifurcation]:
 
 
 def kind_at(at: BranchOrbit, key: tuple[BifurcationKind, str]) -> BifurcationKind | None:
-    """Return the kind of bifurcation at the root of a function of multipliers; None for an ordinary saddle."""
+    """Return the kind of bifurcation at the root of a test function; None if it is no bifurcation."""
     kind, part = key
     for test in MULTIPLIER_TESTS:
         if test.kind == kind and test.is_root and not test.is_root(getattr(at.multipliers, part)):
             return None
     if kind == BifurcationKind.FOLD and at.orbit.symmetry != Symmetry.SYNCHRONIZED:
-        return _joint_kind(at.orbit, simplest(at.orbit, JOINED)) or kind
+        return _branch_point_kind(at.orbit, minimal_form(at.orbit, REDUCTION_DISTANCE)) or kind
     return kind
 
 
-def _joint_kind(orbit: PeriodicOrbit, simple: PeriodicOrbit) -> BifurcationKind | None:
-    """Return the kind of bifurcation at which orbits emerge from simpler ones; None if these are not simpler."""
+def _branch_point_kind(orbit: PeriodicOrbit, simple: PeriodicOrbit) -> BifurcationKind | None:
+    """Return the kind of bifurcation at which orbits branch off simpler ones; None if these are not simpler."""
     # A period doubling may break the mirror symmetry as well.
     if simple.period < 0.75 * orbit.period:
         return BifurcationKind.PERIOD_DOUBLING

@@ -1,9 +1,9 @@
-"""Corners of a branch of periodic orbits, where an orbit grazes: approaching and rounding them.
+"""Continuation of a branch of periodic orbits through a grazing, where the branch has a corner.
 
 The return map of a grazing orbit is continuous, but its derivative jumps, since a stop removes a velocity perturbation
 however short the stick is; the next terms are of order 3/2. The branch therefore has a corner, and Floquet multipliers
-jump. Either the orbit continues with one stick more or less, or both kinds of orbit exist on the same side of the
-grazing and meet there: the branch turns back in a (a non-smooth fold).
+jump. Either the orbit continues with one stick more or less, or the orbits with and without the stick exist on the same
+side of the grazing and meet there: the grazing is then a turning point of the branch (a non-smooth fold).
 
 If friction drops at the start of a slip, the return map itself jumps, and the branch ends.
 
@@ -22,119 +22,122 @@ from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.floquet import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
-from burridge_knopoff.periodic_orbits.grazing_distances import drops
-from burridge_knopoff.periodic_orbits.minimal_orbit import simpler_orbit
+from burridge_knopoff.periodic_orbits.grazing_distances import has_friction_drop
+from burridge_knopoff.periodic_orbits.minimal_orbit import reduced_orbit
 from burridge_knopoff.periodic_orbits.periodic import orbit_of
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, step_along, tangent_of
 
-# A corner is reached at this distance from it; limits on the number of steps, and on failed steps.
-REACHED = 1e-10
+# Distance at which a corner counts as reached, and limits on the number of steps and of failed steps.
+CORNER_DISTANCE = 1e-10
 STEPS = 32
 FAILURES = 14
 
-# First step towards a corner, as a fraction of the length within which it lies. Later steps are at most this fraction
-# of the predicted length; a factor applies after a successful and after a failed step.
+# First step towards a corner, as a fraction of the length within which it lies. Later steps are at most LARGEST_SHARE
+# of the predicted length; the share grows after a successful step, and share and step shrink after a failed step.
 PROBE = 1e-2
-CAUTIOUS = 0.97
-LONGER = 2.0
-SHORTER = 0.4
+LARGEST_SHARE = 0.97
+SHARE_GROWTH = 2.0
+STEP_REDUCTION = 0.4
 
-# Number of steps ahead within which a branch may join a branch of simpler orbits.
-STEPS_TO_JOINT = 2.0
+# Number of steps within which a branch may join a branch of simpler orbits.
+STEPS_TO_BRANCH_POINT = 2.0
 
-# Distance beyond a corner at which the tangent of the other side is taken, and lengths of the first steps to try.
-BEYOND = (1e-5, 1e-4, 1e-6)
+# Distances beyond a corner at which the tangent on the other side is computed, and lengths of the first steps, to be
+# tried in turn.
+OFFSETS_BEYOND = (1e-5, 1e-4, 1e-6)
 FIRST_STEPS = (1e-5, 1e-4, 1e-6, 1e-7)
 
 
-def corner_ahead(before: BranchOrbit, point: BranchOrbit) -> float:
-    """Return the length to the next grazing after two neighbouring points of a branch; infinite if none is ahead.
+def distance_to_grazing(before: BranchOrbit, point: BranchOrbit) -> float:
+    """Return the length to the next grazing, extrapolated from two neighbouring points; infinite if none is ahead.
 
-    The grazing distance falls in proportion to the length.
+    The grazing distance decreases in proportion to the length.
     """
-    last, here = before.contacts.values(), point.contacts.values()
+    last, here = before.grazing_distances.values(), point.grazing_distances.values()
     with np.errstate(invalid="ignore", divide="ignore"):
         ahead = here * point.length / (last - here)
     ahead = ahead[np.isfinite(ahead) & (ahead > 0.0)]
     return float(ahead.min()) if len(ahead) else np.inf
 
 
-def smooth_step(way: Sequence[BranchOrbit], length: float) -> BranchOrbit | None:
+def smooth_step(path: Sequence[BranchOrbit], length: float) -> BranchOrbit | None:
     """Return the orbit at a length from the end of a path along a branch; None if none with the same stops is found.
 
-    If it is a simpler orbit, traversed several times or seen without its symmetry, `joined` is that orbit. This counts
-    only if the path approaches it, as the multiplier that equals 1 there shows. A long step may jump to such an orbit,
-    which is not on the branch.
+    If it is a simpler orbit, traversed several times or described without its symmetry, `reduced_orbit` is that orbit.
+    It is accepted only if the path approaches it, so that the multiplier that equals 1 there approaches 1. A long step
+    may also jump to such an orbit that is not on the branch.
     """
-    point = way[-1]
+    point = path[-1]
     try:
         found = step_along(point, length)
     except OrbitError:
         return None
     if found.orbit.stop_counts != point.orbit.stop_counts:
         return None
-    simpler = simpler_orbit(found.orbit)
-    if simpler is not None and not _joint_ahead(way) <= STEPS_TO_JOINT * length:
+    simpler = reduced_orbit(found.orbit)
+    if simpler is not None and not _distance_to_branch_point(path) <= STEPS_TO_BRANCH_POINT * length:
         return None
-    return replace(found, joined=simpler)
+    return replace(found, reduced_orbit=simpler)
 
 
-def _joint_ahead(way: Sequence[BranchOrbit]) -> float:
-    """Return the length from the end of a path to where an approaching multiplier reaches 1; else infinite.
+def _distance_to_branch_point(path: Sequence[BranchOrbit]) -> float:
+    """Return the length from the end of a path to where an approaching multiplier reaches 1; otherwise infinite.
 
-    There a branch of orbits with less symmetry, or with twice the period, joins one of simpler orbits.
+    There a branch of orbits with less symmetry, or with twice the period, joins a branch of simpler orbits.
     """
-    if len(way) < 2:
+    if len(path) < 2:
         return np.inf
-    before, here = (critical_values(one.orbit, one.multipliers)[BifurcationKind.FOLD, "keeping"] for one in way[-2:])
+    before, here = (
+        critical_values(one.orbit, one.multipliers)[BifurcationKind.FOLD, "symmetry_preserving"] for one in path[-2:]
+    )
     nearer = abs(before) - abs(here)
-    return abs(here) * way[-1].length / nearer if nearer > 0.0 else np.inf
+    return abs(here) * path[-1].length / nearer if nearer > 0.0 else np.inf
 
 
-def come_to_corner(before: Sequence[BranchOrbit], length: float) -> list[BranchOrbit]:
-    """Return orbits ahead of a path up to the one next to the grazing that lies within about a length.
+def approach_grazing(before: Sequence[BranchOrbit], length: float) -> list[BranchOrbit]:
+    """Return the orbits that continue a path up to the grazing that lies within about a length.
 
-    Near a corner that turns back, a step may end on its other side, with other stops; it is repeated shorter.
+    Near a turning point a step may end on the other side, with different stops; it is repeated with a shorter length.
     """
-    way: list[BranchOrbit] = []
-    step, share, failures = PROBE * length, CAUTIOUS, 0
+    path: list[BranchOrbit] = []
+    step, share, failures = PROBE * length, LARGEST_SHARE, 0
     for _ in range(STEPS):
-        if sum(point.length for point in way) > length or failures > FAILURES:
+        if sum(point.length for point in path) > length or failures > FAILURES:
             break
-        known = [*before[-2:], *way]
+        known = [*before[-2:], *path]
         found = smooth_step(known, step)
         if found is None:
             failures += 1
-            share *= SHORTER
-            step *= SHORTER
-            if step < REACHED:
+            share *= STEP_REDUCTION
+            step *= STEP_REDUCTION
+            if step < CORNER_DISTANCE:
                 break
             continue
-        ahead = corner_ahead(known[-1], found)
-        way.append(found)
-        if found.joined is not None:
+        ahead = distance_to_grazing(known[-1], found)
+        path.append(found)
+        if found.reduced_orbit is not None:
             break
-        if ahead < REACHED:
-            return [*way[:-1], replace(found, remaining=ahead)]
-        share = min(LONGER * share, CAUTIOUS)
+        if ahead < CORNER_DISTANCE:
+            return [*path[:-1], replace(found, distance_to_grazing=ahead)]
+        share = min(SHARE_GROWTH * share, LARGEST_SHARE)
         step = min(share * ahead, length)
-    return way
+    return path
 
 
-def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
+def switch_branch(point: BranchOrbit) -> BranchOrbit | None:
     """Return an orbit on the other side of the grazing that a branch has reached; None if the branch ends there."""
     orbit, line = point.orbit, point.line
-    if drops(orbit.model):
+    if has_friction_drop(orbit.model):
         return None
     blocks = orbit.model.blocks
     own = line.units.state(blocks)
     change = point.tangent[:-2] / max(float(np.abs(point.tangent[:-2] / own).max()), 1e-3)
-    for beyond in BEYOND:
+    for beyond in OFFSETS_BEYOND:
         vector = orbit.reference.vector() + beyond * change
         state = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)
         try:
             there = line.coordinate(orbit.model) + beyond * float(point.tangent[-1])
-            model = line.model(orbit.model, max(there, line.least))
+            model = line.model(orbit.model, max(there, line.lower_bound))
             tangent = tangent_of(orbit_of(model, state, orbit.return_time, orbit.symmetry), line)
         except OrbitError:
             continue
@@ -144,14 +147,14 @@ def turn_corner(point: BranchOrbit) -> BranchOrbit | None:
                     found = step_along(point, length, side * tangent)
                 except OrbitError:
                     continue
-                # Reject an orbit without stops: such motion is neutral, as at a = 0. Reject several turns of a simpler
-                # orbit beside the corner, which do not continue the branch, and the mirror image of the path itself:
-                # there the corner is where orbits of less symmetry begin.
+                # Reject an orbit without stops, which is neutral, as at a = 0. Reject multiple traversals of a simpler
+                # orbit near the corner, which does not continue the branch. Reject the mirror image of the path itself:
+                # its corner is then the point at which less symmetric orbits begin.
                 signature = found.orbit.stop_counts
                 if (
                     signature not in (orbit.stop_counts, orbit.stop_counts[::-1])
                     and any(signature)
-                    and simpler_orbit(found.orbit) is None
+                    and reduced_orbit(found.orbit) is None
                 ):
                     return found
     return None

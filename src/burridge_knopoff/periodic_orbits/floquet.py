@@ -1,12 +1,12 @@
 """Floquet multipliers of a periodic orbit, without that of the flow, and functions that vanish at its bifurcations.
 
 For an orbit that is its own mirror image after half a period, everything is computed from the half return: its
-multipliers ν give those of the whole period, μ = ν². ν = −1 breaks the symmetry (a pitchfork, μ = +1), ν = +1 is a
-fold. A single μ = −1 would need ν = i and ν = −i at once. Such orbits do not double their period before they have lost
-the symmetry.
+multipliers ν give those of the whole period, μ = ν². ν = −1 breaks the symmetry (a pitchfork, μ = +1), and ν = +1 is a
+fold. A single μ = −1 would require both ν = i and ν = −i. Such orbits therefore lose the symmetry before they can
+double their period.
 
 If mirror blocks move synchronously, symmetric and symmetry-breaking perturbations do not mix: +1 is a fold among the
-former and a pitchfork among the latter, −1 a period doubling among both.
+former and a pitchfork among the latter, and −1 is a period doubling among both.
 
 References: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2;
 J. W. Swift and K. Wiesenfeld, Phys. Rev. Lett. 52 (1984) 705.
@@ -21,17 +21,17 @@ import numpy as np
 from burridge_knopoff.periodic_orbits.bifurcation_kind import MULTIPLIER_TESTS, BifurcationKind
 from burridge_knopoff.periodic_orbits.flow import rate
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
-from burridge_knopoff.periodic_orbits.return_map import directions, parting
+from burridge_knopoff.periodic_orbits.return_map import allowed_directions, symmetry_breaking_directions
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.values import instance_of
 
 
 @dataclass(frozen=True, eq=False)
 class Multipliers:
-    """Multipliers of a return, complex, without that of the flow; largest modulus first.
+    """Complex multipliers of a return, without that of the flow; largest modulus first.
 
-    keeping : of all perturbations, or of the mirror-symmetric ones if mirror blocks move synchronously
-    breaking : of the symmetry-breaking perturbations; empty unless mirror blocks move synchronously
+    symmetry_preserving : of all perturbations, or only of the mirror-symmetric ones if mirror blocks move synchronously
+    symmetry_breaking : of the symmetry-breaking perturbations; empty unless mirror blocks move synchronously
     power : number of returns in a period
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, multipliers, simulate
@@ -39,42 +39,42 @@ class Multipliers:
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
     >>> found = multipliers(orbit)
-    >>> abs(found.whole).round(4).tolist(), found.unstable
+    >>> abs(found.whole).round(4).tolist(), found.unstable_count
     ([0.3786, 0.0, 0.0, 0.0, 0.0], 0)
     """
 
-    keeping: np.ndarray
-    breaking: np.ndarray
+    symmetry_preserving: np.ndarray
+    symmetry_breaking: np.ndarray
     power: int
 
     def __repr__(self) -> str:
         leading = ", ".join(f"{value:.6g}" for value in self.whole[:3])
-        return f"<Multipliers of a period: {leading}{', ...' * (len(self.whole) > 3)}; {self.unstable} unstable>"
+        return f"<Multipliers of a period: {leading}{', ...' * (len(self.whole) > 3)}; {self.unstable_count} unstable>"
 
     @property
     def whole(self) -> np.ndarray:
         """All multipliers of a whole period, largest modulus first."""
-        both = np.concatenate([self.keeping, self.breaking]) ** self.power
+        both = np.concatenate([self.symmetry_preserving, self.symmetry_breaking]) ** self.power
         return both[np.argsort(-np.abs(both), kind="stable")]
 
     @property
     def transverse(self) -> complex:
         """Leading multiplier of symmetry-breaking perturbations; NaN unless mirror blocks move synchronously."""
-        return complex(self.breaking[0]) if len(self.breaking) else complex(np.nan)
+        return complex(self.symmetry_breaking[0]) if len(self.symmetry_breaking) else complex(np.nan)
 
     @property
-    def unstable(self) -> int:
+    def unstable_count(self) -> int:
         """Number of multipliers outside the unit circle."""
-        return int((np.abs(np.concatenate([self.keeping, self.breaking])) > 1.0).sum())
+        return int((np.abs(np.concatenate([self.symmetry_preserving, self.symmetry_breaking])) > 1.0).sum())
 
 
 def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     """Return the Floquet multipliers of an orbit; the velocities of stuck blocks have multiplier 0.
 
-    The flow direction f is an eigenvector of the return with eigenvalue 1. The restriction to its orthogonal complement
-    has the other eigenvalues, however close to 1 they are.
+    The direction of the flow is an eigenvector of the return with eigenvalue 1. The restriction to its orthogonal
+    complement has the other eigenvalues, however close to 1 they are.
 
-    orbit : of any chain; the multiplier of the flow, 1, is left out
+    orbit : of any chain; the multiplier 1 of the flow is excluded
 
     Source: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Sections 5.4, 7.4 and 10.2.
 
@@ -82,12 +82,12 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
     >>> run = simulate(model, initial="plus", transient=0, window=10)
     >>> orbit = limit_cycle(model, model.begin(run.initial), settling=1000.0)
-    >>> multipliers(orbit).unstable == 0
+    >>> multipliers(orbit).unstable_count == 0
     True
     """
-    # In the chain's own units, or positions would outweigh velocities where times are long.
+    # In the chain's own units: otherwise positions would outweigh velocities in slow chains.
     nothing = np.zeros(instance_of(orbit, PeriodicOrbit, "orbit").model.blocks, dtype=bool)
-    keeping, breaking = directions(nothing, orbit.symmetry), parting(nothing)
+    keeping, breaking = allowed_directions(nothing, orbit.symmetry), symmetry_breaking_directions(nothing)
     if orbit.symmetry != Symmetry.SYNCHRONIZED:
         breaking = breaking[:, :0]
     units = orbit.model.chain.own_units
@@ -105,15 +105,19 @@ def _sorted(values: np.ndarray) -> np.ndarray:
 
 
 def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> dict[tuple[BifurcationKind, str], float]:
-    """Return, for each kind of bifurcation and part of the perturbations, a smooth function that changes sign there.
+    """Return the values of the test functions, {(kind of bifurcation, part of the perturbations): value}.
 
-    They are those of MULTIPLIER_TESTS, such as the products over multipliers of μ − 1.
+    Each is a smooth function that changes sign at the bifurcation, such as the product of all μ − 1; see
+    MULTIPLIER_TESTS.
     """
     found = multipliers(orbit) if found is None else found
     return {
         (test.kind, part): float(test.value(own).real)
-        for part, own in (("keeping", found.keeping), ("breaking", found.breaking))
+        for part, own in (
+            ("symmetry_preserving", found.symmetry_preserving),
+            ("symmetry_breaking", found.symmetry_breaking),
+        )
         if len(own)
         for test in MULTIPLIER_TESTS
-        if test.belongs(part, orbit.symmetry)
+        if test.is_applicable(part, orbit.symmetry)
     }

@@ -1,4 +1,4 @@
-"""Integration of a state over a time: the state at the end, the events, the mean of J."""
+"""Integration of a state over a time: the final state, the events and the mean of J."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from burridge_knopoff.running.runner import Runner, new_observer
 
 
 class OrbitError(ValueError):
-    """There is no such orbit, or it was not found; the message gives the reason.
+    """A periodic orbit does not exist or was not found; the message gives the reason.
 
     >>> from burridge_knopoff import Chain, Model, OrbitError, law_of, synchronized_orbit
     >>> try:
@@ -29,17 +29,17 @@ def model_at(model: Model, a: float) -> Model:
 
 
 def flow(model: Model, start: ChainState, time: float) -> tuple[Runner, tuple[tuple[float, int, int], ...]]:
-    """Return the runner after a time, and the events on the way: time, block (0 …) and kind (0 stop, 1 start).
+    """Return the runner after a time, and the events until then: time, block (0 …) and kind (0 stop, 1 start).
 
     Raises OrbitError if the run does not complete.
     """
     runner = Runner(model, keep_events=True)
-    after(runner, start, time)
+    state_after(runner, start, time)
     return runner, tuple(zip(*(values.tolist() for values in runner.events()), strict=True))
 
 
-def after(runner: Runner, start: ChainState, time: float) -> ChainState:
-    """Return the state of a runner a time after a given state.
+def state_after(runner: Runner, start: ChainState, time: float) -> ChainState:
+    """Return the state a time after a given state, integrated by a runner.
 
     Raises OrbitError if the run does not complete.
     """
@@ -52,7 +52,7 @@ def after(runner: Runner, start: ChainState, time: float) -> ChainState:
 def mean_distance(model: Model, start: ChainState, period: float) -> float:
     """Return ⟨J⟩ over one period, starting from a state on an orbit."""
     observer = new_observer(model, [0.0, period])
-    after(Runner(model, observer=observer), start, period)
+    state_after(Runner(model, observer=observer), start, period)
     return float(observer.results()["batch_integral"][0]) / period
 
 
@@ -65,5 +65,5 @@ def rate(model: Model, at: ChainState) -> np.ndarray:
 
 
 def _products(vectors: np.ndarray, of: np.ndarray) -> np.ndarray:
-    """Return the product of each row with a vector, summed in the same order on every machine."""
+    """Return the product of each row with a vector, with the same order of summation on every machine."""
     return (vectors * of).sum(axis=1)

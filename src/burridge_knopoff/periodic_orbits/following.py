@@ -1,4 +1,4 @@
-"""Continuation of periodic orbits in a parameter: through folds and around grazings, stable or unstable."""
+"""Continuation of stable and unstable periodic orbits in a parameter, through folds and grazings."""
 
 from __future__ import annotations
 
@@ -8,71 +8,71 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
-from burridge_knopoff.periodic_orbits.border_collision import come_to_corner, smooth_step, turn_corner
+from burridge_knopoff.periodic_orbits.border_collision import approach_grazing, smooth_step, switch_branch
 from burridge_knopoff.periodic_orbits.floquet import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
-from burridge_knopoff.periodic_orbits.minimal_orbit import simpler_orbit, simplest
+from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form, reduced_orbit
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch, line_of
 from burridge_knopoff.values import instance_of, real_number, refusal
 
-# Distance, for v = 0.1 in the chain's own units, within which an orbit about to become more symmetric, or of half the
-# period, returns to its mirror image, or to itself after half its period.
-JOINED = 3e-2
+# Distance, for v = 0.1 in the chain's own units, within which an orbit must return to its mirror image, or to itself
+# after half its period, to be about to become more symmetric or to halve its period.
+REDUCTION_DISTANCE = 3e-2
 
-# Growth of a step after a successful one.
-FASTER = 2.0
+# Factor by which the length of a step grows after a successful step.
+STEP_GROWTH = 2.0
 
 
 @dataclass(frozen=True)
-class Following:
-    """Options of the continuation: lengths of steps along the branch, mostly in a, and the maximum number of orbits.
+class ContinuationSettings:
+    """Settings of the continuation: lengths of steps along the branch, mostly in a, and the maximum number of orbits.
 
-    Lengths in a are in the chain's own unit of it, `Chain.own_units.slope`: 1 for the paper's chain, and 2 for one that
-    moves half as fast, so that friction has to fall twice as steeply.
+    Lengths in a are in the chain's own unit of a, `Chain.own_units.slope`: 1 for the paper's chain, and 2 for a chain
+    that moves half as fast, for which friction has to fall twice as steeply.
 
-    Along another parameter, the unit of length is the change of it that changes the return of the orbit by about as
-    much as a change of 1 in a does on a short orbit. On long orbits, whose return changes faster, the unit is smaller.
+    Along another parameter, the unit of length is the change that moves the return of the orbit by about as much as a
+    change of 1 in a does for a short orbit. For long orbits, whose return changes faster, the unit is smaller.
 
-    >>> from burridge_knopoff import Following
-    >>> Following(most_orbits=20).largest_step
+    >>> from burridge_knopoff import ContinuationSettings
+    >>> ContinuationSettings(max_orbits=20).largest_step
     0.0005
     """
 
     first_step: float = 1e-4
     largest_step: float = 5e-4
-    least_step: float = 1e-9
-    most_orbits: int = 200
+    smallest_step: float = 1e-9
+    max_orbits: int = 200
 
 
-FOLLOWING = Following()
+CONTINUATION = ContinuationSettings()
 
 
 def follow(
     orbit: PeriodicOrbit,
     interval: tuple[float, float] = (-math.inf, math.inf),
-    settings: Following = FOLLOWING,
+    settings: ContinuationSettings = CONTINUATION,
     *,
     parameter: str = "a",
     upward: bool = True,
-    enough: Callable[[list[BranchOrbit]], bool] = lambda points: False,
+    is_complete: Callable[[list[BranchOrbit]], bool] = lambda points: False,
 ) -> list[BranchOrbit]:
-    """Return the orbits of a branch starting from one of them, until a parameter leaves an interval.
+    """Return the orbits of a branch, continued from one of them until a parameter leaves an interval.
 
-    orbit : stable or unstable, of any chain; reduced to its simplest form first
-    interval : (low, high) of the parameter; by default as far as the branch goes
-    settings : lengths of steps; upward : whether the parameter grows at first
-    parameter : a, v, a number of the law such as sigma, one of the chain such as coupling, or of one block or spring
-        such as `mass[3]` (`Model.at`)
-    enough : called after each orbit except those on a corner, with all orbits so far
+    orbit : stable or unstable, of any chain; first reduced to its minimal form
+    interval : (low, high) of the parameter; by default unbounded
+    settings : lengths of steps; upward : whether the parameter increases at first
+    parameter : a, v, a parameter of the law such as sigma, one of the chain such as coupling, or that of one block or
+        spring such as `mass[3]` (`Model.at`)
+    is_complete : called with all orbits so far after each orbit that does not graze; ends the branch if true
 
-    A grazing orbit is in the list with `corner` set; the next orbit, if there is one, is on the other side. The branch
-    also ends where it joins one of simpler orbits, where no step is short enough, and at the `settings.most_orbits`-th
-    orbit, or the next one if that is on a corner. If the parameter is then still within the interval, the rest of the
-    branch has not been followed.
+    A grazing orbit is in the list with `is_grazing` set; the next orbit, if there is one, is on the other side. The
+    branch also ends where it joins a branch of simpler orbits, where steps become too short, and at the
+    `settings.max_orbits`-th orbit, or at the next one if that one grazes. If the parameter is then still within the
+    interval, the rest of the branch has not been followed.
 
-    Raises OrbitError if it cannot start, for example if the orbit is not within the interval, and ValueError for an
-    invalid interval, and for what is no parameter of the model.
+    Raises OrbitError if the continuation cannot start, for example if the orbit is outside the interval, and ValueError
+    for an invalid interval or a name that is not a parameter of the model.
 
     Source: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 (pseudo-arclength);
     docs/bifurcations.md explains how a branch continues where its orbit grazes.
@@ -83,50 +83,50 @@ def follow(
     >>> branch = follow(orbit, (0.086, 0.0875))
     >>> [round(point.orbit.a, 4) for point in branch]
     [0.0865, 0.0866, 0.0868, 0.0872, 0.0877]
-    >>> [point.multipliers.unstable for point in branch]
+    >>> [point.multipliers.unstable_count for point in branch]
     [0, 0, 0, 1, 1]
     >>> branch = follow(orbit, (0.9, 1.0), parameter="coupling", upward=False)
     >>> round(branch[-1].value, 3) <= 0.9, branch[-1].orbit.a
     (True, 0.0865)
     """
-    low, high = ends_of(interval)
+    low, high = interval_ends(interval)
     instance_of(orbit, PeriodicOrbit, "orbit")
-    instance_of(settings, Following, "settings")
+    instance_of(settings, ContinuationSettings, "settings")
     line = line_of(orbit, parameter)
     if not low <= line.value(orbit.model) <= high:
         raise OrbitError(f"{line.place(orbit.model)}: not within the range {low!r} to {high!r}")
-    points = [begin_branch(simpler_orbit(orbit) or orbit, upward, line)]
+    points = [begin_branch(reduced_orbit(orbit) or orbit, upward, line)]
     length = settings.first_step
 
-    def goes_on() -> bool:
-        return len(points) < settings.most_orbits and low <= points[-1].value <= high and not enough(points)
+    def continues() -> bool:
+        return len(points) < settings.max_orbits and low <= points[-1].value <= high and not is_complete(points)
 
-    while goes_on():
+    while continues():
         found = smooth_step(points, length)
         if found is not None:
-            way = [found]
-            length = min(FASTER * length, settings.largest_step)
+            path = [found]
+            length = min(STEP_GROWTH * length, settings.largest_step)
         else:
-            way = come_to_corner(points, length)
-            length = max(0.1 * length, way[-1].length if way else 0.0)
-        for point in way:
-            simpler = point.joined or _passed(points[-1], point)
-            points.append(replace(point, joined=simpler))
-            if simpler is not None or not (point.corner or point is way[-1] or goes_on()):
+            path = approach_grazing(points, length)
+            length = max(0.1 * length, path[-1].length if path else 0.0)
+        for point in path:
+            simpler = point.reduced_orbit or _passed_orbit(points[-1], point)
+            points.append(replace(point, reduced_orbit=simpler))
+            if simpler is not None or not (point.is_grazing or point is path[-1] or continues()):
                 return points
-        if points[-1].corner:
-            turned = turn_corner(points[-1])
+        if points[-1].is_grazing:
+            turned = switch_branch(points[-1])
             if turned is None:
                 break
             points.append(turned)
             length = settings.first_step
-        elif length < settings.least_step:
+        elif length < settings.smallest_step:
             break
     return points
 
 
-def ends_of(interval: Any) -> tuple[float, float]:
-    """Return the ends of an interval; raises ValueError, one line, if it has none."""
+def interval_ends(interval: Any) -> tuple[float, float]:
+    """Return the ends of an interval; raises ValueError, one line, if it is not an interval."""
     try:
         low, high = (real_number(value) for value in interval)
     except (TypeError, ValueError):
@@ -136,17 +136,18 @@ def ends_of(interval: Any) -> tuple[float, float]:
     return low, high
 
 
-def _passed(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:
-    """Return the simpler orbit that a branch has passed, on to its own mirror image; None if there is none.
+def _passed_orbit(first: BranchOrbit, second: BranchOrbit) -> PeriodicOrbit | None:
+    """Return the simpler orbit between two points of a branch, beyond which it repeats its mirror image; None if none.
 
-    The branch turns back there, but the multiplier only touches 1, unlike at a fold.
+    The parameter turns back at such an orbit, but the multiplier only touches 1, unlike at a fold.
     """
     if first.tangent[-1] * second.tangent[-1] > 0.0:
         return None
     signs = [
-        critical_values(point.orbit, point.multipliers)[BifurcationKind.FOLD, "keeping"] for point in (first, second)
+        critical_values(point.orbit, point.multipliers)[BifurcationKind.FOLD, "symmetry_preserving"]
+        for point in (first, second)
     ]
     if signs[0] * signs[1] < 0.0:
         return None
-    found = simplest(first.orbit, JOINED)
+    found = minimal_form(first.orbit, REDUCTION_DISTANCE)
     return None if found is first.orbit else found

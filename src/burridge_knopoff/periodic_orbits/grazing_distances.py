@@ -1,9 +1,10 @@
 """Grazing distances: how far a periodic orbit is from gaining or losing a stick or a slip; 0 at a grazing.
 
-A slip splits where its least speed falls to 0. A stick is born there, whose length grows as a square root, so that its
-square is smooth. Likewise a stick splits where the spring force within it rises to the threshold, and a slip is born.
-In the other direction the shortest stick or slip shrinks to nothing. If friction drops at the start of a slip, no stick
-can shrink to nothing: it disappears in a jump, where the slip before it comes to rest without deceleration.
+A slip splits where its smallest speed falls to 0. The stick that appears there has a duration that grows as a square
+root, so that its square is smooth. Likewise a stick splits where the spring force within it rises to the threshold, and
+a slip appears. In the opposite direction the duration of the shortest stick or slip vanishes. If friction drops at the
+start of a slip, no stick can become arbitrarily short: a stick disappears in a jump, where the slip before it comes to
+rest without deceleration.
 
 Reference: M. di Bernardo, C. J. Budd, A. R. Champneys and P. Kowalczyk, "Piecewise-smooth Dynamical Systems" (Springer
 2008), Chapter 8 (sliding bifurcations).
@@ -20,37 +21,37 @@ import numpy as np
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.own_units import OwnUnits
-from burridge_knopoff.periodic_orbits.flow import after
+from burridge_knopoff.periodic_orbits.flow import state_after
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner, new_observer
 
-# Longest time, in the chain's own unit, between the states searched for least speeds and greatest forces, and longest
-# phase of the fastest mode. The Hermite cubic through two of them finds the instant to 1e-5; a step along the
-# acceleration there does the rest.
+# Longest time, in the chain's own unit, between the states searched for smallest speeds and largest forces, and longest
+# phase of the fastest mode in that time. The Hermite cubic through two states locates the instant to 1e-5; a
+# correction with the acceleration there gives full accuracy.
 SPACING = 0.1
 LARGEST_PHASE = 0.245
 
-# Number of instants of least speed of a block that are refined, the slowest ones.
-SLOWEST = 2
+# Number of speed minima of each block that are refined: the smallest ones.
+REFINED_MINIMA = 2
 
-# Number of samples whose derivatives are computed at a time: few enough for a fast cache.
+# Number of samples whose derivatives are computed at a time; small enough for a fast cache.
 CHUNK = 4096
 
 # Rounding errors of accelerations and rates of forces, in the chain's own units.
 ROUNDING = 1e-12
 
 # Directions in which a block can slip, by contact.
-SIDES = {"one_sided": (1.0,), "symmetric": (1.0, -1.0)}
+SLIP_DIRECTIONS = {"one_sided": (1.0,), "symmetric": (1.0, -1.0)}
 
 
 @dataclass(frozen=True, eq=False)
-class Contacts:
-    """The grazing distances of each block, shape (blocks,); infinite if the orbit has no such piece.
+class GrazingDistances:
+    """The grazing distances of each block, shape (blocks,); infinite if the orbit has no such stick or slip.
 
-    stick, slip : length of its shortest stick and slip
-    speed : least speed within a slip; force : least distance of the spring force from the threshold within a stick
-    deceleration : the least at the end of a slip, if friction drops at the start of one
+    stick, slip : duration of the shortest stick and slip
+    speed : smallest speed within a slip; force : smallest distance of the spring force from the threshold in a stick
+    deceleration : the smallest at the end of a slip, if friction drops at the start of a slip
     """
 
     stick: np.ndarray
@@ -60,17 +61,17 @@ class Contacts:
     deceleration: np.ndarray
 
     def values(self) -> np.ndarray:
-        """Return the quantities that fall to 0 in proportion to the distance from a grazing, shape (5 blocks,)."""
+        """Return quantities that fall to 0 in proportion to the distance from a grazing, shape (5 blocks,)."""
         return np.concatenate([self.stick**2, self.slip**2, self.speed, self.force, self.deceleration**2])
 
-    def shares(self, units: OwnUnits) -> np.ndarray:
-        """Return these quantities in a chain's own units, in which they can be compared."""
+    def in_own_units(self, units: OwnUnits) -> np.ndarray:
+        """Return these quantities in the own units of a chain, in which they can be compared."""
         of = [units.time**2, units.time**2, units.velocity, units.force, units.acceleration**2]
         return self.values() / np.repeat(of, len(self.stick))
 
 
-def drops(model: Model) -> bool:
-    """Tell whether friction drops at the start of a slip."""
+def has_friction_drop(model: Model) -> bool:
+    """Return whether friction drops at the start of a slip."""
     return float(model.law(0.0)) < 1.0 - ROUNDING
 
 
@@ -79,13 +80,13 @@ def longest_spacing(chain: Chain) -> float:
     return min(SPACING * chain.own_units.time, LARGEST_PHASE / chain.highest_rate)
 
 
-def contacts(orbit: PeriodicOrbit) -> Contacts:
+def grazing_distances(orbit: PeriodicOrbit) -> GrazingDistances:
     """Return the grazing distances of an orbit; raises OrbitError if the orbit cannot be integrated."""
     model, units = orbit.model, orbit.model.chain.own_units
     slow, slack = ROUNDING * units.acceleration, ROUNDING * units.force / units.time
     lengths = [_shortest(orbit, block, kind) for kind in (0, 1) for block in range(model.blocks)]
     longest = longest_spacing(model.chain)
-    # On a symmetric orbit the second half shows for a block what the first half shows for its mirror block.
+    # On a symmetric orbit a block repeats in the second half the motion of its mirror block in the first half.
     until = orbit.return_time
     time, spacing = np.linspace(0.0, until, math.ceil(until / longest) + 1, retstep=True)
     observer = new_observer(model, 2 * [until + longest], trajectory_time=time, section_only=True)
@@ -101,16 +102,16 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     chunks = [slice(first, first + CHUNK) for first in range(0, len(time), CHUNK)]
     parts = [_derivatives(model, position[chunk], velocity[chunk], stuck[chunk]) for chunk in chunks]
     derivatives = [np.concatenate(values) for values in zip(*parts, strict=True)]
-    # Backward slip and backward pull are treated as their mirror images.
-    for side in SIDES[model.contact]:
+    # Backward slips and backward forces are treated with the sign reversed.
+    for side in SLIP_DIRECTIONS[model.contact]:
         force, force_rate, acceleration, jerk = (side * values for values in derivatives)
         moving = side * velocity
         for block in range(model.blocks):
             slips = whole[:, block] & ~stuck[:-1, block] & (moving[:-1, block] > 0.0) & (moving[1:, block] > 0.0)
-            turns = slips & (acceleration[:-1, block] < -slow) & (acceleration[1:, block] > slow)
-            for k in sorted(np.flatnonzero(turns), key=lambda k: moving[k, block])[:SLOWEST]:
+            minima = slips & (acceleration[:-1, block] < -slow) & (acceleration[1:, block] > slow)
+            for k in sorted(np.flatnonzero(minima), key=lambda k: moving[k, block])[:REFINED_MINIMA]:
                 share = _root(acceleration[k : k + 2, block], jerk[k : k + 2, block] * spacing)
-                at = after(again, ChainState(position[k], velocity[k], stuck[k]), share * spacing)
+                at = state_after(again, ChainState(position[k], velocity[k], stuck[k]), share * spacing)
                 here = _derivatives(model, at.position[None], at.velocity[None], at.stuck[None])
                 change, second = float(here[2][0, block]), float(here[3][0, block])
                 speed[block] = min(speed[block], side * (at.velocity[block] - 0.5 * change**2 / second))
@@ -123,22 +124,22 @@ def contacts(orbit: PeriodicOrbit) -> Contacts:
     if orbit.symmetry == Symmetry.SYMMETRIC:
         speed, gap = (np.minimum(least, least[::-1]) for least in (speed, gap))
     blocks = model.blocks
-    return Contacts(np.array(lengths[:blocks]), np.array(lengths[blocks:]), speed, gap, _decelerations(orbit))
+    return GrazingDistances(np.array(lengths[:blocks]), np.array(lengths[blocks:]), speed, gap, _decelerations(orbit))
 
 
 def _decelerations(orbit: PeriodicOrbit) -> np.ndarray:
-    """Return the least deceleration at the stops of each block; infinite where friction does not drop."""
+    """Return the smallest deceleration at the stops of each block; infinite if friction does not drop."""
     model = orbit.model
     least = np.full(model.blocks, np.inf)
-    if drops(model):
+    if has_friction_drop(model):
         runner = Runner(model, keep_events=True)
-        after(runner, orbit.reference, orbit.period)
+        state_after(runner, orbit.reference, orbit.period)
         events = runner.log.events.values()
         for number, threshold in enumerate(model.chain.thresholds):
             own = events[events[:, 0] == number + 1]
             position, velocity = np.split(own[:, 2:], 2, axis=1)
             force = _derivatives(model, position, velocity, velocity == 0.0)[0][:, number]
-            # A slip goes in the direction of the force at its start, the event before its stop.
+            # A slip has the direction of the force at its start, the event before its stop.
             along = np.sign(np.roll(force, 1)) * force
             decelerations = (threshold * float(model.law(0.0)) - along) / model.chain.masses[number]
             least[number] = decelerations[own[:, 1] == 0].min(initial=np.inf)
@@ -149,9 +150,9 @@ def _shortest(orbit: PeriodicOrbit, block: int, kind: int) -> float:
     """Return the shortest time from an event of a kind to the next event of the block; infinite if there is none."""
     time, event = orbit.events_of(block)
     length = np.diff(time, append=time[:1] + orbit.period)[event == kind]
-    # A block that reverses stops and starts at one instant: no stick shrinks there.
-    turns = (length == 0.0) & (orbit.model.contact == "symmetric")
-    return float(length[~turns].min(initial=np.inf))
+    # A block that reverses stops and starts at the same time: this is not a short stick.
+    reversals = (length == 0.0) & (orbit.model.contact == "symmetric")
+    return float(length[~reversals].min(initial=np.inf))
 
 
 def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray, np.ndarray]]:

@@ -1,6 +1,6 @@
-"""Orbits of one branch at requested friction parameters, each continued from the nearest known orbit.
+"""Orbits of one branch at requested values of a, each continued from the nearest known orbit.
 
-Steps in a cannot go around folds, unlike those of `following`; they can pass the corner where an orbit only grazes.
+Steps in a cannot pass folds, unlike those of `following`, but they can pass a grazing that is no turning point.
 """
 
 from __future__ import annotations
@@ -9,36 +9,36 @@ import math
 
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
-from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit, refined
+from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit, refine_orbit
 
-# Steps in a of the continuation, in the chain's own unit of it; sticks vanish as the square root of a as a falls to 0.
+# Largest and smallest steps in a, in the chain's own unit of a. As a → 0 sticks vanish as the square root of a.
 LARGEST_STEP = 0.02
-LEAST_STEP = 1e-5
+SMALLEST_STEP = 1e-5
 
-# Largest relative change of the period in a step: a larger change means another orbit.
-FARTHEST = 0.1
+# Largest relative change of the period in a step: a larger change indicates another orbit.
+LARGEST_PERIOD_CHANGE = 0.1
 
 
 class KnownOrbits:
-    """Orbits of a branch by their a, solved to rounding.
+    """Orbits of a branch by their a, solved to rounding accuracy.
 
     first : an orbit of the branch, stable or unstable, of any chain
     """
 
     def __init__(self, first: PeriodicOrbit) -> None:
-        self.known: dict[float, PeriodicOrbit] = {first.a: refined(first)}
+        self.known: dict[float, PeriodicOrbit] = {first.a: refine_orbit(first)}
 
     @property
     def model(self) -> Model:
-        """The model of the orbits, at the a of one of them."""
+        """The model of the orbits, at the a of the first one."""
         return next(iter(self.known.values())).model
 
     def at(self, a: float) -> PeriodicOrbit:
-        """Return the orbit at a > 0; raises OrbitError if it is lost on the way, and for other a."""
+        """Return the orbit at a > 0; raises OrbitError if the continuation fails on the way, and for other a."""
         if a in self.known:
             return self.known[a]
         if not a > 0.0:
-            raise OrbitError(f"a = {a!r}: no orbit is looked for: 0 < a")
+            raise OrbitError(f"a = {a!r}: no orbits are searched for; expected 0 < a")
         here = min(self.known, key=lambda known: abs(known - a))
         unit = self.model.chain.own_units.slope
         step = largest = unit * LARGEST_STEP
@@ -46,23 +46,23 @@ class KnownOrbits:
             reach = min(step, 0.5 * here) if a < here else step
             there = a if abs(a - here) <= reach else here + math.copysign(reach, a - here)
             try:
-                self.known[there] = beside(self.known[here], there)
+                self.known[there] = nearby_orbit(self.known[here], there)
             except OrbitError as error:
                 step = 0.5 * abs(there - here)
-                if step < unit * LEAST_STEP * min(1.0, here / largest):
+                if step < unit * SMALLEST_STEP * min(1.0, here / largest):
                     raise OrbitError(f"{error}, on the way to a = {a!r}") from None
                 continue
             here = there
         return self.known[a]
 
 
-def beside(orbit: PeriodicOrbit, a: float) -> PeriodicOrbit:
-    """Return the continuation of an orbit to a nearby a, solved to rounding.
+def nearby_orbit(orbit: PeriodicOrbit, a: float) -> PeriodicOrbit:
+    """Return the continuation of an orbit to a nearby a, solved to rounding accuracy.
 
     Raises OrbitError if it is not found.
     """
     model = model_at(orbit.model, a)
-    found = refined(find_periodic_orbit(model, orbit.reference, orbit.return_time, orbit.symmetry))
-    if abs(found.period - orbit.period) > FARTHEST * orbit.period:
+    found = refine_orbit(find_periodic_orbit(model, orbit.reference, orbit.return_time, orbit.symmetry))
+    if abs(found.period - orbit.period) > LARGEST_PERIOD_CHANGE * orbit.period:
         raise OrbitError(f"a = {a!r}: no periodic orbit found near the guess")
     return found

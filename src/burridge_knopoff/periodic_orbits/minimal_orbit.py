@@ -1,4 +1,4 @@
-"""Reduction of an orbit to its minimal, most symmetric form, which it may traverse several times."""
+"""Reduction of an orbit to its minimal form: the most symmetric orbit, with the shortest period, that it traverses."""
 
 from __future__ import annotations
 
@@ -12,23 +12,22 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_period
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# Distance, for v = 0.1 in the chain's own units, within which an orbit counts as more symmetric, or of a shorter
-# period.
-SAME = 1e-8
+# Distance, for v = 0.1 in the chain's own units, within which an orbit counts as more symmetric or of a shorter period.
+SAME_STATE = 1e-8
 
-# Relative time within which the simpler orbit has to return; otherwise Newton's method has reached another orbit.
+# Largest relative change of the return time; beyond it Newton's method has converged to another orbit.
 SAME_TIME = 0.05
 
 
-def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
+def minimal_form(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
     """Return the most symmetric form of an orbit with the shortest return; the orbit itself if there is no simpler one.
 
-    The simpler orbit has the same stops, traversed as often as necessary.
+    The simpler orbit, traversed as often as necessary, has the same stops.
 
-    tolerance : largest distance, for v = 0.1 in the chain's own units, of its state from that of the simpler orbit; a
-        branch of orbits of less symmetry, or of twice the period, begins at such orbits
+    tolerance : largest distance, for v = 0.1 in the chain's own units, between the states of both orbits; above
+        rounding errors to detect orbits at which a branch of less symmetric orbits, or of twice the period, begins
     """
-    for time, symmetry in _simpler(orbit):
+    for time, symmetry in _reduced_forms(orbit):
         if time > 0.0:
             end = ReturnMap(orbit.model, symmetry).end(orbit.reference, time)
         else:
@@ -41,23 +40,23 @@ def simplest(orbit: PeriodicOrbit, tolerance: float) -> PeriodicOrbit:
             continue
         if abs(found.return_time - time) > SAME_TIME * time:
             continue
-        turns = round(orbit.period / found.period)
-        if tuple(turns * stops for stops in found.stop_counts) == orbit.stop_counts:
-            return simplest(found, tolerance)
+        repeats = round(orbit.period / found.period)
+        if tuple(repeats * stops for stops in found.stop_counts) == orbit.stop_counts:
+            return minimal_form(found, tolerance)
     return orbit
 
 
-def simpler_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
-    """Return the more symmetric or shorter form that an orbit has up to rounding; None if there is none."""
+def reduced_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit | None:
+    """Return the more symmetric or shorter form that an orbit has up to rounding errors; None if there is none."""
     mirrored = orbit.symmetry == Symmetry.ASYMMETRIC and orbit.stop_counts == orbit.stop_counts[::-1]
     if not mirrored and gcd(*orbit.stop_counts) == 1:
         return None
-    found = simplest(orbit, SAME)
+    found = minimal_form(orbit, SAME_STATE)
     return None if found is orbit else found
 
 
-def _simpler(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:
-    """Yield the return times and symmetries that simpler forms could have; a time of 0 means the state itself."""
+def _reduced_forms(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:
+    """Yield the return times and symmetries that simpler forms may have; a time of 0 means the state itself."""
     if orbit.symmetry != Symmetry.SYNCHRONIZED and orbit.model.chain.is_mirror_symmetric:
         yield 0.0, Symmetry.SYNCHRONIZED
     for part in _prime_factors(gcd(*orbit.stop_counts)):
@@ -68,6 +67,6 @@ def _simpler(orbit: PeriodicOrbit) -> Iterator[tuple[float, Symmetry]]:
 
 
 def _prime_factors(number: int) -> list[int]:
-    """Return the prime factors of a number of turns, each once."""
+    """Return the distinct prime factors of a number."""
     divisors = [part for part in range(2, number + 1) if number % part == 0]
     return [part for part in divisors if all(part % other for other in divisors if other < part)]

@@ -1,4 +1,4 @@
-"""A line in the space of parameters, along which an orbit is continued: one parameter, or two in proportion."""
+"""A line in parameter space along which an orbit is continued: one parameter, or a combination of two."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError
 
 
 def model_at(model: Model, names: Sequence[str], values: Iterable[float]) -> Model:
-    """Return a model at other values of some parameters; raises OrbitError if there is none."""
+    """Return a model at other values of some parameters; raises OrbitError if there is no such model."""
     try:
         return at(model, dict(zip(names, map(float, values), strict=True)))
     except ValueError as error:
@@ -22,26 +22,26 @@ def model_at(model: Model, names: Sequence[str], values: Iterable[float]) -> Mod
 
 @dataclass(frozen=True)
 class ParameterLine:
-    """A line in the space of parameters: each is its origin plus its rate times the coordinate.
+    """A line in parameter space: each parameter is its origin plus its rate times the coordinate.
 
-    names : the first one tells the coordinate of a model
-    units : in which changes of states and times are measured, the same all along the line
-    least : the least coordinate at which there is a model, if known
+    names : of the parameters; the first one determines the coordinate of a model
+    units : of changes of states and times, the same along the whole line
+    lower_bound : the smallest coordinate at which there is a model, if known
     """
 
     names: tuple[str, ...]
     origins: tuple[float, ...]
     rates: tuple[float, ...]
     units: OwnUnits
-    least: float = float("-inf")
+    lower_bound: float = float("-inf")
 
     @property
     def parameter(self) -> str:
-        """The parameter that tells the coordinate."""
+        """Name of the parameter that determines the coordinate."""
         return self.names[0]
 
     def value(self, model: Model) -> float:
-        """Return the value of the parameter that tells the coordinate."""
+        """Return the value of the parameter that determines the coordinate."""
         return value_of(model, self.names[0])
 
     def coordinate(self, model: Model) -> float:
@@ -49,16 +49,16 @@ class ParameterLine:
         return (self.value(model) - self.origins[0]) / self.rates[0]
 
     def model(self, model: Model, coordinate: float) -> Model:
-        """Return a model at another coordinate; raises OrbitError if there is none."""
+        """Return a model at another coordinate; raises OrbitError if there is no such model."""
         values = [origin + rate * float(coordinate) for origin, rate in zip(self.origins, self.rates, strict=True)]
         return model_at(model, self.names, values)
 
     def place(self, model: Model) -> str:
-        """Return the values of the parameters of a model for a message."""
+        """Return the values of the parameters of a model as text for a message."""
         return ", ".join(f"{name} = {value_of(model, name)!r}" for name in self.names)
 
 
-def along_a(chain: Chain) -> ParameterLine:
-    """Return the line along a, with coordinates in the chain's own unit of it."""
+def line_along_a(chain: Chain) -> ParameterLine:
+    """Return the line along a, with coordinates in the chain's own unit of a."""
     units = chain.own_units
-    return ParameterLine(("a",), (0.0,), (units.slope,), units, least=0.0)
+    return ParameterLine(("a",), (0.0,), (units.slope,), units, lower_bound=0.0)

@@ -21,30 +21,30 @@ import numpy as np
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distance, rate
-from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, along_a
-from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions, mirror
+from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, line_along_a
+from burridge_knopoff.periodic_orbits.return_map import ReturnMap, allowed_directions, mirror_order
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import check_state
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.values import instance_of
 
 #: Largest difference of a position or velocity after a return, times v if v > 1, all in the chain's own units. Below it
-#: Newton's method continues as long as it gains, down to rounding.
+#: Newton's method continues while the residual decreases, down to TARGET_RESIDUAL.
 TOLERANCE = 1e-10
-ENOUGH = 1e-12
+TARGET_RESIDUAL = 1e-12
 ITERATIONS = 10
 
-# From this iteration on, each iteration has to improve the solution, or the method fails.
-FIRST = 2
+# Number of iterations after which every further iteration must improve the solution; otherwise the method fails.
+FREE_ITERATIONS = 2
 
-# A larger correction, in units of v, for times in the chain's own unit, leads to another orbit, if to any.
-FARTHEST = 5.0
+# Largest correction, in units of v, for times in the chain's own unit: a larger one would lead to another orbit.
+LARGEST_CORRECTION = 5.0
 
-# So does a return that takes this many times as long as the guess.
-LONGER = 2.0
+# Largest ratio of the return time to the guess.
+LARGEST_TIME_RATIO = 2.0
 
-# A reference state closer than this, as a fraction of the longest time without events, to an event is moved to the
-# middle of that time.
+# A reference state closer to an event than this fraction of the longest time without events is moved to the middle of
+# that time.
 NEAR_EVENT = 0.2
 
 
@@ -53,8 +53,8 @@ class PeriodicOrbit:
     """A periodic orbit of a chain.
 
     reference : a state between two events, well away from both
-    return_time : time of a return: the period, or half of it for an orbit that is its own mirror image
-    returned : the state after a return, in a mirror for an orbit that is its own mirror image
+    return_time : the period, or half of it for an orbit that is its own mirror image half a period later
+    returned : the state after a return, reflected for an orbit that is its own mirror image half a period later
     monodromy : linearized return of perturbations of the reference state, shape (2 blocks, 2 blocks)
     known_events : `event_rows`, if known
 
@@ -95,7 +95,7 @@ class PeriodicOrbit:
         )
 
     def forget_events(self) -> None:
-        """Free the events, a megabyte on the longest orbits; they are computed again on demand."""
+        """Free the events, up to a megabyte for the longest orbits; they are recomputed on demand."""
         _ = self.stop_counts
         self.__dict__.pop("event_rows", None)
 
@@ -123,12 +123,12 @@ class PeriodicOrbit:
 
     @property
     def residual(self) -> float:
-        """Maximum norm of the state after a return minus the reference state."""
+        """Maximum norm of the difference between the state after a return and the reference state."""
         return float(np.abs(self.returned.vector() - self.reference.vector()).max())
 
     @property
     def period(self) -> float:
-        """The time after which all blocks are back at their positions and velocities."""
+        """The time after which all positions and velocities repeat."""
         return self.return_time * (2.0 if self.symmetry == Symmetry.SYMMETRIC else 1.0)
 
     @cached_property
@@ -155,10 +155,10 @@ class PeriodicOrbit:
 
 @dataclass(frozen=True)
 class Constraint:
-    """What fixes an orbit that is looked for along a line of parameters.
+    """The additional equation that selects an orbit along a line of parameters: vector · change = amount.
 
     vector : over (positions and velocities, return time, coordinate on the line)
-    amount : the product of this vector with the change from the origin
+    amount : the required product of this vector with the change from the origin
     origin : a state, a return time and a coordinate
     """
 
@@ -174,29 +174,29 @@ def solve_return(
     time: float,
     symmetry: Symmetry,
     constraint: Constraint | None = None,
-    enough: float = ENOUGH,
+    target_residual: float = TARGET_RESIDUAL,
 ) -> PeriodicOrbit:
     """Return the orbit that solves the equations, by Newton's method from a guess of its reference state.
 
-    constraint : makes the coordinate on its line another unknown
-    enough : residual at which the iteration ends; 0 iterates to rounding
+    constraint : an additional equation, with the coordinate on its line as an additional unknown
+    target_residual : residual at which the iteration ends; 0 iterates to rounding
 
     Raises OrbitError if Newton's method does not converge.
     """
-    units, basis = model.chain.own_units, directions(start.stuck, symmetry)
+    units, basis = model.chain.own_units, allowed_directions(start.stuck, symmetry)
     own = units.state(model.blocks)
     phase = basis.T @ (rate(model, start) * units.time / own)
     count, unknowns = basis.shape[1], basis.shape[1] + (1 if constraint is None else 2)
-    first, begun, last = start.vector(), time, np.inf
+    first, initial_time, last = start.vector(), time, np.inf
     state, blocks = first.copy(), model.blocks
     by_parameter: np.ndarray | None = None
     mapping = ReturnMap(model, symmetry)
     for iteration in range(ITERATIONS):
         here = ChainState(state[:blocks], state[blocks:], start.stuck)
-        end, changed = mapping.with_tangent(here, time)
-        apart = (end.vector() - state) / own
+        end, changed = mapping.end_and_tangent(here, time)
+        difference = (end.vector() - state) / own
         values = np.zeros(unknowns)
-        values[:count] = basis.T @ apart
+        values[:count] = basis.T @ difference
         values[count] = phase @ (basis.T @ ((state - first) / own))
         jacobian = np.zeros((unknowns, unknowns))
         jacobian[:count, :count] = basis.T @ (changed * own / own[:, None]) @ basis - np.eye(count)
@@ -206,50 +206,50 @@ def solve_return(
             vector, line, (position, duration, coordinate) = constraint.vector, constraint.line, constraint.origin
             change = np.concatenate([state - position, [time - duration, line.coordinate(model) - coordinate]])
             values[-1] = vector @ change - constraint.amount
-            # Expensive, and nearly constant between iterations.
+            # Computed once: it is expensive and nearly constant between iterations.
             if by_parameter is None:
                 events = mapping.event_rows()[:, 1:]
                 by_parameter = basis.T @ (mapping.parameter_derivative(here, time, end, events, line) / own)
             jacobian[:count, -1] = by_parameter
             jacobian[-1] = np.concatenate([(vector[:-2] * own) @ basis, [vector[-2] * units.time, vector[-1]]])
         size, speed = float(np.abs(values).max()), model.v / units.velocity
-        if size <= enough or (size <= TOLERANCE * max(1.0, speed) and size > 0.25 * last):
-            if np.abs(apart).max() > TOLERANCE * max(1.0, speed) or (end.stuck != start.stuck).any():
+        if size <= target_residual or (size <= TOLERANCE * max(1.0, speed) and size > 0.25 * last):
+            if np.abs(difference).max() > TOLERANCE * max(1.0, speed) or (end.stuck != start.stuck).any():
                 break
             return PeriodicOrbit(model, symmetry, here, time, end, changed, _event_rows(mapping, time))
-        if iteration > FIRST and size > last:
+        if iteration > FREE_ITERATIONS and size > last:
             break
         last = size
         try:
             step = np.linalg.solve(jacobian, -values)
         except np.linalg.LinAlgError:
             break
-        if not np.abs(step[:count]).max() < FARTHEST * speed:
+        if not np.abs(step[:count]).max() < LARGEST_CORRECTION * speed:
             break
         state = state + own * (basis @ step[:count])
         time += units.time * float(step[count])
-        if not 0.0 < time < LONGER * begun:
+        if not 0.0 < time < LARGEST_TIME_RATIO * initial_time:
             break
         if constraint is not None:
             line = constraint.line
             model = line.model(model, line.coordinate(model) + float(step[-1]))
             mapping = ReturnMap(model, symmetry)
-    line = along_a(model.chain) if constraint is None else constraint.line
+    line = line_along_a(model.chain) if constraint is None else constraint.line
     raise OrbitError(f"{line.place(model)}: no periodic orbit found near the guess")
 
 
-def refined(orbit: PeriodicOrbit) -> PeriodicOrbit:
-    """Return an orbit solved to rounding, as a root of its multipliers requires."""
-    return solve_return(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, enough=0.0)
+def refine_orbit(orbit: PeriodicOrbit) -> PeriodicOrbit:
+    """Return an orbit solved to rounding accuracy, as roots of functions of its multipliers require."""
+    return solve_return(orbit.model, orbit.reference, orbit.return_time, orbit.symmetry, target_residual=0.0)
 
 
 def orbit_of(model: Model, state: ChainState, time: float, symmetry: Symmetry) -> PeriodicOrbit:
-    """Return an orbit through a state between two events with a given return time, without checking that it returns.
+    """Return the orbit through a state between two events with a given return time, without checking that it returns.
 
     Raises OrbitError if the run does not complete.
     """
     mapping = ReturnMap(model, symmetry)
-    end, changed = mapping.with_tangent(state, time)
+    end, changed = mapping.end_and_tangent(state, time)
     return PeriodicOrbit(model, symmetry, state, time, end, changed, _event_rows(mapping, time))
 
 
@@ -261,10 +261,10 @@ def safe_offset(orbit: PeriodicOrbit) -> float:
 def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, symmetry: Symmetry) -> PeriodicOrbit:
     """Return the periodic orbit near a state between two events, by Newton's method.
 
-    model, guess : the state, and the model whose orbit is sought
-    return_time : approximate time of a return: a period, or half a period for SYMMETRIC, in a mirror
+    model, guess : the model whose orbit is sought, and a state near the orbit
+    return_time : approximate time of a return: the period, or half of it for SYMMETRIC
 
-    Raises OrbitError if there is none on which a block stops, since a uniformly sliding chain returns after any time.
+    Raises OrbitError if no orbit is found on which a block stops; a uniformly sliding chain returns after any time.
     Raises ValueError for an invalid time or symmetry, for example a mirror symmetry of a chain that is not its own
     mirror image.
 
@@ -289,11 +289,11 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
     mapping.end(guess, return_time)
     events = _event_rows(mapping, return_time)
     period = return_time * (2 if symmetry == Symmetry.SYMMETRIC else 1)
-    # The guess may lie at a stop itself, which rounding may put before or after it.
+    # The guess may coincide with a stop, which rounding may then place before or after it.
     times = sorted([*events[:, 0].tolist(), return_time, period])
     guess = flow(model, guess, _safe_offset(times, period))[0].state()
     if symmetry == Symmetry.SYNCHRONIZED:
-        vector = 0.5 * (guess.vector() + guess.vector()[mirror(model.blocks)])
+        vector = 0.5 * (guess.vector() + guess.vector()[mirror_order(model.blocks)])
         guess = ChainState(vector[: model.blocks], vector[model.blocks :], guess.stuck & guess.stuck[::-1])
     found = solve_return(model, guess, return_time, symmetry)
     if not any(found.stop_counts):

@@ -1,7 +1,7 @@
 """Pseudo-arclength continuation of periodic orbits in a parameter: through folds, up to grazings.
 
-A step follows the tangent of the branch in (state, return time, parameter) and is corrected perpendicular to it. No
-step passes a grazing: there the branch has a corner (`corner`), which `follow` goes around.
+A step follows the tangent of the branch in (state, return time, parameter) and is corrected perpendicular to it. Steps
+do not pass a grazing, where the branch has a corner (`is_grazing`); `follow` continues beyond it.
 
 Reference: E. J. Doedel, H. B. Keller and J. P. Kernevez, Int. J. Bifurcation Chaos 1 (1991) 493 and 745.
 """
@@ -17,29 +17,29 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.parameters import at, value_of
 from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, rate
-from burridge_knopoff.periodic_orbits.grazing_distances import Contacts, contacts
-from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, along_a
+from burridge_knopoff.periodic_orbits.grazing_distances import GrazingDistances, grazing_distances
+from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, line_along_a
 from burridge_knopoff.periodic_orbits.periodic import (
-    ENOUGH,
+    TARGET_RESIDUAL,
     Constraint,
     PeriodicOrbit,
     orbit_of,
     safe_offset,
     solve_return,
 )
-from burridge_knopoff.periodic_orbits.return_map import ReturnMap, directions
+from burridge_knopoff.periodic_orbits.return_map import ReturnMap, allowed_directions
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# Length along a branch is mostly length in the parameter: positions, in units of 0.1 v, and times have smaller weights,
-# all in the chain's own units.
+# Weights in the squared length along a branch, which is mostly the change of the parameter. Positions and velocities
+# are relative to v/0.1 and, like times, in the chain's own units.
 STATE_WEIGHT = 0.01
 TIME_WEIGHT = 1e-4
 
-# Fraction of a change of state by which the tangent is carried from one reference state to another.
+# Step of the finite differences that carry a tangent from one reference state to another.
 PART = 1e-6
 
-# Change of the return of an orbit, for v = 0.1, that a step of length 1 makes: a change of 1 in a makes about this one
-# where all blocks stop once in a period. A step is at most so long relative to the parameter.
+# Change of the return of an orbit, for v = 0.1, in a step of length 1: about that of a change of 1 in a if all blocks
+# stop once in a period. A step of length 1 is at most LONGEST times the parameter.
 CHANGE = 0.25
 LONGEST = 10.0
 
@@ -51,17 +51,17 @@ STRAIGHT = 0.8
 class BranchOrbit:
     """An orbit on a branch and the unit tangent there, over (positions and velocities, return time, parameter).
 
-    line : the parameter along which the branch is followed, in units in which it is measured
-    length : from the previous orbit, along its tangent
-    joined : the simpler form of this orbit, more symmetric or of half the period, if the branch has reached another
-        branch; the branch ends before it
-    remaining : length from here to the corner of the branch where the orbit grazes; NaN unless the corner is next
+    line : the parameter along which the branch is continued, and its unit
+    length : distance from the previous orbit, along its tangent
+    reduced_orbit : if the branch has reached a branch of simpler orbits, this orbit in its simpler form, more symmetric
+        or of half the period; the branch ends before it
+    distance_to_grazing : length from here to the corner of the branch where the orbit grazes; NaN unless it is next
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, follow, law_of, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.0865))
     >>> orbit = limit_cycle(model, synchronized_orbit(model).reference)
     >>> branch = follow(orbit, (0.086, 0.0875))
-    >>> branch[1].tangent.shape, branch[1].corner, branch[1].joined
+    >>> branch[1].tangent.shape, branch[1].is_grazing, branch[1].reduced_orbit
     ((8,), False, None)
     """
 
@@ -69,26 +69,26 @@ class BranchOrbit:
     tangent: np.ndarray
     line: ParameterLine
     length: float = 0.0
-    joined: PeriodicOrbit | None = None
-    remaining: float = np.nan
+    reduced_orbit: PeriodicOrbit | None = None
+    distance_to_grazing: float = np.nan
 
     def __repr__(self) -> str:
         return f"<BranchOrbit: {self.orbit!r}>"
 
     @cached_property
     def value(self) -> float:
-        """The value of the parameter along which the branch is followed."""
+        """The value of the parameter along which the branch is continued."""
         return self.line.value(self.orbit.model)
 
     @property
-    def corner(self) -> bool:
-        """Whether the orbit grazes, up to rounding."""
-        return not np.isnan(self.remaining)
+    def is_grazing(self) -> bool:
+        """Whether the orbit grazes, up to rounding errors."""
+        return not np.isnan(self.distance_to_grazing)
 
     @cached_property
-    def contacts(self) -> Contacts:
+    def grazing_distances(self) -> GrazingDistances:
         """The grazing distances of the orbit."""
-        return contacts(self.orbit)
+        return grazing_distances(self.orbit)
 
     @cached_property
     def multipliers(self) -> Multipliers:
@@ -97,16 +97,16 @@ class BranchOrbit:
 
 
 def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
-    """Return the line along one parameter of an orbit, in units in which its return changes by CHANGE.
+    """Return the line along one parameter of an orbit, with a unit that changes the return of the orbit by CHANGE.
 
     The return of a long orbit changes faster, so that its unit is smaller. Positions and velocities are compared in
-    units of v, since they grow with it. For a, the unit is the chain's own.
+    units of v, since they grow with v. For a, the unit is the chain's own.
 
-    Raises ValueError, one line, if the model has no one number of this name.
+    Raises ValueError, one line, if the model has no parameter of this name with a single value.
     """
     value = value_of(orbit.model, parameter)
     if parameter == "a":
-        return along_a(orbit.model.chain)
+        return line_along_a(orbit.model.chain)
     units = orbit.model.chain.own_units
     own = units.state(orbit.model.blocks)
     size, change = abs(value) or 1.0, 0.0
@@ -120,8 +120,8 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
             end = ReturnMap(model, orbit.symmetry).end(start, orbit.return_time)
         except ValueError:
             continue
-        apart = end.vector() / model.scale - orbit.returned.vector() / orbit.model.scale
-        change = max(change, float(np.abs(apart * units.velocity / own).max() / abs(step)))
+        difference = end.vector() / model.scale - orbit.returned.vector() / orbit.model.scale
+        change = max(change, float(np.abs(difference * units.velocity / own).max() / abs(step)))
     return ParameterLine((parameter,), (value,), (min(LONGEST * size, CHANGE / max(change, 1e-300)),), units=units)
 
 
@@ -135,7 +135,7 @@ def weights(model: Model, line: ParameterLine) -> np.ndarray:
 def tangent_of(orbit: PeriodicOrbit, line: ParameterLine) -> np.ndarray:
     """Return the unit tangent of the branch at an orbit, of either sign."""
     model, start, time = orbit.model, orbit.reference, orbit.return_time
-    basis, units = directions(start.stuck, orbit.symmetry), line.units
+    basis, units = allowed_directions(start.stuck, orbit.symmetry), line.units
     own = units.state(model.blocks)
     count = basis.shape[1]
     mapping, end = ReturnMap(model, orbit.symmetry), orbit.returned
@@ -150,8 +150,8 @@ def tangent_of(orbit: PeriodicOrbit, line: ParameterLine) -> np.ndarray:
     return vector / np.sqrt(weights(model, line) @ vector**2)
 
 
-def in_symmetry_of(line: ParameterLine, orbit: PeriodicOrbit) -> PeriodicOrbit:
-    """Return an orbit as one of the symmetry that all models on a line have: none, if the line breaks the mirror's."""
+def adapt_symmetry(line: ParameterLine, orbit: PeriodicOrbit) -> PeriodicOrbit:
+    """Return an orbit with the symmetry of all models on a line: ASYMMETRIC if the line breaks the mirror symmetry."""
     model, here = orbit.model, line.coordinate(orbit.model)
     if orbit.symmetry == Symmetry.ASYMMETRIC:
         return orbit
@@ -165,8 +165,8 @@ def in_symmetry_of(line: ParameterLine, orbit: PeriodicOrbit) -> PeriodicOrbit:
 
 
 def begin_branch(orbit: PeriodicOrbit, upward: bool, line: ParameterLine) -> BranchOrbit:
-    """Return an orbit with the tangent along which the parameter grows or falls."""
-    orbit = in_symmetry_of(line, orbit)
+    """Return an orbit with the tangent along which the parameter increases (upward) or decreases."""
+    orbit = adapt_symmetry(line, orbit)
     tangent = tangent_of(orbit, line)
     return BranchOrbit(orbit, tangent if (tangent[-1] > 0.0) == upward else -tangent, line)
 
@@ -179,11 +179,11 @@ def solve_ahead(
     line: ParameterLine,
     tangent: np.ndarray,
     length: float,
-    enough: float = ENOUGH,
+    target_residual: float = TARGET_RESIDUAL,
 ) -> PeriodicOrbit:
-    """Return the orbit at a length along a tangent from a state, its return time and its model.
+    """Return the orbit at a length along a tangent from a state, a return time and a model.
 
-    enough : residual at which Newton's method ends; 0 iterates to rounding
+    target_residual : residual at which Newton's method ends; 0 iterates to rounding
 
     Raises OrbitError if none is found.
     """
@@ -193,7 +193,7 @@ def solve_ahead(
     start = ChainState(guess[:blocks], guess[blocks:], reference.stuck)
     constraint = Constraint(weights(there, line) * tangent, length, (base, time, here), line)
     after = time + length * float(tangent[-2])
-    return solve_return(there, start, after, symmetry, constraint, enough)
+    return solve_return(there, start, after, symmetry, constraint, target_residual)
 
 
 def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = None) -> BranchOrbit:
@@ -201,7 +201,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
 
     tangent : replaces that of the point
 
-    Raises OrbitError if none is found, or if the branch turns sharply on the way.
+    Raises OrbitError if none is found, or if the tangent turns too sharply within the step.
     """
     orbit, line = point.orbit, point.line
     tangent = point.tangent if tangent is None else tangent
@@ -215,7 +215,7 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     offset = safe_offset(found)
     if offset == 0.0:
         return BranchOrbit(found, following, line, length)
-    carried = _carried(found, following, offset, line)
+    carried = _carry_tangent(found, following, offset, line)
     there = flow(model, found.reference, offset)[0].state()
     moved = orbit_of(model, there, found.return_time, orbit.symmetry)
     following = tangent_of(moved, line)
@@ -223,8 +223,8 @@ def step_along(point: BranchOrbit, length: float, tangent: np.ndarray | None = N
     return BranchOrbit(moved, following if side > 0.0 else -following, line, length)
 
 
-def _carried(orbit: PeriodicOrbit, tangent: np.ndarray, time: float, line: ParameterLine) -> np.ndarray:
-    """Return a tangent carried to the state a time after the reference, perpendicular to the flow there."""
+def _carry_tangent(orbit: PeriodicOrbit, tangent: np.ndarray, time: float, line: ParameterLine) -> np.ndarray:
+    """Return a tangent transported to the state a time after the reference, perpendicular to the flow there."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + PART * tangent[:-2]
     near = ChainState(vector[:blocks], vector[blocks:], orbit.reference.stuck)

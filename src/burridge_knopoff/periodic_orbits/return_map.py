@@ -1,8 +1,8 @@
-"""The return map of a chain: the state after a time, in a mirror if the symmetry requires it.
+"""The return map of a chain: the state after a time, reflected if the symmetry requires it.
 
-An orbit that is its own mirror image after half its period is closed by the return after half a period composed with
-the mirror image. The map of the whole period is the square of this one. It does not distinguish perturbations that
-break the symmetry (a multiplier −1 of the half return) from those that keep it (+1).
+An orbit that is its own mirror image after half its period is closed by the return after half a period, followed by a
+reflection. The return map of the whole period is the square of this map. It does not distinguish perturbations that
+break the symmetry (a multiplier −1 of the half return) from those that preserve it (+1).
 
 Reference: J. W. Swift and K. Wiesenfeld, "Suppression of period doubling in symmetric systems", Phys. Rev. Lett. 52
 (1984) 705.
@@ -15,21 +15,21 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.periodic_orbits.flow import OrbitError, after, rate
+from burridge_knopoff.periodic_orbits.flow import OrbitError, rate, state_after
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
 
-# Step for the derivative of a return. The error is of the same order, small enough for Newton's method and
-# tangents.
+# Largest and smallest step for the derivative of a return. The error is of the order of the step, which is small enough
+# for Newton's method and for tangents.
 STEP = 1e-7
-LEAST_STEP = 1e-13
+SMALLEST_STEP = 1e-13
 
 
 class ReturnMap:
-    """The return map of one model, mirrored for a motion that is its own mirror image.
+    """The return map of one model, with a reflection for a motion that is its own mirror image half a period later.
 
-    symmetry : SYNCHRONIZED (mirror blocks move synchronously, no mirror needed), SYMMETRIC or ASYMMETRIC
+    symmetry : SYNCHRONIZED (mirror blocks move synchronously; no reflection), SYMMETRIC or ASYMMETRIC
     """
 
     def __init__(self, model: Model, symmetry: Symmetry) -> None:
@@ -44,9 +44,9 @@ class ReturnMap:
 
     def end(self, start: ChainState, time: float) -> ChainState:
         """Return the end of a return from a state; raises OrbitError if the run does not complete."""
-        return self._mirrored(after(self._runner, start, time))
+        return self._mirrored(state_after(self._runner, start, time))
 
-    def with_tangent(self, start: ChainState, time: float) -> tuple[ChainState, np.ndarray]:
+    def end_and_tangent(self, start: ChainState, time: float) -> tuple[ChainState, np.ndarray]:
         """Return the end of a return and the linearized return map, shape (2 blocks, 2 blocks).
 
         Velocities of stuck blocks cannot be perturbed: their columns are 0.
@@ -56,7 +56,7 @@ class ReturnMap:
         return end, self._mirrored_rows(self._runner.perturbations)
 
     def event_rows(self) -> np.ndarray:
-        """Return time, block (0 …) and kind (0 stop, 1 start) of each event of the last return, not mirrored."""
+        """Return time, block (0 …) and kind (0 stop, 1 start) of each event of the last return, without reflection."""
         return np.stack(self._runner.events(), axis=1)
 
     def parameter_derivative(
@@ -66,22 +66,23 @@ class ReturnMap:
 
         start, time, end : of the return; events : blocks and kinds of its events in order, shape (n, 2)
 
-        By finite differences; next to a grazing, where the derivative jumps, on the side of the orbit. It does not jump
-        where two blocks stop at one instant and one of them becomes the first. Raises OrbitError if there is none.
+        The derivative is a finite difference. At a grazing, where it jumps, the side of the orbit is used. It does not
+        jump where two blocks stop at the same time and their order changes. Raises OrbitError if every step changes the
+        stops and starts.
         """
         step, here = STEP, line.coordinate(self.model)
-        while step > LEAST_STEP:
+        while step > SMALLEST_STEP:
             for there in (here + step, here - step):
                 try:
                     model = line.model(self.model, there)
                 except OrbitError:
                     continue
                 runner = Runner(model, keep_events=True)
-                moved = self._mirrored(after(runner, start, time))
+                moved = self._mirrored(state_after(runner, start, time))
                 if np.array_equal(_by_block(np.stack(runner.events()[1:], axis=1)), _by_block(events)):
                     return (moved.vector() - end.vector()) / (there - here)
             step *= 0.1
-        raise OrbitError(f"{line.place(self.model)}: stops and starts change however little this does")
+        raise OrbitError(f"{line.place(self.model)}: stops and starts change at every step of this parameter")
 
     def time_derivative(self, end: ChainState) -> np.ndarray:
         """Return the derivative of the end with respect to the time, shape (2 blocks,)."""
@@ -91,21 +92,21 @@ class ReturnMap:
         return instant.mirrored() if self.symmetry == Symmetry.SYMMETRIC else instant
 
     def _mirrored_rows(self, matrix: np.ndarray) -> np.ndarray:
-        return matrix[mirror(self.model.blocks)] if self.symmetry == Symmetry.SYMMETRIC else matrix
+        return matrix[mirror_order(self.model.blocks)] if self.symmetry == Symmetry.SYMMETRIC else matrix
 
 
 def _by_block(events: np.ndarray) -> np.ndarray:
-    """Return events in order of blocks, those of each block in order of time, shape (n, 2)."""
+    """Return events sorted by block, and for each block in order of time, shape (n, 2)."""
     return events[np.argsort(events[:, 0], kind="stable")]
 
 
-def mirror(blocks: int) -> np.ndarray:
-    """Return the order of positions and velocities in the mirror image of a state."""
+def mirror_order(blocks: int) -> np.ndarray:
+    """Return the indices of positions and velocities in the mirror image of a state."""
     order = np.arange(blocks)[::-1]
     return np.concatenate([order, blocks + order])
 
 
-def directions(stuck: np.ndarray, symmetry: Symmetry) -> np.ndarray:
+def allowed_directions(stuck: np.ndarray, symmetry: Symmetry) -> np.ndarray:
     """Return an orthonormal basis of the allowed changes of a state as columns, shape (2 blocks, free).
 
     Velocities of stuck blocks do not change. If mirror blocks move synchronously, changes are mirror-symmetric.
@@ -114,14 +115,14 @@ def directions(stuck: np.ndarray, symmetry: Symmetry) -> np.ndarray:
     basis = np.eye(2 * len(stuck))
     if symmetry != Symmetry.SYNCHRONIZED:
         return basis[:, free]
-    order = mirror(len(stuck))
+    order = mirror_order(len(stuck))
     together = (basis + basis[order])[:, free & (order >= np.arange(2 * len(stuck)))]
     return together / np.linalg.norm(together, axis=0)
 
 
-def parting(stuck: np.ndarray) -> np.ndarray:
+def symmetry_breaking_directions(stuck: np.ndarray) -> np.ndarray:
     """Return an orthonormal basis of symmetry-breaking changes as columns, without velocities of stuck blocks."""
     count = 2 * len(stuck)
     free = np.concatenate([np.ones(len(stuck), dtype=bool), ~stuck])
-    order, basis = mirror(len(stuck)), np.eye(count)
+    order, basis = mirror_order(len(stuck)), np.eye(count)
     return (basis - basis[order])[:, free & (order > np.arange(count))] / np.sqrt(2.0)

@@ -1,7 +1,7 @@
-"""Bifurcations of the synchronized orbit: its loss at a_c, the grazing at which a block begins to stick, its doubling.
+"""Bifurcations of the synchronized orbit: loss of stability at a_c, grazing of a block, and period doubling.
 
-The bifurcations along the followed branch tell which there are. The root in a of the function that vanishes there, on
-orbits solved down to rounding, then gives a to the last digits.
+The bifurcations are located along the branch. The root in a of the function that vanishes at each of them, on orbits
+solved to rounding accuracy, then gives a to the last digits.
 """
 
 from __future__ import annotations
@@ -17,42 +17,43 @@ from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
 from burridge_knopoff.periodic_orbits.floquet import critical_values, multipliers
-from burridge_knopoff.periodic_orbits.flow import OrbitError, after
-from burridge_knopoff.periodic_orbits.following import Following, follow
-from burridge_knopoff.periodic_orbits.grazing_distances import contacts
-from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, beside
+from burridge_knopoff.periodic_orbits.flow import OrbitError, state_after
+from burridge_knopoff.periodic_orbits.following import ContinuationSettings, follow
+from burridge_knopoff.periodic_orbits.grazing_distances import grazing_distances
+from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, nearby_orbit
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
-from burridge_knopoff.periodic_orbits.return_map import parting
+from burridge_knopoff.periodic_orbits.return_map import symmetry_breaking_directions
 from burridge_knopoff.running.runner import Runner
 
-#: Range of friction parameters, in units of `unit`, searched for changes, and steps in a; independent of the grid of a
-#: study. Where a branch ends, the search continues this far beyond.
+#: Range of a, in units of `a_unit`, in which bifurcations are searched for, and steps in a. They do not depend on the
+#: grid of a study. Where a branch ends, the search resumes RESTART_GAP beyond.
 RANGE = (0.0125, 0.3)
 FIRST_STEP = 1e-3
 LARGEST_STEP = 5e-3
-AGAIN = 0.0125
+RESTART_GAP = 0.0125
 
-# A root is bracketed at these distances, in the chain's own unit of a, in turn, and found to the rounding of the
-# function. With such small steps brentq only bisects, and may need more than its usual hundred iterations.
-SIDES = (1e-9, 1e-8, 1e-7, 1e-6)
+# Half-widths of brackets of a root, in the chain's own unit of a, to be tried in turn. The root is found to the
+# rounding error of the function. In such narrow brackets brentq only bisects and may need more iterations than usual.
+BRACKETS = (1e-9, 1e-8, 1e-7, 1e-6)
 TOLERANCE = 1e-15
 ITERATIONS = 1000
 
-# Largest distance from −1, or from the unit circle, of the multiplier of a bifurcation.
+# Largest distance of the critical multiplier at a bifurcation from −1, or from the unit circle.
 CRITICAL = 1e-5
 
-# Difference d of mirror blocks for finite differences, in units of v, for times in the own unit: rounding of the
-# quotient and the d⁴ that extrapolation leaves are both about 1e-12.
+# Difference d of mirror blocks for finite differences, in units of v, for times in the own unit: the rounding error of
+# the quotient and the remaining error of order d⁴ are both about 1e-12.
 DIFFERENCE = 1e-3
 
-# Step in a, in units of `unit`, for the slope of the multiplier.
+# Step in a, in units of `a_unit`, for the slope of the multiplier.
 SLOPE_STEP = 1e-4
 
 
-def unit(chain: Chain) -> float:
-    """Return the a at which friction changes a slip as much as a = 1 does in the paper's chain, where it is 1.
+def a_unit(chain: Chain) -> float:
+    """Return the a at which friction changes a slip as much as a = 1 does in the paper's chain, for which it is 1.
 
-    Springs stronger by a factor make all motion faster by its square root; a mode grows with a times the threshold.
+    Springs that are stiffer by a factor make all motion faster by its square root; a mode grows at a rate proportional
+    to a times the threshold.
     """
     pulled = chain.driving > 0.0
     return math.sqrt(float((chain.driving * chain.masses)[pulled].min())) / float(chain.thresholds.max())
@@ -64,12 +65,12 @@ def bifurcations_of(orbits: KnownOrbits) -> list[Bifurcation]:
 
 
 def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
-    """Follow the orbits upward; where a branch ends, continue both ways with any orbit beyond."""
-    size = unit(orbits.model.chain)
-    (first, high), gap = (size * end for end in RANGE), size * AGAIN
-    # `follow` counts its steps in the chain's own unit.
+    """Yield the bifurcations along the orbits; beyond the end of a branch, continue both ways from the next orbit."""
+    size = a_unit(orbits.model.chain)
+    (first, high), gap = (size * end for end in RANGE), size * RESTART_GAP
+    # `follow` measures its steps in the chain's own unit.
     share = size / orbits.model.chain.own_units.slope
-    settings = Following(first_step=share * FIRST_STEP, largest_step=share * LARGEST_STEP)
+    settings = ContinuationSettings(first_step=share * FIRST_STEP, largest_step=share * LARGEST_STEP)
     low, a = first, first
     while a < high:
         try:
@@ -86,13 +87,13 @@ def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
 
 
 def critical_a(bifurcations: list[Bifurcation]) -> float:
-    """Return a_c, where the leading transverse multiplier reaches the unit circle; NaN if it does not."""
+    """Return a_c, at which the leading transverse multiplier reaches the unit circle; NaN if it does not."""
 
     def distance(orbit: PeriodicOrbit) -> float:
         return abs(multipliers(orbit).transverse) - 1.0
 
     kinds = BifurcationKind.PITCHFORK, BifurcationKind.PERIOD_DOUBLING, BifurcationKind.NEIMARK_SACKER
-    return _least(
+    return _smallest_a(
         bifurcations,
         lambda bifurcation: bifurcation.kind in kinds and abs(distance(bifurcation.at.orbit)) < CRITICAL,
         distance,
@@ -105,86 +106,89 @@ def symmetric_period_doubling_a(bifurcations: list[Bifurcation]) -> float:
     def is_period_doubling(bifurcation: Bifurcation) -> bool:
         return (
             bifurcation.kind == BifurcationKind.PERIOD_DOUBLING
-            and float(np.abs(bifurcation.at.multipliers.keeping + 1.0).min()) < CRITICAL
+            and float(np.abs(bifurcation.at.multipliers.symmetry_preserving + 1.0).min()) < CRITICAL
         )
 
-    return _least(
+    return _smallest_a(
         bifurcations,
         is_period_doubling,
-        lambda orbit: critical_values(orbit)[BifurcationKind.PERIOD_DOUBLING, "keeping"],
+        lambda orbit: critical_values(orbit)[BifurcationKind.PERIOD_DOUBLING, "symmetry_preserving"],
     )
 
 
 def grazing_a(bifurcations: list[Bifurcation], block: int) -> float:
     """Return the a at which a block, numbered from 0, begins to stick; NaN if it does not.
 
-    On one side the least speed of the block is positive. On the other side the stick lasts about the square root of the
-    distance, so that minus its squared length continues the least speed through 0. If friction drops at the start of a
-    slip no stick begins this way: the branch ends.
+    On one side the smallest speed of the block is positive. On the other side the duration of the stick grows as the
+    square root of the distance, so that minus its square continues the smallest speed through 0. If friction drops at
+    the start of a slip, no stick begins this way, and the branch ends.
     """
 
-    def begins(bifurcation: Bifurcation) -> bool:
+    def is_first_stick(bifurcation: Bifurcation) -> bool:
         if bifurcation.kind != BifurcationKind.GRAZING or bifurcation.after is None:
             return False
         return (bifurcation.before.orbit.stop_counts[block] == 0) != (bifurcation.after.orbit.stop_counts[block] == 0)
 
-    def least(orbit: PeriodicOrbit) -> float:
-        found = contacts(orbit)
+    def signed_least_speed(orbit: PeriodicOrbit) -> float:
+        found = grazing_distances(orbit)
         return -float(found.stick[block] ** 2) if orbit.stop_counts[block] else float(found.speed[block])
 
-    return _least(bifurcations, begins, least)
+    return _smallest_a(bifurcations, is_first_stick, signed_least_speed)
 
 
-def _least(
+def _smallest_a(
     bifurcations: list[Bifurcation], is_one: Callable[[Bifurcation], bool], value: Callable[[PeriodicOrbit], float]
 ) -> float:
-    """Return the smallest a of the bifurcations of a kind, from the root of its function; NaN if there is none."""
+    """Return the smallest a of the bifurcations that satisfy a predicate, from the root of a function; NaN if none."""
     bifurcation = next((bifurcation for bifurcation in bifurcations if is_one(bifurcation)), None)
     return math.nan if bifurcation is None else _root(bifurcation, value)
 
 
 def _root(bifurcation: Bifurcation, value: Callable[[PeriodicOrbit], float]) -> float:
-    """Return the root in a of a function of the orbit at a bifurcation; the a of the bifurcation if there is none."""
+    """Return the root in a of a function of the orbit near a bifurcation; the a of the bifurcation if there is none."""
     orbit = bifurcation.at.orbit
     own = orbit.model.chain.own_units.slope
-    for side in SIDES:
+    for side in BRACKETS:
         ends = bifurcation.a - own * side, bifurcation.a + own * side
         try:
-            if (value(beside(orbit, ends[0])) > 0.0) != (value(beside(orbit, ends[1])) > 0.0):
+            if (value(nearby_orbit(orbit, ends[0])) > 0.0) != (value(nearby_orbit(orbit, ends[1])) > 0.0):
                 precise = {"xtol": own * TOLERANCE, "rtol": TOLERANCE, "maxiter": ITERATIONS}
-                return float(brentq(lambda a: value(beside(orbit, a)), *ends, **precise))
+                return float(brentq(lambda a: value(nearby_orbit(orbit, a)), *ends, **precise))
         except OrbitError:
             continue
     return bifurcation.a
 
 
-def differenced_multiplier(orbit: PeriodicOrbit) -> complex:
+def finite_difference_multiplier(orbit: PeriodicOrbit) -> complex:
     """Return the leading transverse multiplier of a synchronized orbit without the tangent map.
 
-    Mirror blocks are displaced by d and followed for a period. By mirror symmetry the remaining difference is an odd
-    function of d, so that one step of Richardson extrapolation leaves an error of order d⁴.
+    Mirror blocks are displaced by d and followed for a period. By mirror symmetry their difference after the period is
+    an odd function of d, so that one step of Richardson extrapolation leaves an error of order d⁴.
     """
     runner, start, blocks = Runner(orbit.model), orbit.reference, orbit.model.blocks
-    basis, units = parting(start.stuck), orbit.model.chain.own_units
+    basis, units = symmetry_breaking_directions(start.stuck), orbit.model.chain.own_units
     own = units.state(blocks)
 
-    def returned(direction: np.ndarray, d: float) -> np.ndarray:
+    def difference_quotient(direction: np.ndarray, d: float) -> np.ndarray:
         state = start.vector() + d * own * direction
-        end = after(runner, ChainState(state[:blocks], state[blocks:], start.stuck), orbit.return_time)
+        end = state_after(runner, ChainState(state[:blocks], state[blocks:], start.stuck), orbit.return_time)
         return basis.T @ (end.vector() / own) / d
 
     d = DIFFERENCE * orbit.model.v / units.velocity
-    columns = [(4.0 * returned(direction, 0.5 * d) - returned(direction, d)) / 3.0 for direction in basis.T]
+    columns = [
+        (4.0 * difference_quotient(direction, 0.5 * d) - difference_quotient(direction, d)) / 3.0
+        for direction in basis.T
+    ]
     values = np.linalg.eigvals(np.stack(columns, axis=1))
     return complex(values[np.abs(values).argmax()])
 
 
 def critical_a_error(orbits: KnownOrbits, a: float) -> float:
-    """Return the change of a_c if finite differences replace the tangent map; NaN if the orbit is lost nearby."""
-    orbit, step = orbits.at(a), SLOPE_STEP * unit(orbits.model.chain)
+    """Return the change of a_c if finite differences replace the tangent map; NaN if a nearby orbit is not found."""
+    orbit, step = orbits.at(a), SLOPE_STEP * a_unit(orbits.model.chain)
     try:
         low, high = (abs(multipliers(orbits.at(a + side * step)).transverse) for side in (-1, 1))
     except OrbitError:
         return math.nan
     slope = (high - low) / (2.0 * step)
-    return abs((abs(differenced_multiplier(orbit)) - abs(multipliers(orbit).transverse)) / slope)
+    return abs((abs(finite_difference_multiplier(orbit)) - abs(multipliers(orbit).transverse)) / slope)

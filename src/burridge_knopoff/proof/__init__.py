@@ -1,1 +1,1 @@
-"""Proofs in ball arithmetic: the synchronized orbit, its multipliers and its loss under the paper's laws."""
+"""Proofs in ball arithmetic: the synchronized orbit, its multipliers and where it loses stability."""

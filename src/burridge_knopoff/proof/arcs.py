@@ -1,13 +1,13 @@
-"""Arcs: the mirror-symmetric motion of three blocks between events, with a small difference of the end blocks.
+"""Arcs: mirror-symmetric motion of three blocks between events, with an infinitesimal difference of the end blocks.
 
-Blocks 1 and 3, the end blocks (LATERAL), move synchronously; block 2 is the CENTER. Positions are co-moving and, like
-velocities, divided by v. If x and y are the positions of an end block and of the center, slipping blocks obey
+The end blocks 1 and 3 (LATERAL) move synchronously; block 2 is the CENTER. Positions are co-moving, and positions and
+velocities are divided by v. If x and y are the positions of an end block and of the center, slipping blocks obey
 
     x'' = −2x + y + w(x'),       y'' = −4y + 2x + w(y'),
 
-where w(p) = (Φ(v) − Φ(v + vp))/v is the weakening of friction. A stuck block has the velocity −1 of the ground; the
-right-hand side of its equation is then (s − 1)/v, and it starts when that rises to 0. Everything here takes balls and
-power series alike.
+where w(p) = (Φ(v) − Φ(v + vp))/v is the weakening of friction. A stuck block has the velocity −1 of the ground. The
+right-hand side of its equation is then (s − 1)/v, and the block starts when this rises to 0. All functions accept both
+balls and power series.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any, ClassVar, Protocol
 LATERAL, CENTER = 0, 1
 NAMES = ("blocks 1 and 3", "block 2")
 
-#: Total strength of the springs at each of the two, and strength of the springs between them.
+#: Total stiffness of the springs at an end block and at the center, and stiffness of the springs that couple them.
 STIFFNESS, COUPLING = (2, 4), (1, 2)
 
 
@@ -27,14 +27,14 @@ STIFFNESS, COUPLING = (2, 4), (1, 2)
 class State:
     """A mirror-symmetric state: positions x, y and velocities x', y' relative to the driver, in units of v.
 
-    difference : of blocks 1 and 3, d and d', to first order: the image of d = 1
+    difference : first-order differences d and d' of blocks 1 and 3, starting from d = 1, d' = 0
     """
 
     position: tuple[Any, Any]
     velocity: tuple[Any, Any]
     difference: tuple[Any, Any] = (1, 0)
 
-    def stopped(self, block: int) -> State:
+    def stop(self, block: int) -> State:
         """Return the state with a block at rest on the ground."""
         if block == LATERAL:
             return replace(self, velocity=(-1, self.velocity[1]), difference=(self.difference[0], 0))
@@ -42,12 +42,12 @@ class State:
 
 
 class Flow(Protocol):
-    """A friction law in the form that arcs use.
+    """A friction law in the form used by arcs.
 
-    reaches : half-widths of the boxes in which an orbit is searched, widest first
+    box_radii : half-widths of the boxes in which an orbit is searched for, widest first
     """
 
-    reaches: ClassVar[tuple[float, ...]]
+    box_radii: ClassVar[tuple[float, ...]]
 
     def weakening(self, rate: Any, a: Any) -> Any:
         """Return w, the decrease of friction below its value at the driver velocity, in units of v."""
@@ -61,33 +61,33 @@ class Arc:
     """The motion up to an event.
 
     slips : whether the end blocks, and the center, slip
-    ends : LATERAL or CENTER: the one that starts (if it sticks) or stops (if it slips) at the end of the arc
+    event_block : LATERAL or CENTER, whichever starts (if it sticks) or stops (if it slips) at the end of the arc
     flow : the friction law
     """
 
     slips: tuple[bool, bool]
-    ends: int
+    event_block: int
     flow: Flow
 
     @property
     def name(self) -> str:
-        """Name of the arc, by the event at its end."""
-        return f"the arc until {NAMES[self.ends]} {'stop' if self.slips[self.ends] else 'start'}"
+        """Name of the arc, after the event at its end."""
+        return f"the arc until {NAMES[self.event_block]} {'stop' if self.slips[self.event_block] else 'start'}"
 
-    def after(self, state: State, a: Any, time: Any) -> State:
-        """Return the state a time later if no event comes before; a : friction parameter."""
+    def state_after(self, state: State, a: Any, time: Any) -> State:
+        """Return the state a time later, if no event occurs before; a : friction parameter."""
         return self.flow.path(self.slips, state, a)(time)
 
     def margin(self, block: int, state: State, a: Any) -> Any:
         """Return a margin, in units of v, that is positive while a block stays stuck or keeps slipping.
 
-        For a slipping block its speed U'; for a stuck block 1 − s, static friction minus spring force.
+        It is the speed U' of a slipping block, and 1 − s, static friction minus spring force, of a stuck block.
         """
         if self.slips[block]:
             return state.velocity[block] + 1
         x, other = state.position[block], state.position[1 - block]
         return STIFFNESS[block] * x - COUPLING[block] * other - self.flow.weakening(-1, a)
 
-    def last(self, state: State) -> State:
-        """Return the state just after the event from the one just before: a stop removes the velocity."""
-        return state.stopped(self.ends) if self.slips[self.ends] else state
+    def state_after_event(self, state: State) -> State:
+        """Return the state just after the event, given the state just before it: a stop removes the velocity."""
+        return state.stop(self.event_block) if self.slips[self.event_block] else state

@@ -1,6 +1,6 @@
-"""Balls: real numbers with an error bound, as Arb computes with them, and their conversion to doubles and text.
+"""Balls, which are real numbers with an error bound in Arb, and their conversion to doubles and text.
 
-Every operation of Arb returns a ball that contains all results for numbers in its operands; see
+Every operation of Arb returns a ball that contains the results for all numbers in its operands; see
 F. Johansson, Arb: efficient arbitrary-precision midpoint-radius interval arithmetic, IEEE Trans. Comput. 66 (2017).
 """
 
@@ -12,12 +12,12 @@ from contextlib import contextmanager
 
 from flint import arb, ctx
 
-#: Bits of the midpoints. An orbit loses about 20 of them in a period.
+#: Bits of the midpoints. About 20 of them are lost over a period of an orbit.
 BITS = 192
 
 
 class ProofError(ValueError):
-    """A statement that could not be proved; the message says which and where, in one line."""
+    """A statement that could not be proved; the message, of one line, says which statement and where."""
 
 
 @contextmanager
@@ -31,18 +31,18 @@ def arithmetic(terms: int = 2) -> Iterator[None]:
         ctx.prec, ctx.cap = before
 
 
-def around(low: arb | float, high: arb | float) -> arb:
+def ball_between(low: arb | float, high: arb | float) -> arb:
     """Return a ball that contains all numbers from low to high."""
     return arb(low).union(arb(high))
 
 
 def decimal(numerator: int, denominator: int) -> arb:
-    """Return a ball that contains a fraction and the nearest double: the number as written, and as computed with."""
+    """Return a ball that contains a fraction and the nearest double: the number as written and as computed with."""
     return (arb(numerator) / denominator).union(arb(numerator / denominator))
 
 
 def limits(ball: arb) -> tuple[float, float]:
-    """Return the nearest doubles between which a ball lies.
+    """Return the closest doubles that enclose a ball.
 
     Raises ProofError for a ball that is not finite.
     """
@@ -57,7 +57,7 @@ def limits(ball: arb) -> tuple[float, float]:
 
 
 def width(ball: arb) -> float:
-    """Return a double not less than the width of a ball."""
+    """Return a double that is not smaller than the width of a ball."""
     return limits(2 * ball.rad())[1]
 
 

@@ -1,10 +1,10 @@
-"""Bounds over whole arcs: that a function of time is positive throughout the time between two events.
+"""Bounds over whole arcs: proofs that a function of time is positive throughout the time between two events.
 
-A ball of times, put into the closed form of the motion, gives a ball that contains all values of the function during
-these times; with derivatives, the mean value theorem gives another bound. If neither decides, the time is halved. At
+Evaluated on a ball of times, the motion gives a ball that contains all values of the function at these times; with
+derivatives, the mean value theorem gives another bound. If neither proves the sign, the interval of time is halved. At
 the ends of an arc a function may have a root that is known exactly. A block that starts has zero speed and
-acceleration, so that the sign of its second derivative decides its motion just after. Where an arc ends, one function
-passes through 0, and the sign of its first derivative decides its sign just before.
+acceleration, so that the sign of the second derivative of its speed determines its motion just after. Where an arc
+ends, one function passes through 0, and the sign of its first derivative determines its sign just before.
 """
 
 from __future__ import annotations
@@ -14,70 +14,73 @@ from typing import Any
 
 from flint import arb, arb_series, fmpq
 
-from burridge_knopoff.proof.balls import ProofError, arithmetic, around, limits
+from burridge_knopoff.proof.balls import ProofError, arithmetic, ball_between, limits
 
 #: A function of time that accepts power series.
 Function = Callable[[Any], Any]
 
-# Maximum number of halvings of an arc: to pieces of a millionth of it.
-DEEPEST = 20
+# Maximum number of halvings of an arc: down to a millionth of its length.
+MAX_HALVINGS = 20
 
-# Number of pieces of an arc for bounds on quantities far from any limit.
+# Number of pieces of an arc for bounds that need not be sharp.
 PIECES = 64
 
 
 def jet(function: Function, time: arb) -> tuple[arb, arb, arb]:
-    """Return balls that contain a function and its first two derivatives at all times in a ball."""
+    """Return balls that contain the values of a function and its first two derivatives at all times in a ball."""
     with arithmetic(3):
         value = arb_series(function(arb_series([time, 1])))
         return value[0], value[1], 2 * value[2]
 
 
-def check_positive(function: Function, length: arb, starts: bool = False, ends: bool = False) -> None:
+def check_positive(function: Function, length: arb, root_at_start: bool = False, root_at_end: bool = False) -> None:
     """Prove that a function is positive at all times from 0 to the length of an arc, except at its known roots.
 
     length : a ball; the proof is for every length in it
-    starts : whether the function and its first derivative are exactly 0 at time 0
-    ends : whether the function is exactly 0 at the end, for whatever length in the ball is the true one
-    Raises ProofError with the time at which the proof failed, and if a root cannot be where it is assumed.
+    root_at_start : whether the function and its first derivative are exactly 0 at time 0
+    root_at_end : whether the function is exactly 0 at the end, whichever length in the ball is the true one
+    Raises ProofError with the time at which the proof failed, and if a root is not where it is assumed.
     """
     with arithmetic(3):
-        known = [*(jet(function, arb(0))[:2] if starts else ()), *(jet(function, length)[:1] if ends else ())]
+        known = [
+            *(jet(function, arb(0))[:2] if root_at_start else ()),
+            *(jet(function, length)[:1] if root_at_end else ()),
+        ]
         if not all(value.contains(0) for value in known):
-            raise ProofError(f"there is no root at its {'start' if starts else 'end'} that could be left out")
+            raise ProofError(f"there is no root at its {'start' if root_at_start else 'end'} that could be excluded")
         last = length.upper()
         pieces = [(0, 0)]
         while pieces:
             depth, number = pieces.pop()
             low, high = (last * fmpq(number + side, 2**depth) for side in (0, 1))
             first, final = number == 0, number + 1 == 2**depth
-            if not _is_positive(function, low, high, starts and first, ends and final):
-                if depth == DEEPEST:
-                    raise ProofError(f"at the time {float(low.mid())!r} of an arc: it may come to 0 there")
+            if not _is_positive(function, low, high, root_at_start and first, root_at_end and final):
+                if depth == MAX_HALVINGS:
+                    raise ProofError(f"at the time {float(low.mid())!r} of an arc: it may vanish there")
                 pieces += [(depth + 1, 2 * number), (depth + 1, 2 * number + 1)]
 
 
-def _is_positive(function: Function, low: arb, high: arb, starts: bool, ends: bool) -> bool:
-    """Tell whether a function is proved positive at all times from low to high, except for a root at one end."""
-    time = around(low, high)
+def _is_positive(function: Function, low: arb, high: arb, root_at_start: bool, root_at_end: bool) -> bool:
+    """Return whether a function is proved positive at all times from low to high, except for a root at one end."""
+    time = ball_between(low, high)
     value, slope, curvature = jet(function, time)
-    # The mean value theorem, and the value itself: whichever decides.
+    # The value itself or the mean value theorem may prove the sign.
     middle = jet(function, time.mid())[0]
     if value > 0 or middle + slope * (time - time.mid()) > 0:
         return True
     # By Taylor's formula f(t) = t² f''(ξ)/2 after a double root at 0; f(t) = (t − T) f'(ξ) before a root at T.
-    return bool((starts and curvature > 0) or (ends and slope < 0))
+    return bool((root_at_start and curvature > 0) or (root_at_end and slope < 0))
 
 
 def bounds(function: Function, length: arb) -> arb:
     """Return a ball that contains all values of a function from time 0 to the length of an arc."""
     found = [jet(function, piece)[0] for piece in _pieces(length)]
     with arithmetic():
-        return around(min(limits(value)[0] for value in found), max(limits(value)[1] for value in found))
+        return ball_between(min(limits(value)[0] for value in found), max(limits(value)[1] for value in found))
 
 
 def _pieces(length: arb) -> Iterator[arb]:
     with arithmetic():
         last = length.upper()
         for number in range(PIECES):
-            yield around(last * fmpq(number, PIECES), last * fmpq(number + 1, PIECES))
+            yield ball_between(last * fmpq(number, PIECES), last * fmpq(number + 1, PIECES))

@@ -15,7 +15,7 @@ from burridge_knopoff.proof.arcs import LATERAL, STIFFNESS, State
 class Linearized:
     """Arcs under the linearized law, for any v."""
 
-    reaches: ClassVar[tuple[float, ...]] = tuple(2.0**-k for k in range(8, 30))
+    box_radii: ClassVar[tuple[float, ...]] = tuple(2.0**-k for k in range(8, 30))
 
     def weakening(self, rate: Any, a: Any) -> Any:
         """Return w, the decrease of friction below its value at the driver velocity, in units of v."""
@@ -23,16 +23,16 @@ class Linearized:
 
     def path(self, slips: tuple[bool, bool], state: State, a: Any) -> Callable[[Any], State]:
         """Return the motion from a state as a function of time, up to the next event."""
-        return lambda time: _after(slips, state, a, time)
+        return lambda time: _state_after(slips, state, a, time)
 
 
-def _after(slips: tuple[bool, bool], state: State, a: Any, time: Any) -> State:
+def _state_after(slips: tuple[bool, bool], state: State, a: Any, time: Any) -> State:
     if slips[LATERAL]:
         state = replace(state, difference=oscillation(STIFFNESS[LATERAL], a, time, *state.difference))
     if all(slips):
-        return _sliding(state, a, time)
+        return _state_all_slipping(state, a, time)
     if any(slips):
-        return _pulled(state, a, time, slips.index(True))
+        return _state_one_slipping(state, a, time, slips.index(True))
     x, y = state.position
     return replace(state, position=(x - time, y - time))
 
@@ -49,8 +49,8 @@ def oscillation(stiffness: Any, a: Any, time: Any, position: Any, velocity: Any)
     )
 
 
-def _sliding(state: State, a: Any, time: Any) -> State:
-    """Return the state after all blocks have slipped: two normal modes x + w y with stiffness 3 ∓ √3."""
+def _state_all_slipping(state: State, a: Any, time: Any) -> State:
+    """Return the state a time later while all blocks slip: two normal modes x + w y with stiffness 3 ∓ √3."""
     root = arb(3).sqrt()
     x, y = state.position
     p, q = state.velocity
@@ -64,11 +64,11 @@ def _sliding(state: State, a: Any, time: Any) -> State:
     return replace(state, position=(lateral[0], center[0]), velocity=(lateral[1], center[1]))
 
 
-def _pulled(state: State, a: Any, time: Any, slipping: int) -> State:
-    """Return the state after the end blocks or the center have slipped and the other has stuck.
+def _state_one_slipping(state: State, a: Any, time: Any, slipping: int) -> State:
+    """Return the state a time later while either the end blocks or the center slip and the others stick.
 
-    The stuck one moves at the constant velocity of the ground. The other oscillates about a point that follows it at
-    half the velocity, since COUPLING is half of STIFFNESS.
+    Stuck blocks move at the constant velocity of the ground. Slipping blocks oscillate about a point that moves at half
+    this velocity, since COUPLING is half of STIFFNESS.
     """
     half = fmpq(1, 2)
     x, other = state.position[slipping], state.position[1 - slipping]

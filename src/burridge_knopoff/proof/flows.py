@@ -1,4 +1,4 @@
-"""The arcs' flow for the friction law of a model."""
+"""The flow on arcs under the friction law of a model."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from burridge_knopoff.proof.taylor import Nonlinear
 def flow_of(model: Model) -> Flow:
     """Return the flow for the law of a model; raises ProofError if it is not one of the paper's laws.
 
-    The driver velocity is taken as the decimal that was written: 0.1, not the nearest double.
+    The driver velocity is taken to be the decimal number as written: 0.1, not the nearest double.
     """
     if is_linearized(model):
         return Linearized()

@@ -1,7 +1,7 @@
 """Krawczyk's operator: a box in which a system of equations has exactly one solution.
 
 For equations F, a box X with midpoint m, and any matrix C, the operator is K = m − C F(m) + (1 − C F'(X)) (X − m). If K
-lies in the interior of X, then F has exactly one zero in X, and it lies in K (R. Krawczyk 1969; W. Tucker, Validated
+lies in the interior of X, then F has exactly one zero in X, which lies in K (R. Krawczyk 1969; W. Tucker, Validated
 Numerics, 2011). C is the inverse of F'(m), up to rounding. F' comes from Arb's power series: a number with the
 coefficient 1 in first order carries a derivative through the code that computes the value.
 """
@@ -16,23 +16,24 @@ from flint import arb, arb_mat, arb_series
 
 from burridge_knopoff.proof.balls import ProofError, arithmetic
 
-#: Equations: as many numbers as there are unknowns, in balls or in power series.
+#: Equations: as many values as there are unknowns, as balls or as power series.
 Equations = Callable[[Sequence[Any]], Sequence[Any]]
 
-# Newton's method doubles the digits of a guess this many times: from double precision to more than the balls have.
-POLISHING = 6
-# After a step this small, more digits are right than the remainders of any arc leave.
-POLISHED = 2.0**-60
-# A box shrinks to the square of its size, down to rounding; the iteration ends when it no longer halves.
-SHRINKING = 12
+# Number of steps of Newton's method, each of which doubles the correct digits: from double precision to that of balls.
+NEWTON_STEPS = 6
+# After a step this small, the guess is more accurate than the remainders of the arcs.
+SMALLEST_STEP = 2.0**-60
+# Largest number of iterations, each of which squares the size of the box, down to rounding; the iteration ends when the
+# box no longer halves.
+MAX_SHRINKINGS = 12
 
 
 @dataclass(frozen=True)
 class Enclosure:
     """A proved solution.
 
-    inner : balls that contain it, one for each unknown
-    outer : balls in which it is unique
+    inner : balls that contain the solution, one for each unknown
+    outer : balls in which the solution is unique
     """
 
     inner: tuple[arb, ...]
@@ -47,14 +48,14 @@ def derivatives(function: Equations, at: Sequence[arb], chosen: Sequence[int] | 
     columns = []
     with arithmetic(2):
         for column in range(len(at)) if chosen is None else chosen:
-            # Values that do not depend on the unknown are computed without series, which takes a third of the time.
+            # Values that do not depend on the unknown are computed without series, in a third of the time.
             point = [arb_series([value, 1]) if k == column else value for k, value in enumerate(at)]
             columns.append([arb_series(value)[1] for value in function(point)])
     return arb_mat(columns).transpose()
 
 
-def polished(equations: Equations, guess: Sequence[Any], parameters: Sequence[arb] = ()) -> list[arb]:
-    """Return a guess improved by Newton's method, as exact numbers; this proves nothing.
+def refine_guess(equations: Equations, guess: Sequence[Any], parameters: Sequence[arb] = ()) -> list[arb]:
+    """Return a guess refined by Newton's method, as exact numbers; this proves nothing.
 
     parameters : arguments of the equations after the unknowns, exact numbers
     Raises ProofError if the derivatives cannot be inverted.
@@ -62,11 +63,11 @@ def polished(equations: Equations, guess: Sequence[Any], parameters: Sequence[ar
     count = range(len(guess))
     with arithmetic():
         point = [arb(value).mid() for value in guess]
-        for _ in range(POLISHING):
+        for _ in range(NEWTON_STEPS):
             at = [*point, *parameters]
-            step = solved(part(derivatives(equations, at, count), count, count), _column(equations(at)))
+            step = solve_linear(submatrix(derivatives(equations, at, count), count, count), _column(equations(at)))
             point = [(value - step[k, 0]).mid() for k, value in enumerate(point)]
-            if all(abs(step[k, 0].mid()) < POLISHED for k in count):
+            if all(abs(step[k, 0].mid()) < SMALLEST_STEP for k in count):
                 break
     return point
 
@@ -87,21 +88,21 @@ def enclose(
         for k, (box, mapped) in enumerate(zip(outer, inner, strict=True)):
             if not box.contains_interior(mapped):
                 raise ProofError(f"unknown {k + 1}: got {mapped}, expected it in the interior of {box}")
-        # The box is now so much smaller that derivatives at its midpoint are better than the first ones.
+        # The box is now much smaller, so that the derivatives at its midpoint are better than before.
         inverse = _inverse(equations, [ball.mid() for ball in inner], parameters)
-        for _ in range(SHRINKING):
+        for _ in range(MAX_SHRINKINGS):
             before, image = inner, _krawczyk(equations, inner, parameters, inverse)
-            # Both contain the solution, hence so does their intersection.
+            # Both contain the solution, and so does their intersection.
             inner = [box.intersection(smaller) for box, smaller in zip(before, image, strict=True)]
             if all(2 * smaller.rad() > box.rad() for box, smaller in zip(before, inner, strict=True)):
                 break
     return Enclosure(tuple(inner), tuple(outer))
 
 
-def widest(
+def enclose_widest(
     equations: Equations, middle: Sequence[arb], radii: Sequence[float], parameters: Sequence[arb] = ()
 ) -> Enclosure:
-    """Return the proof of `enclose` for the widest possible cube around a point.
+    """Return the enclosure by `enclose` for the widest cube around a point for which the proof succeeds.
 
     radii : half-widths of the cubes, widest first
     Raises ProofError if all of them fail.
@@ -114,7 +115,7 @@ def widest(
     return enclose(equations, middle, [radii[-1]] * len(middle), parameters)
 
 
-def inflated(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> list[arb]:
+def trial_radii(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> list[arb]:
     """Return half-widths of a box that Krawczyk's operator may map into itself: twice the image of its midpoint."""
     with arithmetic():
         image = _krawczyk(equations, middle, parameters, _inverse(equations, middle, parameters))
@@ -133,7 +134,7 @@ def _krawczyk(equations: Equations, box: Sequence[arb], parameters: Sequence[arb
 
 
 def _inverse(equations: Equations, middle: Sequence[arb], parameters: Sequence[arb]) -> arb_mat:
-    """Return an exact matrix, the inverse of the derivatives up to its error."""
+    """Return an exact matrix that is approximately the inverse of the derivatives."""
     count = range(len(middle))
     derivative = derivatives(equations, [*middle, *(value.mid() for value in parameters)], count)
     exact = arb_mat([[derivative[i, k].mid() for k in count] for i in count])
@@ -143,7 +144,7 @@ def _inverse(equations: Equations, middle: Sequence[arb], parameters: Sequence[a
         raise ProofError("the derivatives of the equations cannot be inverted in the middle of the box") from None
 
 
-def solved(matrix: arb_mat, values: arb_mat) -> arb_mat:
+def solve_linear(matrix: arb_mat, values: arb_mat) -> arb_mat:
     """Return an enclosure of the solutions of linear equations, for all matrices and values in their balls.
 
     Raises ProofError if some matrix in the balls may be singular.
@@ -155,7 +156,7 @@ def solved(matrix: arb_mat, values: arb_mat) -> arb_mat:
             raise ProofError("the derivatives of the equations cannot be inverted") from None
 
 
-def part(matrix: arb_mat, rows: Sequence[int], columns: Sequence[int]) -> arb_mat:
+def submatrix(matrix: arb_mat, rows: Sequence[int], columns: Sequence[int]) -> arb_mat:
     """Return some rows and columns of a matrix."""
     return arb_mat([[matrix[i, k] for k in columns] for i in rows])
 

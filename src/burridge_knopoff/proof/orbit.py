@@ -1,9 +1,9 @@
-"""Proof of the synchronized orbit: its existence, its events and the absence of others between them, its multipliers.
+"""Proof of the synchronized orbit: its existence, its events and the absence of others, and its multipliers.
 
 The unknowns are the positions just after the first start of a period, when all blocks are at rest, and the durations of
 the arcs. The equations require that each arc ends with its event, and that the positions return. Of the six
-multipliers, one is that of the flow, three are 0 since three blocks stop, one is the image of a small difference of
-blocks 1 and 3 after a period, and one that of a relative shift of the end blocks and the center.
+multipliers, one is that of the flow, and three are 0 since three blocks stop. The other two are the factors by which an
+infinitesimal difference of blocks 1 and 3, and a relative shift of the end blocks and the center, change in a period.
 """
 
 from __future__ import annotations
@@ -22,45 +22,53 @@ from burridge_knopoff.proof.arcs import CENTER, LATERAL, NAMES, Arc, State
 from burridge_knopoff.proof.balls import ProofError, arithmetic
 from burridge_knopoff.proof.bounds import Function, bounds, check_positive
 from burridge_knopoff.proof.flows import flow_of
-from burridge_knopoff.proof.krawczyk import Enclosure, Equations, derivatives, part, polished, solved, widest
+from burridge_knopoff.proof.krawczyk import (
+    Enclosure,
+    Equations,
+    derivatives,
+    enclose_widest,
+    refine_guess,
+    solve_linear,
+    submatrix,
+)
 
 #: Unknowns of an orbit before the durations of its arcs: the two positions.
-PLACES = 2
+POSITIONS = 2
 
 
-def followed(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State], list[Any]]:
-    """Return the states at the beginning of each arc and at the end of the period, and the equations of the ends.
+def follow_arcs(arcs: Sequence[Arc], unknown: Sequence[Any]) -> tuple[list[State], list[Any]]:
+    """Return the states at the beginning of each arc and at the end of the period, and the equations of the events.
 
     unknown : positions x and y of the blocks at rest, the duration of each arc, and a
     """
     *orbit, a = unknown
     states, found = [State((orbit[0], orbit[1]), (-1, -1))], []
-    for arc, time in zip(arcs, orbit[PLACES:], strict=True):
-        # The condition has to use the state before the event: a stop makes the speed 0 anyway.
-        before = arc.after(states[-1], a, time)
-        found.append(arc.margin(arc.ends, before, a))
-        states.append(arc.last(before))
+    for arc, time in zip(arcs, orbit[POSITIONS:], strict=True):
+        # The condition uses the state before the event: after a stop the speed is always 0.
+        before = arc.state_after(states[-1], a, time)
+        found.append(arc.margin(arc.event_block, before, a))
+        states.append(arc.state_after_event(before))
     return states, found
 
 
 def equations(arcs: Sequence[Arc], critical: bool = False) -> Equations:
-    """Return the equations of a periodic orbit, in the unknowns of `followed`: the events, and the return of positions.
+    """Return the equations of a periodic orbit, in the unknowns of `follow_arcs`: events and return of positions.
 
-    critical : whether the transverse multiplier has to be 1 as well
+    critical : whether the transverse multiplier must be 1 as well
     """
 
     def values(unknown: Sequence[Any]) -> list[Any]:
-        states, found = followed(arcs, unknown)
-        returned = [states[-1].position[k] - unknown[k] for k in range(PLACES)]
+        states, found = follow_arcs(arcs, unknown)
+        returned = [states[-1].position[k] - unknown[k] for k in range(POSITIONS)]
         return [*found, *returned, *([states[-1].difference[0] - 1] if critical else [])]
 
     return values
 
 
 def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
-    """Return the arcs of a synchronized orbit in double precision, and its unknowns, as a guess.
+    """Return the arcs of a synchronized orbit and, as a guess in double precision, its unknowns.
 
-    Raises ProofError unless all blocks stick at some time, and each starts and stops once a period.
+    Raises ProofError unless all blocks stick at some time, and each starts and stops once in a period.
     """
     events = [(time, block) for time, block, _ in orbit.events if block in (LATERAL, CENTER)]
     slips = [not stuck for stuck in orbit.reference.stuck[:2]]
@@ -69,7 +77,8 @@ def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
         before.append((slips[LATERAL], slips[CENTER]))
         slips[block] = not slips[block]
     if sorted(block for _, block in events) != [0, 0, 1, 1] or (False, False) not in before:
-        raise ProofError(f"a = {orbit.model.a!r}: not covered: all blocks stick at once, and each stops once a period")
+        expected = "expected all blocks to stick at once, and each to stop once in a period"
+        raise ProofError(f"a = {orbit.model.a!r}: not covered: {expected}")
     first = before.index((False, False))
     # A period, from the first start to the next.
     cycle = events[first:] + [(time + orbit.period, block) for time, block in events[: first + 1]]
@@ -77,17 +86,17 @@ def arcs_of(orbit: PeriodicOrbit) -> tuple[tuple[Arc, ...], list[float]]:
     flow_of_law = flow_of(orbit.model)
     arcs = [Arc(state, block, flow_of_law) for state, (_, block) in zip(slipping, cycle[1:], strict=True)]
     start = flow(orbit.model, orbit.reference, cycle[0][0])[0].state()
-    position = [float(x) / orbit.model.v for x in start.position[:PLACES]]
+    position = [float(x) / orbit.model.v for x in start.position[:POSITIONS]]
     return tuple(arcs), position + [late - early for (early, _), (late, _) in pairwise(cycle)]
 
 
 @dataclass(frozen=True, eq=False)
 class ProvedOrbit:
-    """A synchronized orbit that is proved to exist, and to be unique in a box, for every a in a ball.
+    """A synchronized orbit that is proved to exist and to be unique in a box for every a in a ball.
 
     arcs : from the first start of a period
     a : friction parameter, a ball
-    enclosure : of the unknowns; its inner part may be narrower if it solves additional equations
+    enclosure : of the unknowns; additional equations may make its inner part narrower
     """
 
     arcs: tuple[Arc, ...]
@@ -97,7 +106,7 @@ class ProvedOrbit:
     @property
     def times(self) -> tuple[arb, ...]:
         """Durations of the arcs."""
-        return self.enclosure.inner[PLACES:]
+        return self.enclosure.inner[POSITIONS:]
 
     @property
     def period(self) -> arb:
@@ -107,7 +116,7 @@ class ProvedOrbit:
 
     @property
     def event_times(self) -> list[arb]:
-        """Times of the events that end each arc, after the first start of the period; the last is the period."""
+        """Times of the events at the ends of the arcs, since the first start of the period; the last is the period."""
         with arithmetic():
             return [sum(self.times[: k + 1], arb(0)) for k in range(len(self.times))]
 
@@ -119,22 +128,22 @@ class ProvedOrbit:
     def multiplier(self) -> arb:
         """The transverse Floquet multiplier μ: the factor by which a small difference of blocks 1 and 3 changes."""
         with arithmetic():
-            return followed(self.arcs, self._unknown)[0][-1].difference[0]
+            return follow_arcs(self.arcs, self._unknown)[0][-1].difference[0]
 
     @cached_property
     def symmetric_multiplier(self) -> arb:
-        """The multiplier of mirror-symmetric perturbations; all others of these are 0 or that of the flow.
+        """The multiplier of mirror-symmetric perturbations; their other multipliers are 0 or that of the flow.
 
-        When all blocks stick, a common shift of all blocks is along the flow. The multiplier is the factor by which x −
-        y changes in a period: a start leaves perturbations unchanged, a stop removes the velocity
-        (docs/synchronization.md).
+        While all blocks stick, a common shift of all blocks is along the flow. The multiplier is the factor by which a
+        perturbation of x − y changes in a period: a start leaves perturbations unchanged, and a stop removes those of
+        the velocity (docs/synchronization.md).
         """
 
-        def apart(unknown: Sequence[Any]) -> list[Any]:
-            x, y = followed(self.arcs, unknown)[0][-1].position
+        def position_difference(unknown: Sequence[Any]) -> list[Any]:
+            x, y = follow_arcs(self.arcs, unknown)[0][-1].position
             return [x - y]
 
-        return derivatives(apart, self._unknown, [0])[0, 0]
+        return derivatives(position_difference, self._unknown, [0])[0, 0]
 
     @cached_property
     def slope(self) -> arb:
@@ -143,8 +152,8 @@ class ProvedOrbit:
         count = len(self.enclosure.inner)
         orbit, last = range(count), [count]
         with arithmetic():
-            moved = solved(part(matrix, orbit, orbit), part(matrix, orbit, last))
-            change = part(matrix, last, last) - part(matrix, last, orbit) * moved
+            moved = solve_linear(submatrix(matrix, orbit, orbit), submatrix(matrix, orbit, last))
+            change = submatrix(matrix, last, last) - submatrix(matrix, last, orbit) * moved
             return change[0, 0]
 
     def check_arcs(self) -> None:
@@ -152,27 +161,29 @@ class ProvedOrbit:
 
         Raises ProofError, one line, with the block, arc and time.
         """
-        for k, (arc, state, time) in enumerate(self._each_arc()):
-            started = self.arcs[k - 1].ends if arc.slips[self.arcs[k - 1].ends] else None
+        for k, (arc, state, time) in enumerate(self._arcs_with_states()):
+            started = self.arcs[k - 1].event_block if arc.slips[self.arcs[k - 1].event_block] else None
             for block in (LATERAL, CENTER):
                 margin = self._margin(arc, state, block)
                 try:
-                    check_positive(margin, time, starts=block == started, ends=block == arc.ends)
+                    check_positive(margin, time, root_at_start=block == started, root_at_end=block == arc.event_block)
                 except ProofError as error:
-                    raise ProofError(f"{NAMES[block]}, {arc.name}: not proved to go on as they do: {error}") from None
+                    raise ProofError(
+                        f"{NAMES[block]}, {arc.name}: not proved to keep sticking or slipping: {error}"
+                    ) from None
 
-    def fastest(self) -> arb:
-        """Return a ball that contains all speeds U'/v of slipping blocks."""
-        return self._hull(True)
+    def speed_range(self) -> arb:
+        """Return a ball that contains U'/v of all slipping blocks at all times."""
+        return self._margin_range(True)
 
-    def tightest(self) -> arb:
-        """Return a ball that contains (1 − s)/v, with spring force s, of all stuck blocks."""
-        return self._hull(False)
+    def force_margin_range(self) -> arb:
+        """Return a ball that contains (1 − s)/v of all stuck blocks at all times, with spring force s."""
+        return self._margin_range(False)
 
-    def _hull(self, slipping: bool) -> arb:
+    def _margin_range(self, slipping: bool) -> arb:
         found = [
             bounds(self._margin(arc, state, block), time)
-            for arc, state, time in self._each_arc()
+            for arc, state, time in self._arcs_with_states()
             for block in (LATERAL, CENTER)
             if arc.slips[block] == slipping
         ]
@@ -180,25 +191,25 @@ class ProvedOrbit:
             return reduce(arb.union, found)
 
     def _margin(self, arc: Arc, state: State, block: int) -> Function:
-        """Return the margin of a block as a function of time since the beginning of an arc."""
+        """Return the margin of a block as a function of the time since the beginning of an arc."""
         path = arc.flow.path(arc.slips, state, self.a)
         return lambda time: arc.margin(block, path(time), self.a)
 
-    def _each_arc(self) -> list[tuple[Arc, State, arb]]:
-        """Return each arc, the state at its beginning and its duration."""
+    def _arcs_with_states(self) -> list[tuple[Arc, State, arb]]:
+        """Return each arc with the state at its beginning and its duration."""
         with arithmetic():
-            states, _ = followed(self.arcs, self._unknown)
+            states, _ = follow_arcs(self.arcs, self._unknown)
         return list(zip(self.arcs, states, self.times, strict=False))
 
 
 def prove_orbit(orbit: PeriodicOrbit, a: arb) -> ProvedOrbit:
-    """Return the proof that there is a synchronized orbit near one in double precision.
+    """Return the proof that there is a synchronized orbit near a given one in double precision.
 
     a : friction parameter, a narrow ball around that of the orbit
     Raises ProofError, one line, if the proof fails.
     """
     arcs, guess = arcs_of(orbit)
-    middle = polished(equations(arcs), guess, [a.mid()])
-    proved = ProvedOrbit(arcs, a, widest(equations(arcs), middle, arcs[0].flow.reaches, [a]))
+    middle = refine_guess(equations(arcs), guess, [a.mid()])
+    proved = ProvedOrbit(arcs, a, enclose_widest(equations(arcs), middle, arcs[0].flow.box_radii, [a]))
     proved.check_arcs()
     return proved

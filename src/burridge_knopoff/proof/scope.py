@@ -7,20 +7,20 @@ from burridge_knopoff.laws.nonlinear import Nonlinear
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 
-#: The v of the proofs for the nonlinear law: the paper's.
+#: The v of the proofs under the nonlinear law: that of the paper.
 NONLINEAR_V = 0.1
-#: For the linearized law v only sets the scale, except for symmetric contact: the largest v at which stuck blocks hold,
-#: as `summaries/proof.py` shows. On these orbits their spring force differs from the static friction by about v.
+#: Under the linearized law v only sets the scale. With symmetric contact, this is the largest v at which stuck blocks
+#: resist the backward pull, as `summaries/proof.py` proves: their spring force differs from static friction by about v.
 LARGEST_V = 1.0
 
 
 def is_linearized(model: Model) -> bool:
-    """Tell whether the law of a model is the paper's linearized one."""
+    """Return whether the law of a model is the paper's linearized law."""
     return model.law.formula == Linearized.formula
 
 
 def is_covered(model: Model) -> bool:
-    """Tell whether the proofs cover a model: its chain, law, v and contact; a does not matter."""
+    """Return whether the proofs cover a model: its chain, law, v and contact; a does not matter."""
     springs = model.chain.is_like(Chain(3))
     if is_linearized(model):
         return bool(springs and (model.contact == "one_sided" or model.v <= LARGEST_V))

@@ -1,10 +1,10 @@
 """The nonlinear law: arcs by Taylor series with a rigorous remainder, in time steps.
 
-With Φ = 1/(1 + aU') and b = av, w(p) = a p / ((1 + b)(1 + b + b p)). A step needs a box that contains the solution
-throughout: if Picard's integral operator maps a box into itself, the solution is in it. The last coefficient of the
+With Φ = 1/(1 + aU') and b = av, w(p) = a p / ((1 + b)(1 + b + b p)). Each step needs a box that contains the solution
+throughout: if Picard's integral operator maps a box into itself, the solution stays in it. The last coefficient of the
 series over that box, times the last power of time, bounds the remainder of the series (W. Tucker, Validated Numerics,
-2011). Numbers may be power series in another quantity: then the derivative with respect to it is enclosed as well,
-which obeys the derivative of the same equations.
+2011). The state may consist of power series in another quantity. The derivative with respect to this quantity, which
+obeys the derivative of the same equations, is then enclosed as well.
 """
 
 from __future__ import annotations
@@ -18,27 +18,27 @@ from typing import Any, ClassVar
 from flint import arb, arb_series, fmpq
 
 from burridge_knopoff.proof.arcs import COUPLING, LATERAL, STIFFNESS, State
-from burridge_knopoff.proof.balls import ProofError, arithmetic, around, limits
+from burridge_knopoff.proof.balls import ProofError, arithmetic, ball_between, limits
 
-#: Length of a step, and number of terms of its series; the remainder is about 1e-22 on these orbits.
+#: Length of a time step, and number of terms of its series; the remainder is about 1e-22 on these orbits.
 STEP = fmpq(1, 4)
 ORDER = 24
 
-# Upper bound on the length of an arc.
-LONGEST = 100
+# Upper bound on the duration of an arc.
+LONGEST_ARC = 100
 
-# The box of a step is searched by this many widenings, each by this fraction and at least by the other number.
+# The box of a step is widened up to this many times, each time by this fraction and at least by the last number.
 WIDENINGS = 60
-SHARE = 0.25
-LEAST = 2.0**-120
+WIDENING = 0.25
+SMALLEST_WIDENING = 2.0**-120
 
 
 @dataclass(frozen=True)
 class Nonlinear:
     """Arcs for the nonlinear law at a driver velocity v, a ball."""
 
-    # Boxes widen a million times over the steps of a period, and must stay small all the same.
-    reaches: ClassVar[tuple[float, ...]] = (2.0**-26, 2.0**-32)
+    # Boxes widen a million times over the steps of a period, and must still be small in the end.
+    box_radii: ClassVar[tuple[float, ...]] = (2.0**-26, 2.0**-32)
 
     v: arb
 
@@ -61,8 +61,11 @@ class Nonlinear:
         b = a * self.v
         strength = a / (1 + b)
         # 1 + b + b p at the start, for end blocks and center.
-        heads = [_positive(1 + b + b * rate[0]) if moves else None for rate, moves in zip((p, q), slips, strict=True)]
-        # p/(1 + b + b p) for both, and 1/(1 + b + b p) for the end blocks, whose square the difference needs.
+        heads = [
+            _check_denominator(1 + b + b * rate[0]) if moves else None
+            for rate, moves in zip((p, q), slips, strict=True)
+        ]
+        # p/(1 + b + b p) for both, and 1/(1 + b + b p) for the end blocks; its square enters the difference.
         ratios: list[list[Any]] = [[], []]
         inverse: list[Any] = []
         square: list[Any] = []
@@ -93,9 +96,10 @@ class Nonlinear:
 
 @dataclass
 class _Path:
-    """A motion, integrated as far as requested.
+    """A motion that is integrated as far as requested.
 
-    numbers : x, y, x', y', d, d' at the beginning, and a; pieces : coefficients of each step, the last its remainder
+    numbers : x, y, x', y', d, d' at the beginning, and a
+    pieces : coefficients of each step, of which the last is the remainder
     """
 
     law: Nonlinear
@@ -106,17 +110,17 @@ class _Path:
 
     def __call__(self, time: Any) -> State:
         whole = time[0] if isinstance(time, arb_series) else arb(time)
-        if not 0 <= whole.upper() < LONGEST:
-            raise ProofError(f"time: got {whole}, expected 0 to {LONGEST}")
+        if not 0 <= whole.upper() < LONGEST_ARC:
+            raise ProofError(f"time: got {whole}, expected 0 to {LONGEST_ARC}")
         first, last = (math.floor(end) for end in limits(whole / STEP))
         found = None
         for number in range(max(first, 0), last + 1):
-            values = self._within(number, whole)
+            values = self._state_within(number, whole)
             found = values if found is None else [_union(one, other) for one, other in zip(found, values, strict=True)]
         assert found is not None
         a = self.numbers[-1]
         if isinstance(time, arb_series):
-            # The first terms of the series around that time, which are all that a power series of time needs.
+            # Terms up to second order of the series around that time, which suffice for a power series in time.
             rest = time - whole
             coefficients = self.law.series(self.slips, found, a, 2)
             found = [one[0] + one[1] * rest + one[2] * rest * rest for one in coefficients]
@@ -124,7 +128,7 @@ class _Path:
         rates = p if self.slips[0] else -1, q if self.slips[1] else -1
         return State((x, y), rates, (d, e if self.slips[LATERAL] else 0))
 
-    def _within(self, number: int, time: arb) -> list[Any]:
+    def _state_within(self, number: int, time: arb) -> list[Any]:
         """Return the state at the times of a ball that lie in a step."""
         while len(self.pieces) <= number:
             with arithmetic(self.terms):
@@ -133,41 +137,41 @@ class _Path:
         with arithmetic(self.terms):
             begin = time.lower() if time.lower() > low else arb(low)
             end = time.upper() if time.upper() < high else arb(high)
-            # By rounding, a ball around both ends may reach beyond the step; the margin of the box allows for it.
-            since = around(begin, end) - low
-            return [_value(coefficients, since) for coefficients in self.pieces[number]]
+            # A rounded ball around both ends may reach beyond the step; the margin of the box allows for this.
+            since = ball_between(begin, end) - low
+            return [_evaluate(coefficients, since) for coefficients in self.pieces[number]]
 
     def _step(self) -> None:
         """Add a step; raises ProofError if no box is found that contains it."""
-        *start, a = self.numbers if not self.pieces else [*self._last(), self.numbers[-1]]
-        # Slightly longer than the step, so that rounded times stay inside.
-        span = around(0, arb(STEP) * fmpq(1001, 1000))
-        box = [_value(one, span) for one in self.law.series(self.slips, start, a, 3)]
+        *start, a = self.numbers if not self.pieces else [*self._end_state(), self.numbers[-1]]
+        # Slightly longer than the step, so that rounded times lie inside.
+        span = ball_between(0, arb(STEP) * fmpq(1001, 1000))
+        box = [_evaluate(one, span) for one in self.law.series(self.slips, start, a, 3)]
         for _ in range(WIDENINGS):
-            box = [_widened(value) for value in box]
+            box = [_widen(value) for value in box]
             rates = [one[1] for one in self.law.series(self.slips, box, a, 1)]
             image = [value + span * rate for value, rate in zip(start, rates, strict=True)]
             if all(_contains(value, mapped) for value, mapped in zip(box, image, strict=True)):
                 break
             box = image
         else:
-            raise ProofError(f"step {len(self.pieces) + 1} of an arc: no box is known to hold the motion")
+            raise ProofError(f"step {len(self.pieces) + 1} of an arc: found no box that contains the motion")
         remainders = self.law.series(self.slips, image, a, ORDER)
         series = self.law.series(self.slips, start, a, ORDER - 1)
         self.pieces.append([[*one, rest[ORDER]] for one, rest in zip(series, remainders, strict=True)])
 
-    def _last(self) -> list[Any]:
-        return [_value(coefficients, arb(STEP)) for coefficients in self.pieces[-1]]
+    def _end_state(self) -> list[Any]:
+        return [_evaluate(coefficients, arb(STEP)) for coefficients in self.pieces[-1]]
 
 
-def _positive(value: Any) -> Any:
-    """Return 1 + aU'; raises ProofError where it may vanish and friction is not defined."""
+def _check_denominator(value: Any) -> Any:
+    """Return a value of 1 + aU'; raises ProofError if it may vanish, so that friction is not defined."""
     if not _parts(value)[0] > 0:
         raise ProofError(f"1 + aU': got {_parts(value)[0]}, expected above 0")
     return value
 
 
-def _value(coefficients: Sequence[Any], time: arb) -> Any:
+def _evaluate(coefficients: Sequence[Any], time: arb) -> Any:
     """Return a polynomial at a time, by Horner's rule."""
     value = coefficients[-1]
     for coefficient in reversed(coefficients[:-1]):
@@ -180,12 +184,12 @@ def _parts(value: Any) -> list[arb]:
     return [value[0], value[1]] if isinstance(value, arb_series) else [value]
 
 
-def _of(parts: Sequence[arb]) -> Any:
+def _from_parts(parts: Sequence[arb]) -> Any:
     return arb_series(list(parts)) if len(parts) > 1 else parts[0]
 
 
-def _widened(value: Any) -> Any:
-    return _of([part + arb(0, part.rad() * SHARE + LEAST) for part in _parts(value)])
+def _widen(value: Any) -> Any:
+    return _from_parts([part + arb(0, part.rad() * WIDENING + SMALLEST_WIDENING) for part in _parts(value)])
 
 
 def _contains(box: Any, image: Any) -> bool:
@@ -194,4 +198,4 @@ def _contains(box: Any, image: Any) -> bool:
 
 def _union(one: Any, other: Any) -> Any:
     pairs = zip(_parts(one), _parts(other), strict=True)
-    return _of([first.union(second) for first, second in pairs])
+    return _from_parts([first.union(second) for first, second in pairs])

@@ -17,7 +17,7 @@ from burridge_knopoff.running.status import ENDS, Status
 from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.study import Study
-from burridge_knopoff.summaries.equilibrium import SLIDING, sliding_attracts
+from burridge_knopoff.summaries.equilibrium import SLIDING, is_sliding_attracting
 
 
 @dataclass(frozen=True)
@@ -130,7 +130,7 @@ def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, agreement: x
                     "command": commands.snakemake(law, initial, a),
                 }
                 if status == Status.COMPLETED:
-                    sliding = sliding_attracts(commands.study.model(law, commands.study.grid[a]))
+                    sliding = is_sliding_attracting(commands.study.model(law, commands.study.grid[a]))
                     what = f"kind of motion undetermined{f': {SLIDING}' if sliding else ''}"
                     undetermined.append({**run, "what": what})
                 else:

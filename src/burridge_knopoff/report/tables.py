@@ -81,7 +81,11 @@ def map_table(basins: xarray.Dataset) -> list[dict[str, str]]:
             "a": text(row.a),
             "exponent": with_error(*row.exponent),
             "undetermined": f"{row.undetermined} of {row.states}"
-            + (f", {row.alike} of them where mirror blocks are alike, a line of no area" if row.alike else ""),
+            + (
+                f", {row.symmetric_count} of them where mirror blocks are alike, a line of no area"
+                if row.symmetric_count
+                else ""
+            ),
         }
         for row in map_rows(basins)
     ]

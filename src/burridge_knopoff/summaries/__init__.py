@@ -1,1 +1,1 @@
-"""Summaries: one netCDF file for each question, from point files, or from the model where no single run answers it."""
+"""Summaries: one netCDF file per question, from point files or, where no single run suffices, from the model."""

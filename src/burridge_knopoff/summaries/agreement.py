@@ -1,4 +1,4 @@
-"""Each friction law of a study against its first one, for each initial state and a: where do they agree and part?"""
+"""Agreement of each friction law of a study with the first one, for each initial state and a."""
 
 from __future__ import annotations
 
@@ -26,16 +26,16 @@ from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
-# The last bit of a product of vectors depends on where in memory they lie.
+# Significant digits: the last bits of a product of vectors depend on their alignment in memory.
 DIGITS = 12
 
 _POINT = ("law", "initial", "a")
 _PAIR = ("other_law", "initial", "a")
-# ⟨J⟩ of a run and of its attractor may differ by this share beyond their errors.
+# Relative difference of ⟨J⟩ that is allowed between a run and its attractor even if their errors are smaller.
 SAME_MEAN = 0.01
 KIND_COMMENT = (
-    "that of the attractor that the run has come to, which was seen for longer; a run on its way to synchrony counts "
-    "as synchronized; where no attractor is known, or the run is on none, as far as the run alone shows it"
+    "kind of the attractor that the run has reached, which was followed for longer than the run; a run that approaches "
+    "synchrony counts as synchronized; if the run has reached no known attractor, the kind that the run alone shows"
 )
 POINT_VARIABLES = {
     "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
@@ -48,7 +48,7 @@ RUN_VARIABLES = {
         _POINT,
         "i1",
         "whether the run ended on the attractor that its initial state reaches",
-        ANSWER | {"comment": "no: its transient was too short, or its chaos died within the window"},
+        ANSWER | {"comment": "no: the transient was too short, or the chaos ended within the window"},
     ),
 }
 PAIR_VARIABLES = {
@@ -58,13 +58,13 @@ PAIR_VARIABLES = {
         _PAIR, "f8", "Wasserstein distance between the distributions of W' on upward crossings of both laws"
     ),
     "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
-    "event_order_count": Variable(_PAIR, "i8", "number of events that come in the same order under both laws"),
+    "event_order_count": Variable(_PAIR, "i8", "number of events that occur in the same order under both laws"),
     "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", ANSWER),
-    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", ANSWER),
-    "parting_a": Variable(_PAIR[:2], "f8", "least a of the grid at which the laws disagree, NaN if there is none"),
+    "agrees": Variable(_PAIR, "i1", "whether the kind of motion and <J> agree", ANSWER),
+    "parting_a": Variable(_PAIR[:2], "f8", "smallest a of the grid at which the laws disagree, NaN if there is none"),
 }
 VARIABLES = {**POINT_VARIABLES, **RUN_VARIABLES, **PAIR_VARIABLES}
-OTHER_LAW = Variable(("other_law",), "O", "friction law that is compared with the first one", coordinate=True)
+OTHER_LAW = Variable(("other_law",), "O", "friction law compared with the first one", coordinate=True)
 _READ = [
     *("end_time", "mean_distance", "mean_distance_error", "crossing_velocity", "crossing_direction"),
     *EVENTS,
@@ -82,7 +82,8 @@ def summarize(
     """Compare each law with the first one at every grid point.
 
     lyapunov : the summary of that name, for the kinds of motion of runs
-    attractors : the summary of that name, for what the initial states reach; without it nobody knows which runs settled
+    attractors : the summary of that name, for the attractors that the initial states reach; without it `settled` is
+        undetermined
     agreement : the config's section of that name: relative_tolerance, standard_errors
     """
     sizes = dict(zip(_POINT, grid.shape, strict=True), other_law=len(grid.laws) - 1)
@@ -94,7 +95,9 @@ def summarize(
                 values["mean_distance"][i, j, k] = run["mean_distance"]
                 values["mean_distance_error"][i, j, k] = run["mean_distance_error"]
             for i, run in enumerate(runs[1:]):
-                values["section_distance"][i, j, k] = _section_distance(_upward(runs[0]), _upward(run))
+                values["section_distance"][i, j, k] = _section_distance(
+                    _upward_crossings(runs[0]), _upward_crossings(run)
+                )
                 count, until = common_order(all_events(runs[0]), all_events(run))
                 values["event_order_count"][i, j, k] = count
                 values["event_order_time"][i, j, k] = min(until, float(runs[0]["end_time"]), float(run["end_time"]))
@@ -110,7 +113,7 @@ def summarize(
     shared = grid.axes()
     others = ("other_law", np.array(grid.laws[1:], dtype=object), OTHER_LAW.all_attributes())
     return summary(
-        "Agreement of the friction laws with the first one",
+        "Agreement of each friction law with the first one",
         VARIABLES,
         values,
         {"law": shared["law"], "other_law": others, **shared},
@@ -124,8 +127,8 @@ def _fill_settled(
 ) -> None:
     """Fill in whether each run has the ⟨J⟩ and the kind of motion of the attractor that its initial state reaches.
 
-    The kind of a run whose ⟨J⟩ is that of the attractor becomes that of the attractor, which was seen for longer: all
-    that ends on one attractor has one kind.
+    If ⟨J⟩ agrees, the run is given the kind of the attractor, which was followed for longer, so that all runs on one
+    attractor have the same kind.
     """
     relative_tolerance, standard_errors = agreement["relative_tolerance"], agreement["standard_errors"]
     own = attractors.sel(contact=attractors.attrs["contact"], start=attractors.attrs["start"])
@@ -142,23 +145,23 @@ def _fill_settled(
             values["kind"][law, initial],
             *(reached(own, *names, k) for k in ("kind", "period")),
         )
-        # Chaos that ends long after the run is chaos in the run.
+        # Transient chaos that outlasts the run is chaos in the run.
         lasting = np.where(mean < threshold, MotionKind.SYNCHRONIZED_CHAOS, MotionKind.CHAOTIC)
         finer = np.where(finer == MotionKind.TRANSIENT_CHAOS, lasting, finer)
-        told = there & np.isin(finer, (*REGULAR, *CHAOS)) & (np.isin(kind, OPEN) | same_result(kind, finer))
-        told |= (
+        replaced = there & np.isin(finer, (*REGULAR, *CHAOS)) & (np.isin(kind, OPEN) | same_result(kind, finer))
+        replaced |= (
             known & np.isin(finer, SYNCHRONOUS) & (mine < attractors.attrs["resolution"] * attractors.attrs["v"] / 0.1)
         )
-        kind[...] = np.where(told, finer, kind)
-        values["period"][law, initial] = np.where(told, period, values["period"][law, initial])
+        kind[...] = np.where(replaced, finer, kind)
+        values["period"][law, initial] = np.where(replaced, period, values["period"][law, initial])
         there &= (finer == MotionKind.UNDETERMINED) | same_result(kind, finer)
-        # Errors as wide as what two laws may differ by hide whether two motions are one.
-        telling = allowed <= np.maximum(relative_tolerance * np.maximum(mean, mine), threshold)
-        known &= np.isfinite(mine) & (kind != MotionKind.UNDETERMINED) & (telling | ~there)
+        # If the errors exceed the tolerance between laws, agreement of ⟨J⟩ does not show that the motions are the same.
+        is_accurate = allowed <= np.maximum(relative_tolerance * np.maximum(mean, mine), threshold)
+        known &= np.isfinite(mine) & (kind != MotionKind.UNDETERMINED) & (is_accurate | ~there)
         values["settled"][law, initial] = np.where(known, there, Answer.UNDETERMINED)
 
 
-def _upward(run: Mapping[str, np.ndarray]) -> np.ndarray:
+def _upward_crossings(run: Mapping[str, np.ndarray]) -> np.ndarray:
     """Return W' of the upward crossings of a run."""
     return run["crossing_velocity"][run["crossing_direction"] > 0]
 
@@ -173,7 +176,7 @@ def _section_distance(one: np.ndarray, other: np.ndarray) -> float:
 def table(dataset: xarray.Dataset) -> str:
     """Return the comparison as CSV, one line for each initial state and a.
 
-    Where more than one law is compared with the first, the columns of a comparison end with the name of the other law.
+    If several laws are compared with the first, the columns of each comparison end with the name of the other law.
     """
     laws, others = (dataset[name].values.tolist() for name in ("law", "other_law"))
     end = {other: f"_{other}" if len(others) > 1 else "" for other in others}
@@ -198,45 +201,47 @@ def table(dataset: xarray.Dataset) -> str:
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return, in a line for each other law and initial state, the a at which it parts from the first law."""
+    """Return a line for each other law and initial state: the a at which the law first disagrees with the first law."""
     first, others = dataset["law"].values[0], dataset["other_law"].values
     lines = [] if len(others) else [f"The {first} law is the only one: there is nothing to compare."]
     for other in others:
         for initial in dataset["initial"].values:
-            found = _parting(dataset.sel(other_law=other, initial=initial))
+            found = _agreement_text(dataset.sel(other_law=other, initial=initial))
             lines.append(f"{initial}, {other} law compared with the {first} law: {found}")
     for law in dataset["law"].values:
         for initial in dataset["initial"].values:
             settled = dataset["settled"].sel(law=law, initial=initial)
-            elsewhere = settled["a"].values[settled.values == Answer.NO]
-            if len(elsewhere):
-                where = ", ".join(f"{a:g}" for a in elsewhere)
+            unsettled = settled["a"].values[settled.values == Answer.NO]
+            if len(unsettled):
+                where = ", ".join(f"{a:g}" for a in unsettled)
                 lines.append(
-                    f"{initial}, {law} law: the run is not on the attractor that its state reaches at a = {where}"
+                    f"{initial}, {law} law: the run has not reached the attractor of its initial state at a = {where}"
                 )
     return "\n".join(lines) + "\n"
 
 
-def _parting(row: xarray.Dataset) -> str:
-    """Return in words where two laws agree and part, from one initial state."""
+def _agreement_text(row: xarray.Dataset) -> str:
+    """Return as text where two laws agree and where they disagree, from one initial state."""
     verdict = row["agrees"].values
     a = row["a"].values[verdict >= 0]
-    apart = row["a"].values[verdict == 0]
+    different = row["a"].values[verdict == 0]
     if not len(a):
         text = "no value of a could be compared."
-    elif not len(apart):
+    elif not len(different):
         several = f"all {len(a)} values of a that were compared, {a[0]:g} to {a[-1]:g}"
         text = f"they agree at {several if len(a) > 1 else f'the only value of a that was compared, {a[0]:g}'}."
     else:
-        before = a[a < apart[0]]
-        agree = f"agree up to a = {before[-1]:g} and part" if len(before) else "part"
+        before = a[a < different[0]]
+        agree = f"agree up to a = {before[-1]:g} and " if len(before) else ""
         other_kind = np.count_nonzero(row["same_kind"].values == 0)
         kinds = f"; the kind of motion differs at {other_kind}" if other_kind else ""
         text = (
-            f"they {agree} at a = {apart[0]:g}; they disagree at {len(apart)} of {len(a)} values of a, "
-            f"the last {apart[-1]:g}{kinds}."
+            f"they {agree}first disagree at a = {different[0]:g}; they disagree at {len(different)} of {len(a)} values "
+            f"of a, the last at {different[-1]:g}{kinds}."
         )
     if failed := int((verdict < 0).sum()):
-        values = f"{counted(failed, 'value')} of a {'is' if failed == 1 else 'are'} undetermined"
-        text += f" {values}: a run did not complete, its kind is not clear, or <J> differs by about the tolerance."
+        text += (
+            f" At {counted(failed, 'value')} of a the comparison is undetermined: a run did not complete, its kind of "
+            "motion is undetermined, or the difference of <J> is close to the tolerance."
+        )
     return text

@@ -1,7 +1,7 @@
-"""The attractors of all laws in one file, at the values of the grid and at all values: branches numbered alike.
+"""The attractors of all laws in one file, on the grid and at all values of a, with common numbers of branches.
 
-`refined.nc` has the numbers and names of `attractors.nc`, and those of branches that exist only between values of the
-grid.
+`refined.nc` has the numbers and names of `attractors.nc`, and further ones for branches that exist only between values
+of the grid.
 """
 
 from __future__ import annotations
@@ -36,16 +36,16 @@ LASTING = 3
 def make(
     given: Given, model: Mapping[str, Any], a: float, attractors: Mapping[str, Any]
 ) -> tuple[xarray.Dataset, str, xarray.Dataset, xarray.Dataset]:
-    """Return the attractors of all laws on the grid, the same in words, those at all values of a, and their rotation.
+    """Return the attractors of all laws on the grid, with a text, those at all values of a, and their rotation.
 
-    model, a : what decides the models, and one a; attractors : settings of the search
+    model, a : the config's description of the models, and any a; attractors : settings of the search
     """
     parts, further, models = given.summaries("grid"), given.summaries("refined"), models_of(model, a)
     numbers = branch_numbers(parts, models, SearchSettings(**attractors), given.cores)
     on_grid = merge(parts, numbers)
-    numbers = with_branches_between(numbers, further)
+    numbers = number_intermediate_branches(numbers, further)
     everywhere = merge(further, numbers, refined.VARIABLES, "Attractors at refined values of a")
-    everywhere = named_alike(everywhere, on_grid)
+    everywhere = common_branch_names(everywhere, on_grid)
     return on_grid, digest(on_grid), everywhere, rotation.summarize(everywhere, models)
 
 
@@ -57,13 +57,13 @@ def merge(
 ) -> xarray.Dataset:
     """Return the attractors of all laws in one Dataset with the dimension law; missing slots are −1 or NaN.
 
-    numbers : for each law {number of a branch: the one that it gets}, see `branch_numbers`
+    numbers : for each law {number of a branch: common number}, see `branch_numbers`
     """
     values = {}
     for name, item in variables.items():
         arrays = [part[name].values for part in parts]
         if name.endswith("branch"):
-            arrays = [_renumbered(array, renamed) for array, renamed in zip(arrays, numbers, strict=True)]
+            arrays = [_renumber(array, renamed) for array, renamed in zip(arrays, numbers, strict=True)]
         shape = np.max([array.shape for array in arrays], axis=0)
         values[name] = np.full((len(parts), *shape), item.missing, dtype=item.dtype)
         for number, array in enumerate(arrays):
@@ -80,13 +80,13 @@ def merge(
 def branch_numbers(
     parts: Sequence[xarray.Dataset], models: Sequence[Model], settings: SearchSettings, processes: int = 1
 ) -> list[dict[int, int]]:
-    """Return, for each law, {number of a branch in its own part: the number that it gets}.
+    """Return {number of a branch: common number} for each law.
 
-    parts : of the laws, see `one_law`; models : of each law, at any a
-    settings : of the search; processes : that work at once
+    A branch that becomes a branch of the first law when one law is deformed into the other takes the number of that
+    branch. Numbers follow `number_in_order`.
 
-    A branch that turns into a branch of the first law as one law is changed into the other shares its number. Numbers
-    follow `in_order`.
+    parts : attractors of each law, see `one_law`; models : one for each law, at any a
+    settings : of the search; processes : number of parallel processes
     """
     numbers = [{int(n): int(n) for n in np.unique(parts[0]["branch"].values) if n >= 0}]
     first = _states(parts[0], models[0])
@@ -94,40 +94,17 @@ def branch_numbers(
         grid = part["a"].values.tolist()
         firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
         renamed = joined(firsts, seconds, first, _states(part, model), settings, processes=processes)
-        numbers.append(_with_others(renamed, part, numbers))
-    order = in_order(parts, numbers)
-    return [{own: order[number] for own, number in renamed.items()} for renamed in numbers]
+        numbers.append(_number_remaining(renamed, part, numbers))
+    return numbers
 
 
-def in_order(parts: Sequence[xarray.Dataset], numbers: Sequence[Mapping[int, int]]) -> dict[int, int]:
-    """Return {number of a branch: its place}, in the order in which branches appear along a, under the first law first.
-
-    parts : of the laws, see `one_law`; numbers : for each law {number of a branch in its part: common number}
-
-    The synchronized branch is 0, and branches that appear at the same a are ordered by ⟨J⟩ there. Branches that exist
-    at fewer than `LASTING` values of the grid come after all others, since a deeper search finds more of them.
-    """
-    first: dict[int, tuple[int, int, float]] = {}
-    values: Counter[int] = Counter()
-    for law, (part, renamed) in enumerate(zip(parts, numbers, strict=True)):
-        branch, distance = part["branch"].values, part["mean_distance"].values
-        for own, number in renamed.items():
-            slots = branch == own
-            there = np.flatnonzero(slots.any(axis=1))
-            if len(there):
-                values[number] = max(values[number], len(there))
-                first.setdefault(number, (law, int(there[0]), float(distance[there[0]][slots[there[0]]].min())))
-    ranked = sorted(first, key=lambda number: (number != 0, values[number] < LASTING, *first[number], number))
-    return {number: place for place, number in enumerate(ranked, start=0 if 0 in first else 1)}
-
-
-def _with_others(
+def _number_remaining(
     known: Mapping[int, int], part: xarray.Dataset, numbers: Sequence[Mapping[int, int]]
 ) -> dict[int, int]:
-    """Return the numbers of branches of one law with those added that have none: they follow all that are taken.
+    """Return the numbers of the branches of one law, with new numbers, above all in use, for branches without one.
 
-    known : {number of a branch: the one that it gets}; part : the attractors of that law
-    numbers : of all laws whose numbers are taken
+    known : {number of a branch: common number}; part : the attractors of that law
+    numbers : the same of all laws whose numbers are in use
     """
     following = max((0, *(n for taken in numbers for n in taken.values())))
     others = sorted({int(n) for n in np.unique(part["branch"].values) if n >= 0} - known.keys())
@@ -135,7 +112,7 @@ def _with_others(
 
 
 def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, ChainState]]:
-    """Return {branch: {position of a in the grid: a state on it}}, of mirror images those of one side."""
+    """Return {branch: {index of a in the grid: a state on the branch}}; of mirror images, only one side is included."""
     states: dict[int, dict[int, ChainState]] = {}
     for k, slot in np.argwhere((part["branch"].values >= 0) & (part["side"].values >= 0)).tolist():
         one = part.isel(a=k, attractor=slot)
@@ -145,29 +122,29 @@ def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, ChainStat
     return states
 
 
-def with_branches_between(
+def number_intermediate_branches(
     numbers: Sequence[Mapping[int, int]], parts: Sequence[xarray.Dataset]
 ) -> list[dict[int, int]]:
-    """Return the numbers of branches with those added that exist only between values of the grid.
+    """Return the numbers of branches, with new ones for branches that exist only between values of the grid.
 
-    numbers : for each law {number of a branch: the one that it gets}, of the branches at values of the grid
-    parts : of the laws, the attractors at all values, see `refined.one_law`
+    numbers : for each law {number of a branch: common number}, of the branches at values of the grid
+    parts : attractors of each law at all values of a, see `refined.one_law`
     """
     result: list[dict[int, int]] = []
     for known, part in zip(numbers, parts, strict=True):
-        result.append(_with_others(known, part, [*numbers, *result]))
+        result.append(_number_remaining(known, part, [*numbers, *result]))
     return result
 
 
-def named_alike(refined: xarray.Dataset, attractors: xarray.Dataset) -> xarray.Dataset:
-    """Return attractors at all values of a with the names that branches have at the values of the grid."""
+def common_branch_names(refined: xarray.Dataset, attractors: xarray.Dataset) -> xarray.Dataset:
+    """Return the attractors at all values of a with the names that the branches have at the values of the grid."""
     names = branch_names(refined) | branch_names(attractors)
     own = refined["branch_number"].values.tolist()
     return refined.assign(branch_name=refined["branch_name"].copy(data=[names[number] for number in own]))
 
 
-def _renumbered(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
-    """Return the numbers of branches replaced by new ones; what is undetermined stays so."""
+def _renumber(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
+    """Return the branches with their new numbers; undetermined branches stay undetermined."""
     result = np.full_like(branch, UNDETERMINED)
     for before, after in renamed.items():
         result[branch == before] = after
@@ -175,7 +152,7 @@ def _renumbered(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return, for each law, in a line a branch where it exists, its ⟨J⟩, kinds of motion and largest basin fraction."""
+    """Return a line for each law and branch: its range of a, its ⟨J⟩, kinds of motion and largest basin fraction."""
     lines = []
     a, rows = dataset["a"].values, list(branch_rows(dataset))
     for law in dataset["law"].values:
@@ -184,7 +161,7 @@ def digest(dataset: xarray.Dataset) -> str:
             if row.law != law:
                 continue
             ends = span(*(f"{value:g}" for value in row.a[[0, -1]]))
-            basin = "no states sampled for its basin"
+            basin = "basin fraction not sampled"
             if row.fraction:
                 fraction, at = row.fraction
                 basin = f"largest basin fraction {fraction:.3f} (a = {at:g})"
@@ -198,7 +175,7 @@ def digest(dataset: xarray.Dataset) -> str:
         sliding = one["sliding_attracts"].values == 1
         for where, words in (
             ((one["branch"].values.max(axis=1) < 0) & ~sliding, "no attractor"),
-            (sliding, "uniform sliding, which has no stops and is not looked for, attracts"),
+            (sliding, "uniform sliding, which has no stops and is not searched for, attracts"),
         ):
             if where.any():
                 line += f"; {words} at a = {', '.join(f'{value:g}' for value in a[where])}"

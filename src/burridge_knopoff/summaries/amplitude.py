@@ -1,4 +1,4 @@
-"""How far apart the end blocks are beyond the loss of synchrony: in runs that go through a_c, and as a power law."""
+"""Asymmetry of the end blocks beyond the loss of synchrony: in sweeps through a_c, and as a power law."""
 
 from __future__ import annotations
 
@@ -8,13 +8,13 @@ import numpy as np
 import scipy
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.periodic_orbits.flow import OrbitError, after, model_at
+from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at, state_after
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
-from burridge_knopoff.periodic_orbits.pitchfork import apart
+from burridge_knopoff.periodic_orbits.pitchfork import displace_end_blocks
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
-# Asymmetry, in units of v, given to a state before each run of a sweep: exact synchrony would never be left.
+# Asymmetry, in units of v, added to the state before each run of a sweep: exact synchrony would persist for ever.
 SEED = 1e-5
 
 #: Time of each run of a sweep: at |a − a_c| = 1e-3 perturbations change by a factor of e^20.
@@ -33,35 +33,35 @@ class PowerLaw:
 def fit_power_law(offset: np.ndarray, amplitude: np.ndarray) -> PowerLaw:
     """Fit amplitudes at positive offsets, both of shape (n,), by least squares of their logarithms.
 
-    The digits kept do not depend on the order in which a linear-algebra library adds.
+    The result is rounded so that it does not depend on the order of summation in the linear-algebra library.
     """
     fit = scipy.stats.linregress(np.log(offset), np.log(amplitude))
     return PowerLaw(*(round(float(value), 10) for value in (fit.slope, fit.stderr, np.exp(fit.intercept))))
 
 
 def sweep(orbits: KnownOrbits, values: np.ndarray) -> np.ndarray:
-    """Return |x_1 − x_N| (while both stick) after a run at each a in turn, shape (n,).
+    """Return |x_1 − x_N| while both end blocks stick, after a run at each a in turn, shape (n,).
 
-    orbits : synchronized ones
+    orbits : the synchronized orbits
 
-    Each run goes on from the last one, with a small asymmetry added; the first begins near the synchronized orbit. NaN
-    from the a on at which the end blocks no longer stick at the same time.
+    The first run starts near the synchronized orbit, and each further run from the end of the one before, with a small
+    asymmetry added. The result is NaN from the first a at which the end blocks no longer stick at the same time.
     """
     found = np.full(len(values), np.nan)
     state = orbits.at(float(values[0])).reference
     for k, a in enumerate(values):
         try:
-            state = _settled(model_at(orbits.model, float(a)), apart(state, SEED * orbits.model.v))
+            state = _settle(model_at(orbits.model, float(a)), displace_end_blocks(state, SEED * orbits.model.v))
         except OrbitError:
             break
         found[k] = abs(state.position[0] - state.position[-1])
     return found
 
 
-def _settled(model: Model, state: ChainState) -> ChainState:
-    """Return the first state after a time in which the end blocks have both just come to stick."""
+def _settle(model: Model, state: ChainState) -> ChainState:
+    """Return the first state after a settling time at which both end blocks have begun to stick."""
     runner, last = Runner(model), model.blocks - 1
-    after(runner, state, SWEEP_TIME)
+    state_after(runner, state, SWEEP_TIME)
     for block in (0, last, 0, last):
         if runner.run(2.0 * SWEEP_TIME, halting_block=block) != Status.HALTED:
             break

@@ -1,7 +1,7 @@
-"""The attractors that coexist under each law at each a, how many initial states reach each, and where sweeps of a lead.
+"""The coexisting attractors under each law at each a of the grid, their basin fractions, and sweeps of a.
 
-Features, branches, sweeps, basin fractions, and what each initial state reaches, at the values of the grid; `refined`
-has the attractors at those that were put in between as well.
+The file also has the branches of the attractors and the branch that each initial state reaches. `refined` has the
+attractors at the inserted values of a as well.
 """
 
 from __future__ import annotations
@@ -26,18 +26,18 @@ from burridge_knopoff.model.model import CONTACTS, STARTS, Model
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.section import Section
-from burridge_knopoff.summaries.along_attractor import along_attractor, distinct
-from burridge_knopoff.summaries.equilibrium import sliding_attracts
+from burridge_knopoff.summaries.attractor_observables import count_distinct, follow_attractor
+from burridge_knopoff.summaries.equilibrium import is_sliding_attracting
 
 _SLOT = ("a", "attractor")
 _REACHED = ("contact", "start", "initial", "a")
 _SWEEP = ("direction", "sweep", "a")
 DIRECTIONS = ("upward", "downward")
-#: Half of the last digit to which the paper gives initial positions: by so much its initial states may be rounded.
+#: Rounding error of the paper's initial states: half a unit of the last digit of their positions.
 ROUNDING = 5e-4
 CORNERS = 64
 _V = Variable
-ALONG = {"comment": "of attractors that an initial state of the study reaches under some convention"}
+ALONG_COMMENT = {"comment": "known for attractors that an initial state of the study reaches under some convention"}
 VARIABLES = {
     **slot_variables("a"),
     "upward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next larger a of the grid", NOTHING),
@@ -47,7 +47,7 @@ VARIABLES = {
         _SLOT,
         "f8",
         "fraction of the sampled initial states that reach the attractor",
-        {"comment": "where chaos dies, that of what it dies to grows with the time for which states are followed"},
+        {"comment": "if chaos is transient, the fraction of its successor grows with the time states are followed"},
     ),
     "basin_fraction_low": _V(_SLOT, "f8", "lower end of the 95 % Wilson interval of the basin fraction"),
     "basin_fraction_high": _V(_SLOT, "f8", "upper end of the 95 % Wilson interval of the basin fraction"),
@@ -56,28 +56,36 @@ VARIABLES = {
     "sliding_attracts": _V(
         ("a",),
         "i1",
-        "whether uniform sliding attracts: it has no stops and is not looked for",
+        "whether uniform sliding, which has no stops and is not searched for, attracts",
         YES_OR_NO,
     ),
     "initial_branch": _V(_REACHED, "i2", "branch reached by an initial state under each convention", NOTHING),
     "initial_side": _V(_REACHED, "i1", "side of that branch", nothing=0),
     "section_count": _V(
-        _SLOT, "i4", "different points W' of the section W = 0, crossed upward, on an attractor that is followed", ALONG
+        _SLOT,
+        "i4",
+        "number of distinct W' at upward crossings of the section W = 0 along an attractor",
+        ALONG_COMMENT,
     ),
-    "section_velocity_mean": _V(_SLOT, "f8", "mean of W' over these crossings, NaN where there is none", ALONG),
-    "velocity_correlation": _V(_SLOT, "f8", "Pearson correlation of the velocities U' of the end blocks", ALONG),
+    "section_velocity_mean": _V(_SLOT, "f8", "mean of W' over these crossings, NaN if there are none", ALONG_COMMENT),
+    "velocity_correlation": _V(
+        _SLOT, "f8", "Pearson correlation of the velocities U' of the end blocks", ALONG_COMMENT
+    ),
     "velocity_frequency": _V(
-        (*_SLOT, "block"), "f8", "frequency, in cycles per unit time, of the highest peak of the spectrum of U'", ALONG
+        (*_SLOT, "block"),
+        "f8",
+        "frequency, in cycles per unit time, of the highest peak of the spectrum of U'",
+        ALONG_COMMENT,
     ),
     "rounded_branch": _V(
         ("initial", "a", "corner"),
         "i2",
-        "branch reached by states whose numbers are all 0.0005 above or below those of an initial state, under the "
-        "study's own convention",
+        "branch reached, under the study's convention, by states whose positions and velocities are each 0.0005 above "
+        "or below those of an initial state",
         NOTHING,
     ),
-    "sweep_branch": _V(_SWEEP, "i2", "branch on which a sweep of a is", NOTHING),
-    "sweep_mean_distance": _V(_SWEEP, "f8", "<J> of the attractor on which a sweep of a is"),
+    "sweep_branch": _V(_SWEEP, "i2", "branch that a sweep of a follows", NOTHING),
+    "sweep_mean_distance": _V(_SWEEP, "f8", "<J> of the attractor that a sweep of a follows"),
 }
 
 
@@ -90,18 +98,18 @@ def one_law(
 ) -> xarray.Dataset:
     """Return the attractors of one law at the values of the grid.
 
-    found : by the settings of the search, `settings`, and of the kinds of motion, `motion`
-    initial : states whose own attractor is found under each convention
-    start : convention for the drawn states
+    found : the result of the search with the settings `settings` and `motion`
+    initial : states whose attractor is determined under each convention
+    start : convention for the sampled states
     """
     models = [found.models[k] for k in found.grid]
     values = slot_values(models, [found.rows(k) for k in found.grid], settings.lifetime, "a")
-    values.update(_basins(found))
-    values["sliding_attracts"] = np.array([sliding_attracts(model) for model in models])
-    values.update(_steps(found))
-    values.update(_reached(found, initial, settings.label_limit))
-    values.update(_followed(found, values["initial_branch"], values["initial_side"], motion.section))
-    values.update(_rounded(found, initial, settings.label_limit, start))
+    values.update(_basin_fractions(found))
+    values["sliding_attracts"] = np.array([is_sliding_attracting(model) for model in models])
+    values.update(_neighbour_branches(found))
+    values.update(_initial_branches(found, initial, settings.label_limit))
+    values.update(_observables(found, values["initial_branch"], values["initial_side"], motion.section))
+    values.update(_rounded_branches(found, initial, settings.label_limit, start))
     values.update(_sweeps(found))
     coordinates = axes(initial=[state.name for state in initial], a=[model.a for model in models])
     coordinates.update(slot_coordinates(models[0].blocks))
@@ -114,7 +122,7 @@ def one_law(
 
 
 def search_attributes(model: Model, settings: SearchSettings, motion: MotionSettings, start: str) -> dict[str, Any]:
-    """Return how the attractors of a law were looked for, as attributes of a file."""
+    """Return the settings of the search for the attractors of a law as attributes of a file."""
     return {
         "law": model.law.name,
         "history": "snakemake, from sampled initial states",
@@ -131,8 +139,8 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
     }
 
 
-def _basins(found: Continuation) -> dict[str, np.ndarray]:
-    """Return how many of the drawn states reach each attractor, and their fraction with its interval."""
+def _basin_fractions(found: Continuation) -> dict[str, np.ndarray]:
+    """Return how many of the sampled states reach each attractor, and their fraction with its interval."""
     values = empty(
         VARIABLES,
         {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors))},
@@ -152,7 +160,7 @@ def _basins(found: Continuation) -> dict[str, np.ndarray]:
     return values
 
 
-def _steps(found: Continuation) -> dict[str, np.ndarray]:
+def _neighbour_branches(found: Continuation) -> dict[str, np.ndarray]:
     """Return the branch that each attractor leads to at the next larger and smaller a of the grid."""
     values = {}
     for name, step, following in (("upward", 1, found.upward), ("downward", -1, found.downward)):
@@ -167,7 +175,7 @@ def _steps(found: Continuation) -> dict[str, np.ndarray]:
     return values
 
 
-def _reached(found: Continuation, states: Sequence[InitialState], label_limit: float) -> dict[str, np.ndarray]:
+def _initial_branches(found: Continuation, states: Sequence[InitialState], label_limit: float) -> dict[str, np.ndarray]:
     """Return which branch each initial state reaches under each convention of contact and start."""
     shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(found.grid)}
     values = empty(VARIABLES, shape, "initial")
@@ -180,26 +188,29 @@ def _reached(found: Continuation, states: Sequence[InitialState], label_limit: f
     return values
 
 
-def _followed(found: Continuation, branch: np.ndarray, side: np.ndarray, section: Section) -> dict[str, np.ndarray]:
-    """Return what a run along each attractor shows that an initial state reaches, shape of both (…, a)."""
+def _observables(found: Continuation, branch: np.ndarray, side: np.ndarray, section: Section) -> dict[str, np.ndarray]:
+    """Return the observables along each attractor that an initial state reaches.
+
+    branch, side : reached by the initial states, shape (…, a)
+    """
     sizes = {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors)), "block": found.models[0].blocks}
     values = empty(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")
     for k, place in enumerate(found.grid):
         wanted = {*zip(branch[..., k].ravel().tolist(), side[..., k].ravel().tolist(), strict=True)}
         for slot, row in enumerate(found.rows(place)):
             if (row.branch, row.side) in wanted:
-                one = along_attractor(found.models[place], row.attractor.motion.state(), section)
-                values["section_count"][k, slot] = distinct(one.section)
+                one = follow_attractor(found.models[place], row.attractor.motion.state(), section)
+                values["section_count"][k, slot] = count_distinct(one.section)
                 values["section_velocity_mean"][k, slot] = one.section.mean() if len(one.section) else np.nan
                 values["velocity_correlation"][k, slot] = one.velocity_correlation
                 values["velocity_frequency"][k, slot] = one.velocity_frequency
     return values
 
 
-def _rounded(
+def _rounded_branches(
     found: Continuation, states: Sequence[InitialState], label_limit: float, start: str
 ) -> dict[str, np.ndarray]:
-    """Return which branch the corners of each initial state reach under the convention of the models and `start`."""
+    """Return the branches reached by the `corners` of each initial state, with the models' contact and `start`."""
     shape = {"initial": len(states), "a": len(found.grid), "corner": CORNERS}
     values = empty(VARIABLES, shape, "rounded")
     for k, place in enumerate(found.grid):
@@ -214,15 +225,16 @@ def _rounded(
 
 
 def _is_allowed(state: InitialState, contact: str, blocks: int) -> bool:
-    """Tell whether blocks may have the velocities of a state: under one-sided contact none slips backward."""
+    """Return whether the velocities of a state are allowed: under one-sided contact no block slips backward."""
     return contact == "symmetric" or bool(state.numbers(blocks)[1].min() >= 0.0)
 
 
 def corners(state: InitialState, contact: str, blocks: int) -> list[InitialState]:
-    """Return CORNERS states, each number of which is ROUNDING above or below that of a state.
+    """Return CORNERS states, whose positions and velocities are each ROUNDING above or below those of a state.
 
-    With three blocks these are all corners of the box around it; in longer chains numbers six apart move together.
-    contact : if one_sided, velocities are 0 at least
+    With three blocks these are all corners of the box around the state; in longer chains every sixth number changes
+    together.
+    contact : if one_sided, velocities are at least 0
     """
     above = np.arange(CORNERS)[:, None] >> (np.arange(2 * blocks) % 6) & 1
     numbers = np.concatenate(state.numbers(blocks)) + ROUNDING * (2 * above - 1)
@@ -250,7 +262,7 @@ def _sweeps(found: Continuation) -> dict[str, np.ndarray]:
     """Follow each attractor of the smallest a upward and each of the largest a downward, step by step of the grid."""
     attractors = [found.attractors[place] for place in found.grid]
     count = len(attractors)
-    # Where there is no attractor, as at a = 0, no sweep can begin.
+    # A sweep cannot begin where there is no attractor, as at a = 0.
     there = [k for k in range(count) if attractors[k]] or [0]
     ends = (there[0], there[-1])
     sweeps = max(1, *(len(attractors[end]) for end in ends))

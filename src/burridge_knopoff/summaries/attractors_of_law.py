@@ -1,4 +1,4 @@
-"""The attractors of one law along a: on the grid, at values between, and the section returns of those on the grid."""
+"""The attractors of one law along a: on the grid, at all values of a, and the section returns of those on the grid."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from burridge_knopoff.summaries import attractors, refined
 def make(given: Given, model: Mapping[str, Any], grid: Sequence[float], **config: Any) -> tuple[xarray.Dataset, ...]:
     """Return the attractors of a law on the grid, at all values of a, and their section returns.
 
-    model, grid : what decides the model, and the values of a
+    model, grid : the config's description of the model, and the values of a
     config : initial, start, attractors, refine and motion, as in a config
     """
     models, start = [model_of(model, given.law, a) for a in grid], config["start"]

@@ -1,4 +1,4 @@
-"""Maps of basins of attraction: which attractor each initial state of a plane reaches, and how rough boundaries are."""
+"""Maps of basins of attraction: the attractor that each state of a plane reaches, and the uncertainty exponent."""
 
 from __future__ import annotations
 
@@ -31,11 +31,11 @@ _V = Variable
 TILE_VARIABLES = {
     "branch": _V(_PLANE, "i2", "branch of the attractor that the state reaches, -1 if undetermined"),
     "side": _V(_PLANE, "i1", "side of that branch: 1 and -1 for mirror images, 0 for its own mirror image"),
-    "decision_time": _V(_PLANE, "f4", "time tau at which the attractor was certain"),
+    "decision_time": _V(_PLANE, "f4", "time tau at which the attractor was determined"),
 }
 PAIR_VARIABLES = {
-    "uncertain_count": _V(("separation",), "i4", "pairs of states that were found to reach different attractors"),
-    "pair_count": _V(("separation",), "i4", "pairs of states that were found to reach an attractor both"),
+    "uncertain_count": _V(("separation",), "i4", "number of pairs of states that reach different attractors"),
+    "pair_count": _V(("separation",), "i4", "number of pairs of states of which both reach an attractor"),
     "uncertain_fraction": _V(
         ("separation",),
         "f8",
@@ -53,19 +53,19 @@ PAIR_VARIABLES = {
     "uncertainty_exponent": _V(
         (),
         "f8",
-        "uncertainty exponent alpha of the basin boundary, NaN unless it is known and a single one",
+        "uncertainty exponent alpha of the basin boundary, NaN if it is undetermined or not a single one",
         {"ancillary_variables": "uncertainty_exponent_error"},
     ),
     "uncertainty_exponent_error": _V((), "f8", "standard error of alpha, from a jackknife"),
     "exponent_change": _V(
-        (), "f8", "by how much the local exponent changes over the fitted separations, by a parabola"
+        (), "f8", "change of the local exponent over the fitted separations, from a fit of a parabola"
     ),
-    "exponent_change_error": _V((), "f8", "standard error of that change, from a jackknife"),
+    "exponent_change_error": _V((), "f8", "standard error of this change, from a jackknife"),
     "exponent_kind": _V((), "i1", "whether the boundary has a single exponent", flag("i1", ExponentKind)),
 }
 MAP_VARIABLES = {
     **{name: _V(("map", *_PLANE), item.dtype, item.long_name) for name, item in TILE_VARIABLES.items()},
-    "undetermined_count": _V(("map",), "i4", "states that reach no attractor by label_limit"),
+    "undetermined_count": _V(("map",), "i4", "number of states that reach no attractor by label_limit"),
     **{name: replace(item, dimensions=("map", *item.dimensions)) for name, item in PAIR_VARIABLES.items()},
     **NAMES,
 }
@@ -76,18 +76,18 @@ COORDINATES = {
 
 
 def make_tile(given: Given, **params: Any) -> xarray.Dataset:
-    """Return one tile of a map; arguments as in `_known`."""
-    known, plane, search = _known(given, **params)
+    """Return one tile of a map; arguments as in `_known_attractors`."""
+    known, plane, search = _known_attractors(given, **params)
     return tile(known, int(given.wildcards["tile"]), plane, search.label_limit, params["start"])
 
 
 def make_pairs(given: Given, **params: Any) -> xarray.Dataset:
-    """Return the pairs of nearby states of a map; arguments as in `_known`."""
-    known, plane, search = _known(given, **params)
+    """Return the pairs of nearby states of a map; arguments as in `_known_attractors`."""
+    known, plane, search = _known_attractors(given, **params)
     return pairs(known, plane, search.label_limit, search.seed, params["start"])
 
 
-def _known(
+def _known_attractors(
     given: Given,
     model: Mapping[str, Any],
     a: float,
@@ -98,7 +98,7 @@ def _known(
 ) -> tuple[KnownAttractors, BasinSettings, SearchSettings]:
     """Return the attractors at one a, and the settings of a map and of the search.
 
-    state : what of the plane is the same everywhere; the others as in a config
+    state : the positions and velocities shared by all states of the plane; the other arguments as in a config
     """
     plane = BasinSettings(initial=InitialState(**state), threads=given.cores, **basins)
     found = given.summary("attractors"), given.summary("returns")
@@ -114,7 +114,10 @@ def make(
     basins: Mapping[str, Any],
     start: str,
 ) -> tuple[xarray.Dataset, str]:
-    """Return all maps, and the same in words; maps : law and a of each; the others as in `_known`."""
+    """Return all maps, and their description as text.
+
+    maps : law and a of each; the other arguments as in `_known_attractors`
+    """
     plane = BasinSettings(initial=InitialState(**state), **basins)
     tiles, of_pairs = given.summaries("tiles"), given.summaries("pairs")
     parts = [
@@ -150,7 +153,7 @@ def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit
 
 
 def pairs(known: KnownAttractors, basins: BasinSettings, label_limit: float, seed: int, start: str) -> xarray.Dataset:
-    """Label pairs of near states of the plane of a map, for the uncertainty exponent of its boundary; see `tile`."""
+    """Label pairs of nearby states in the plane of a map, for the uncertainty exponent of its boundary; see `tile`."""
 
     u, w = basins.initial.numbers(known.model.blocks)
 
@@ -172,7 +175,7 @@ def pairs(known: KnownAttractors, basins: BasinSettings, label_limit: float, see
     values["exponent_kind"] = exponent.kind
     attributes = {"law": known.model.law.name, "a": known.model.a, "history": "snakemake, from attractors.nc"}
     coordinates = {"separation": _separation(basins)}
-    return summary("Pairs of near states", PAIR_VARIABLES, values, coordinates, attributes, module=__name__)
+    return summary("Pairs of nearby states", PAIR_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
 def _labels(
@@ -207,10 +210,10 @@ def merge(
     label_limit: float,
     start: str,
 ) -> xarray.Dataset:
-    """Put the maps together, each (model, its tiles in order, its pairs).
+    """Return all maps in one Dataset; maps : (model, its tiles in order, its pairs) of each.
 
     attractors : the summary of that name, which has the names of the branches
-    basins, label_limit, start : what the maps were made with
+    basins, label_limit, start : settings of the maps
     """
     wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, tiles, _ in maps]
     values: dict[str, Any] = {name: np.stack([whole[name].values for whole in wholes]) for name in TILE_VARIABLES}
@@ -240,24 +243,25 @@ def merge(
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return, in a line for each map, the shares of the basins and the uncertainty exponent of their boundary."""
+    """Return a line for each map: the fractions of the basins and the uncertainty exponent of their boundary."""
     lines = []
     for number, row in enumerate(map_rows(dataset)):
         one = dataset.isel(map=number)
         shares = [f"{name} {100.0 * count / row.states:.2f} %" for name, count in row.members.items()]
-        if row.alike:
-            shares[0] += f" ({row.alike} of {row.undetermined} where mirror blocks are alike, a line of no area)"
+        if row.symmetric_count:
+            line = "on the line of mirror-symmetric states, which has no area"
+            shares[0] += f" ({row.symmetric_count} of {row.undetermined} {line})"
         times = one["decision_time"].values
-        decided = f"; decided at tau = {np.nanmean(times):.0f} in the mean" if np.isfinite(times).any() else ""
+        decided = f"; mean decision time {np.nanmean(times):.0f}" if np.isfinite(times).any() else ""
         lines.append(f"{row.law}, a = {row.a:g}: {', '.join(shares)}; {_exponent_text(one)}{decided}")
     return "\n".join(lines) + "\n"
 
 
 def _exponent_text(one: xarray.Dataset) -> str:
-    """Return what is known of the exponent of one map's boundary."""
+    """Return the uncertainty exponent of one map's boundary as text."""
     kind = ExponentKind(one["exponent_kind"].item())
     if kind == ExponentKind.UNKNOWN:
-        return "uncertainty exponent unknown: too few pairs differ"
+        return "uncertainty exponent undetermined: too few pairs differ"
     change, error = one["exponent_change"].item(), one["exponent_change_error"].item()
     changes = f"it changes by {plain(with_error(change, error))} over the separations"
     if kind == ExponentKind.VARYING:

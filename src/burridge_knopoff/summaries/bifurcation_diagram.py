@@ -1,4 +1,4 @@
-"""All section points W' at W = 0 against a: the paper's Figs. 4a and 4b. W is what the config's `section` says.
+"""All section points W' at W = 0 over a: the paper's Figs. 4a and 4b. The config's `section` defines W.
 
 The file is a contiguous ragged array of the CF conventions.
 """
@@ -12,11 +12,11 @@ from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import DIRECTION, Variable
 from burridge_knopoff.summaries.points import Grid, read_point
 
-#: A crossing no faster than this is rounding: uniform sliding stays at W = W' = 0, within 1e-12 at v = 5, and the
-#: slowest crossing of the default study has 1e-4.
+#: A slower crossing is a rounding error. In uniform sliding W = W' = 0 within 1e-12 at v = 5; the slowest crossing of
+#: the default study has W' = 1e-4.
 ROUNDING = 1e-9
 
-#: Why a bifurcation diagram of a law and a state is empty.
+#: Reasons why the bifurcation diagram of a law and an initial state is empty.
 NEVER_UPWARD = "W never crosses 0 upward: the section is never reached"
 STAYS = "W stays at 0: the blocks slide uniformly"
 
@@ -30,8 +30,8 @@ VARIABLES = {
 def summarize(grid: Grid) -> xarray.Dataset:
     """Return the section points of all runs, one after another in the order (law, initial, a).
 
-    The points of run n are crossing_velocity[start:start + crossing_count[n]], where start is the sum of the counts
-    before; `section_points` picks them by name.
+    The points of run n are crossing_velocity[start:start + crossing_count[n]], where start is the sum of the previous
+    counts; `section_points` selects them by law and initial state.
     """
     velocity, direction, count, law, initial, a = [], [], [], [], [], []
     for _, point in grid:

@@ -1,7 +1,8 @@
-"""The bifurcations of all branches of attractors: where each begins, ends or changes, and by what.
+"""The bifurcations of all branches of attractors: where each branch begins, ends or changes, and by which bifurcation.
 
-An attractor that is a closed orbit is followed in a to where it loses its stability or ends; that bifurcation is known
-to 1e-10. A bifurcation without a closed orbit on either side is only known to lie between two values of a.
+An attractor that is a periodic orbit is continued in a to where it loses its stability or ends; this locates the
+bifurcation to 1e-10. A bifurcation without a periodic orbit on either side is only known to lie between two values of
+a.
 """
 
 from __future__ import annotations
@@ -28,19 +29,19 @@ from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.model import model_of
-from burridge_knopoff.summaries.edges import met_saddle
+from burridge_knopoff.summaries.edges import saddle_at_crisis
 
 PARTS = ("real", "imaginary")
 _AT, _ORBIT = ("bifurcation",), ("orbit",)
 
 
-def _located(value: Callable[[Bifurcation], Any]) -> Callable[[Entry], Any]:
-    """Return the value of a column that only a bifurcation has that was found on an orbit."""
+def _of_bifurcation(value: Callable[[Bifurcation], Any]) -> Callable[[Entry], Any]:
+    """Return the values of a column for bifurcations located on an orbit; None for the others."""
     return lambda entry: value(entry.bifurcation) if entry.bifurcation else None
 
 
 def _multiplier(point: BranchOrbit | None) -> tuple[float, float] | None:
-    """Return real and imaginary part, not below 0, of the largest multiplier."""
+    """Return the real part and the modulus of the imaginary part of the largest multiplier."""
     if point is None:
         return None
     largest = complex(point.multipliers.whole[0])
@@ -49,77 +50,89 @@ def _multiplier(point: BranchOrbit | None) -> tuple[float, float] | None:
 
 _NONE, _MOTION = {"comment": "-1 undetermined"}, flag("i1", MotionKind)
 _BELOW, _ABOVE = (
-    "branch below the bifurcation, or reached from above it",
-    "branch above the bifurcation, or reached from below it",
+    "branch at smaller a, or to which the branch at larger a leads",
+    "branch at larger a, or to which the branch at smaller a leads",
 )
-_TURNS = "whether the orbits on both sides of the bifurcation lie at a on one side of it"
-_LIFE = "lower end of the 95 % interval of the lifetime of chaos at grid_low or grid_high"
-_LONGER = "upper end of that interval; of the shorter life where both are chaotic"
+_TURNS = "whether the bifurcation is a turning point: the orbits before and after it exist on the same side in a"
+_LIFE = "lower end of the 95 % interval of the mean lifetime of chaos at grid_low or grid_high"
+_LONGER = "upper end of that interval; if both are chaotic, of the shorter lifetime"
 _SADDLE = "period of the saddle orbit on the basin boundary that the attractor meets at a crisis, NaN if none is known"
-_LARGEST = "Floquet multiplier of the largest modulus next to the bifurcation"
-#: Of an entry.
+_LARGEST = "Floquet multiplier of largest modulus at the bifurcation"
+#: Columns of a bifurcation, from its `Entry`.
 BIFURCATIONS = {
     "a": Column(_AT, "f8", "friction parameter a of the bifurcation", value=lambda one: one.a),
     "a_error": Column(
-        _AT, "f8", "its error: half the width of the interval that brackets it", value=_located(lambda at: at.error)
+        _AT,
+        "f8",
+        "error of a: half the width of the interval that brackets it",
+        value=_of_bifurcation(lambda at: at.error),
     ),
-    "kind": Column(_AT, "i1", "what happens there", flag("i1", BifurcationKind), value=lambda one: one.kind),
-    "change": Column(
-        _AT, "i1", "what the branch of attractors does there", flag("i1", Change), value=lambda one: one.change
-    ),
+    "kind": Column(_AT, "i1", "kind of bifurcation", flag("i1", BifurcationKind), value=lambda one: one.kind),
+    "change": Column(_AT, "i1", "change of the branch of attractors", flag("i1", Change), value=lambda one: one.change),
     "from_branch": Column(_AT, "i2", _BELOW, _NONE, value=lambda one: one.from_branch),
     "to_branch": Column(_AT, "i2", _ABOVE, _NONE, value=lambda one: one.to_branch),
     "grid_low": Column(
-        _AT, "f8", "largest a of refined.nc at which the branch is as before, NaN for none", value=lambda one: one.low
+        _AT,
+        "f8",
+        "largest a of refined.nc at which the branch is unchanged, NaN if there is none",
+        value=lambda one: one.low,
     ),
     "grid_high": Column(
-        _AT, "f8", "smallest a of refined.nc at which it is as after, NaN for none", value=lambda one: one.high
+        _AT,
+        "f8",
+        "smallest a of refined.nc at which the branch has changed, NaN if there is none",
+        value=lambda one: one.high,
     ),
     "motion_before": Column(_AT, "i1", "kind of motion at grid_low", _MOTION, value=lambda one: one.motion[0]),
     "motion_after": Column(_AT, "i1", "kind of motion at grid_high", _MOTION, value=lambda one: one.motion[1]),
-    "turns": Column(_AT, "i1", _TURNS, ANSWER, value=_located(lambda at: at.turns)),
-    "period": Column(_AT, "f8", "period of the orbit at the bifurcation", value=_located(lambda at: at.period)),
+    "turns": Column(_AT, "i1", _TURNS, ANSWER, value=_of_bifurcation(lambda at: at.is_turning_point)),
+    "period": Column(_AT, "f8", "period of the orbit at the bifurcation", value=_of_bifurcation(lambda at: at.period)),
     "stops": Column(
         (*_AT, "block"),
         "i4",
         "stops of each block in a period of the stable orbits",
-        value=_located(lambda at: at.before.orbit.stop_counts),
+        value=_of_bifurcation(lambda at: at.before.orbit.stop_counts),
     ),
     "stops_beyond": Column(
         (*_AT, "block"),
         "i4",
-        "the same of the orbits beyond the bifurcation",
-        value=_located(lambda at: at.after.orbit.stop_counts if at.after else None),
+        "stops of each block in a period of the orbits beyond the bifurcation",
+        value=_of_bifurcation(lambda at: at.after.orbit.stop_counts if at.after else None),
     ),
-    "multiplier": Column((*_AT, "part"), "f8", _LARGEST, value=_located(lambda at: _multiplier(at.at))),
+    "multiplier": Column((*_AT, "part"), "f8", _LARGEST, value=_of_bifurcation(lambda at: _multiplier(at.at))),
     "multiplier_beyond": Column(
         (*_AT, "part"),
         "f8",
-        "the same of the orbits beyond the bifurcation",
-        value=_located(lambda at: _multiplier(at.after)),
+        "Floquet multiplier of largest modulus of the orbits beyond the bifurcation",
+        value=_of_bifurcation(lambda at: _multiplier(at.after)),
     ),
-    "mean_distance": Column(_AT, "f8", "<J> over a period of that orbit", value=_located(lambda at: at.mean_distance)),
+    "mean_distance": Column(
+        _AT,
+        "f8",
+        "<J> over a period of the orbit at the bifurcation",
+        value=_of_bifurcation(lambda at: at.mean_distance),
+    ),
     "stick_time": Column(
         _AT,
         "f8",
-        "shortest stick at the bifurcation, 0 where it shrinks to nothing",
-        value=_located(lambda at: at.stick_time),
+        "shortest stick of the orbit at the bifurcation, 0 if its duration vanishes there",
+        value=_of_bifurcation(lambda at: at.stick_time),
     ),
     "lifetime_low": Column(_AT, "f8", _LIFE, value=lambda one: one.lifetime[0]),
     "lifetime_high": Column(_AT, "f8", _LONGER, value=lambda one: one.lifetime[1]),
-    # Known from the edge states.
+    # Filled in from the edge states.
     "saddle_period": Column(_AT, "f8", _SADDLE),
-    "saddle_stops": Column((*_AT, "block"), "i4", "stops of each block in that period"),
-    "saddle_distance": Column(_AT, "f8", "how close the attractor comes to this orbit before the crisis"),
+    "saddle_stops": Column((*_AT, "block"), "i4", "stops of each block in a period of the saddle orbit"),
+    "saddle_distance": Column(_AT, "f8", "distance of the attractor from the saddle orbit before the crisis"),
 }
-_SEGMENT = "number of the segment of orbits that were followed together, in this order"
-_STABLE = "whether all its multipliers but that of the flow lie inside the unit circle"
-#: Of (number of a segment, its branch, one of its orbits).
+_SEGMENT = "number of the segment of a branch, whose orbits are in the order in which they were continued"
+_STABLE = "whether the orbit is stable: all multipliers except that of the flow lie inside the unit circle"
+#: Columns of an orbit, from (number of its segment, branch of the segment, orbit).
 ORBITS = {
     "orbit_segment": Column(_ORBIT, "i4", _SEGMENT, value=lambda one: one[0]),
-    "orbit_branch": Column(_ORBIT, "i2", "branch of most of the attractors that lie on them", value=lambda one: one[1]),
+    "orbit_branch": Column(_ORBIT, "i2", "branch of most attractors on the segment", value=lambda one: one[1]),
     "orbit_a": Column(_ORBIT, "f8", "friction parameter a of the periodic orbit", value=lambda one: one[2].orbit.a),
-    "orbit_stable": Column(_ORBIT, "i1", _STABLE, ANSWER, value=lambda one: one[2].multipliers.unstable == 0),
+    "orbit_stable": Column(_ORBIT, "i1", _STABLE, ANSWER, value=lambda one: one[2].multipliers.unstable_count == 0),
     "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda one: one[2].orbit.period),
     "orbit_stops": Column(
         (*_ORBIT, "block"),
@@ -137,13 +150,13 @@ VARIABLES: dict[str, Variable] = {
     "orbit_law": Variable(_ORBIT, "U", "friction law"),
     **ORBITS,
 }
-#: Significant digits of what is written: the last ones differ between machines.
+#: Significant digits of the stored values: further digits differ between machines.
 PLACES = 11
 DIGITS = {"multiplier": 5, "multiplier_beyond": 5, "stick_time": 5, "lifetime_low": 3, "lifetime_high": 3}
 
 
 def make_of_law(given: Given, model: Mapping[str, Any], a: float) -> xarray.Dataset:
-    """Return the bifurcations under one law; model, a : what decides the model, and one a."""
+    """Return the bifurcations under one law; model, a : the config's description of the model, and any a."""
     attractors, refined = (given.summary(name).sel(law=given.law) for name in ("attractors", "refined"))
     kept = given.cache(
         f"bifurcations {given.law}", model, source_fingerprint("burridge_knopoff.continuation.bifurcations")
@@ -152,11 +165,11 @@ def make_of_law(given: Given, model: Mapping[str, Any], a: float) -> xarray.Data
 
 
 def make(given: Given) -> tuple[xarray.Dataset, str]:
-    """Return the bifurcations under all laws, and the same in words."""
+    """Return the bifurcations under all laws, and their description as text."""
     dataset = merge(given.summaries("parts"))
     for edges in given.summaries("edges"):
         for k in np.flatnonzero(dataset["kind"].values == BifurcationKind.CRISIS):
-            saddle = met_saddle(edges, str(dataset["law"].values[k]), float(dataset["a"].values[k]))
+            saddle = saddle_at_crisis(edges, str(dataset["law"].values[k]), float(dataset["a"].values[k]))
             for name, value in saddle.items():
                 dataset[f"saddle_{name}"].values[k] = value
     return dataset, digest(dataset)
@@ -181,18 +194,18 @@ def one_law(
     orbits = followed(model, one, changes, processes, folder)
     found = list(entries(one, changes, orbits))
     segments = enumerate(zip(_branches_of_segments(orbits, one["branch"].values), orbits.segments, strict=True))
-    points = [(number, branch, point) for number, (branch, segment) in segments for point in segment.shown]
+    points = [(number, branch, point) for number, (branch, segment) in segments for point in segment.drawn_orbits]
     sizes = {"bifurcation": len(found), "orbit": len(points), "block": model.blocks, "part": len(PARTS)}
     values = filled(BIFURCATIONS, {(k,): one for k, one in enumerate(found)}, sizes)
-    rounded = {name: _rounded(value, DIGITS.get(name, 10)) for name, value in values.items()}
+    rounded = {name: _round_digits(value, DIGITS.get(name, 10)) for name, value in values.items()}
     rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])
     rounded["a_error"][~located] = 0.5 * (rounded["grid_high"] - rounded["grid_low"])[~located]
-    # They are values of refined.nc, to be looked up there.
+    # Unrounded: these are values of refined.nc and must be found there.
     rounded["grid_low"], rounded["grid_high"] = values["grid_low"], values["grid_high"]
-    rounded = _in_order(rounded)
+    rounded = _sort_rows(rounded)
     rounded |= {
-        name: _rounded(value, 10)
+        name: _round_digits(value, 10)
         for name, value in filled(ORBITS, {(k,): one for k, one in enumerate(points)}, sizes).items()
     }
     rounded |= {"law": np.repeat(law, len(found)), "orbit_law": np.repeat(law, len(points))}
@@ -208,48 +221,54 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return a line for each bifurcation: what happens there, to which branch, and the stops on both sides of it."""
+    """Return a line for each bifurcation: its kind, the change of the branch, and the stops on both sides."""
     columns = {name: dataset[name].values for name in ("law", *BIFURCATIONS)}
     lines = []
     for number in range(dataset.sizes["bifurcation"]):
         one = {name: values[number] for name, values in columns.items()}
-        kind = BifurcationKind(one["kind"]).name.lower() + (", turns" if one["turns"] == 1 else "")
-        parts = [f"{one['law']}, a = {one['a']:.10g} +/- {one['a_error']:.2g}: {kind}", _happening(one)]
-        if np.isfinite(one["lifetime_low"]):
-            parts.append(f"chaos lasts for {one['lifetime_low']:g} to {one['lifetime_high']:g} in the mean")
+        kind = BifurcationKind(one["kind"])
+        # A fold is always a turning point.
+        words = kind.words + (" (turning point)" if kind == BifurcationKind.GRAZING and one["turns"] == 1 else "")
+        parts = [f"{one['law']}, a = {one['a']:.10g} +/- {one['a_error']:.2g}: {words}", _change_text(one)]
+        low, high = one["lifetime_low"], one["lifetime_high"]
+        if np.isfinite(low):
+            parts.append(
+                "mean lifetime of chaos " + (f"{low:g} to {high:g}" if np.isfinite(high) else f"above {low:g}")
+            )
         if np.isfinite(one["saddle_period"]):
-            saddle = f"period {one['saddle_period']:.6g}, stops {_listed(one['saddle_stops'])}"
+            saddle = f"period {one['saddle_period']:.6g}, stops {_format_stops(one['saddle_stops'])}"
             parts.append(f"the attractor meets the saddle orbit of {saddle} on its basin boundary")
         if np.isfinite(one["period"]):
-            beyond = f", beyond {_listed(one['stops_beyond'])}" if (one["stops_beyond"] >= 0).all() else ""
-            parts.append(f"period {one['period']:.6g}, stops {_listed(one['stops'])}{beyond}")
+            beyond = f", beyond it {_format_stops(one['stops_beyond'])}" if (one["stops_beyond"] >= 0).all() else ""
+            parts.append(f"period {one['period']:.6g}, stops {_format_stops(one['stops'])}{beyond}")
         lines.append("; ".join(parts))
     return "\n".join(lines or ["No bifurcation was found between the values of a."]) + "\n"
 
 
-def _happening(one: Mapping[str, Any]) -> str:
-    """Return what a branch does at a bifurcation as a grows, in words."""
+def _change_text(one: Mapping[str, Any]) -> str:
+    """Return the change of a branch at a bifurcation, as a increases, as text."""
     before, after = (MotionKind(one[f"motion_{side}"]).words for side in ("before", "after"))
     low, high = (f"branch {one[name]}" if one[name] >= 0 else "" for name in ("from_branch", "to_branch"))
     match Change(one["change"]):
         case Change.BEGINNING:
-            return f"{high} begins, {after}" + (f"; below, it leads to {low}" if low else "")
+            return f"{high} begins, {after}" + (f"; at smaller a it leads to {low}" if low else "")
         case Change.END:
-            return f"{low} ends, {before}" + (f"; above, it leads to {high}" if high else "")
+            return f"{low} ends, {before}" + (f"; at larger a it leads to {high}" if high else "")
         case Change.CHANGE:
-            return f"{low}, {before} to {after}" if before != after else f"{low}, to another {after} motion"
+            motion = f"from {before} to {after}" if before != after else f"to another {after} motion"
+            return f"{low} changes {motion}"
         case _:
-            return f"{low} goes on, {before}"
+            return f"{low} continues, {before}"
 
 
-def _listed(stops: np.ndarray) -> str:
+def _format_stops(stops: np.ndarray) -> str:
     return " ".join(map(str, stops))
 
 
 def _dataset(
     names: Sequence[str], values: Mapping[str, np.ndarray], block: xarray.Variable, head: Mapping[str, Any]
 ) -> xarray.Dataset:
-    """Return the bifurcations of some laws, of these names, as a Dataset."""
+    """Return the bifurcations of the laws of these names as a Dataset."""
     coordinates = {
         "part": ("part", np.array(PARTS, dtype=object), {"long_name": "part of a complex number"}),
         "block": block,
@@ -262,10 +281,10 @@ def _dataset(
     return summary("Bifurcations of the branches of attractors", VARIABLES, values, coordinates, about, module=__name__)
 
 
-def _in_order(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """Return bifurcations by their a, then by their change, then by all else that is written of them.
+def _sort_rows(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Return bifurcations sorted by a, then by change, then by all other columns.
 
-    Only what is written decides: further digits differ between linear-algebra libraries.
+    The rounded values are sorted, since further digits differ between linear-algebra libraries.
     """
     count = len(rows["a"])
     keys = [column for name in ("a", "change", *rows) for column in rows[name].reshape(count, -1).T] if count else []
@@ -274,7 +293,7 @@ def _in_order(rows: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
 
 
 def _branches_of_segments(orbits: FollowedOrbits, branch: np.ndarray) -> list[int]:
-    """Return the branch of most of the attractors on each segment: that of the one it began from may be another.
+    """Return the branch of most attractors on each segment, which may differ from that of its first attractor.
 
     branch : of the attractors, shape (value, attractor)
     """
@@ -284,10 +303,10 @@ def _branches_of_segments(orbits: FollowedOrbits, branch: np.ndarray) -> list[in
     return [counted.most_common(1)[0][0] for counted in numbers]
 
 
-def _rounded(values: np.ndarray, digits: int) -> np.ndarray:
-    """Return numbers with so many significant digits; whole numbers and texts as they are."""
+def _round_digits(values: np.ndarray, digits: int) -> np.ndarray:
+    """Return floating-point numbers rounded to some significant digits; integers and texts are returned unchanged."""
     if values.dtype.kind != "f":
         return values
-    # Next to 0 digits behind the point count as well: nothing is known to more of them. Adding 0 makes -0 a 0.
+    # Near 0 the number of decimal places is limited as well. Adding 0 turns -0 into 0.
     shown = [float(f"{round(value, PLACES) + 0.0:.{digits - 1}e}") for value in values.ravel().tolist()]
     return np.reshape(shown, values.shape).astype(float)

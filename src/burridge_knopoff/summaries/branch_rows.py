@@ -1,4 +1,4 @@
-"""The branches of attractors under each law, a row each, for tables and texts."""
+"""The branches of attractors under each law, one row per branch, for tables and texts."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from burridge_knopoff.motion.kind import MotionKind
 class BranchRow:
     """A branch under one law.
 
-    a : the values at which it exists, ascending; of : number of values of a
-    distance : least and largest ⟨J⟩; kinds : of motion, in words
-    fraction : largest basin fraction, both sides together, and the a of it; None if no states were sampled
+    a : values of a at which the branch exists, ascending; of : number of all values of a
+    distance : smallest and largest ⟨J⟩; kinds : names of the kinds of motion
+    fraction : largest basin fraction of both sides together, and its a; None if no states were sampled
     """
 
     law: str
@@ -31,7 +31,7 @@ class BranchRow:
 
 
 def branch_rows(attractors: xarray.Dataset) -> Iterator[BranchRow]:
-    """Yield the branches of each law, by their numbers."""
+    """Yield the branches of each law in the order of their numbers."""
     a, names = attractors["a"].values, branch_names(attractors)
     for law in attractors["law"].values:
         one = attractors.sel(law=law)

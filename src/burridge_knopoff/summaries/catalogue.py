@@ -1,6 +1,6 @@
-"""How often slip events of which size occur, over (law, a): rates and their slope, extents, intervals, recurrence.
+"""Statistics of slip events over (law, a): rates, their slope, extents, intervals and recurrence.
 
-Each value of a has a run of its own, whose catalogue file has all events. Rates are NaN for runs that did not complete.
+Each value of a has its own run, whose catalogue file has all events. Rates are NaN for runs that did not complete.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ from burridge_knopoff.running.status import Status
 
 TITLE = "Slip events: rates, slopes, extents and intervals"
 
-#: Events of the map of slips, the last ones of a run.
-SHOWN = 3000
+#: Number of events in the map of slips: the last ones of a run.
+LAST_EVENTS = 3000
 
 _V = Variable
 _RUN = ("law", "a")
@@ -35,7 +35,7 @@ VARIABLES = {
     "event_count": _V(_RUN, "i8", "number of events in the catalogue"),
     "event_rate": _V(_RUN, "f8", "events per unit of time tau"),
     "largest_magnitude": _V(_RUN, "f8", "largest magnitude"),
-    "slope": _V(_RUN, "f8", "slope b: the rate falls as exp(-b magnitude) in the range of the fit"),
+    "slope": _V(_RUN, "f8", "slope b: the rate decreases as exp(-b magnitude) in the range of the fit"),
     "slope_error": _V(_RUN, "f8", "standard error of the slope"),
     "slope_low": _V(_RUN, "f8", "smallest magnitude in the fit"),
     "slope_high": _V(_RUN, "f8", "largest magnitude in the fit"),
@@ -43,37 +43,41 @@ VARIABLES = {
     "slope_p_value": _V(
         _RUN,
         "f8",
-        "probability that a catalogue of this distribution differs from its own fit by as much",
+        "probability that a catalogue drawn from the fit deviates from its own fit by at least as much",
         {"comment": "Kolmogorov-Smirnov distance, parametric bootstrap"},
     ),
-    "magnitude_count": _V(_MAGNITUDE, "i8", "number of events in a bin of magnitudes"),
+    "magnitude_count": _V(_MAGNITUDE, "i8", "number of events per bin of magnitude"),
     "magnitude_rate": _V(_MAGNITUDE, "f8", "events per unit of time tau and of magnitude"),
-    "mean_extent": _V(_MAGNITUDE, "f8", "mean number of slipping blocks of the events in a bin of magnitudes"),
-    "interval_count": _V(_INTERVAL, "i8", "number of events whose interval lies in a bin"),
+    "mean_extent": _V(_MAGNITUDE, "f8", "mean number of slipping blocks of the events in a bin of magnitude"),
+    "interval_count": _V(_INTERVAL, "i8", "number of events per bin of interval"),
     "block_event_count": _V(_BLOCK, "i8", "number of events that contain a block", {"comment": "-1 unknown"}),
     "recurrence": _V(_BLOCK, "f8", "mean time tau between events that contain a block"),
     "recurrence_spread": _V(_BLOCK, "f8", "standard deviation of this time"),
-    "shown_time": _V(_SHOWN, "f8", "time tau of one of the last events, NaN if there are fewer"),
+    "shown_time": _V(_SHOWN, "f8", "time tau of one of the last events of the run, NaN if there are fewer"),
     "shown_magnitude": _V(_SHOWN, "f8", "magnitude of this event"),
-    "bar_event": _V(_BAR, "i4", "which of the last events, from 1, a stretch of blocks slips in, 0 if there are fewer"),
-    "bar_first_block": _V(_BAR, "i4", "first block of this stretch"),
-    "bar_last_block": _V(_BAR, "i4", "its last block: all between them slip"),
+    "bar_event": _V(
+        _BAR,
+        "i4",
+        "number, from 1, of the shown event in which a range of consecutive blocks slips, 0 if there are fewer",
+    ),
+    "bar_first_block": _V(_BAR, "i4", "first block of this range"),
+    "bar_last_block": _V(_BAR, "i4", "last block of this range"),
 }
 COORDINATES = {
     "magnitude": _V(("magnitude",), "f8", "magnitude, natural logarithm of the moment, at the middle of a bin"),
     "interval": _V(
         ("interval",),
         "f8",
-        "time tau since the event began in which the epicentre slipped last, at the middle of a bin",
+        "time tau since the start of the last event in which the epicentre slipped, at the middle of a bin",
     ),
     "block": _V(("block",), "i4", "block number, 1 to N along the chain"),
 }
-#: Attributes of the catalogue files that all have in common.
+#: Attributes that all catalogue files have in common.
 SHARED = ("contact", "loading", "start", "begin_time", "end_time")
 
 
 def make(given: Given, laws: Sequence[str], grid: Sequence[float], fit: Mapping[str, float]) -> xarray.Dataset:
-    """Return the statistics of all catalogues; fit : ends of the range of the fit; all as in `summarize`."""
+    """Return the statistics of all catalogues; fit : ends of the range of the fit; the rest as in `summarize`."""
     return summarize(map(open_summary, given.paths("runs")), laws, grid, **fit)
 
 
@@ -86,16 +90,16 @@ def summarize(
 ) -> xarray.Dataset:
     """Return the summary of the catalogue files of all laws at all a, in this order.
 
-    low, high : ends of the range in which slopes are fitted, by default those of `fit_range`
+    low, high : ends of the range in which slopes are fitted; by default those of `fit_range`
     """
     runs, attributes = [], {}
-    # Of all catalogues, one is held at a time.
+    # One catalogue at a time is kept in memory.
     for catalogue in catalogues:
-        runs.append(_one(catalogue, low, high))
+        runs.append(_run_statistics(catalogue, low, high))
         attributes = {name: catalogue.attrs[name] for name in SHARED} | {"v": catalogue["v"].item()}
     most = max(len(run["bar_event"]) for run in runs)
     for run in runs:
-        run |= {name: _filled(run[name], 0, most) for name in VARIABLES if name.startswith("bar_")}
+        run |= {name: _pad(run[name], 0, most) for name in VARIABLES if name.startswith("bar_")}
     values = {
         name: np.reshape([run[name] for run in runs], (len(laws), len(grid), *np.shape(runs[0][name])))
         for name in VARIABLES
@@ -115,16 +119,16 @@ def summarize(
         "interval": whole["interval_count"],
         "shown_event": whole["shown_time"].notnull(),
     }
-    return whole.isel({name: _extent(counts, name) for name, counts in there.items()})
+    return whole.isel({name: _nonzero_range(counts, name) for name, counts in there.items()})
 
 
-def _extent(counts: xarray.DataArray, name: str) -> slice:
-    """Return the part of a dimension outside of which all counts are 0."""
+def _nonzero_range(counts: xarray.DataArray, name: str) -> slice:
+    """Return the range of a dimension outside which all counts are 0."""
     found = np.flatnonzero((counts > 0).any([other for other in counts.dims if other != name]).values)
     return slice(found[0], found[-1] + 1) if len(found) else slice(0)
 
 
-def _one(catalogue: xarray.Dataset, low: float | None, high: float | None) -> dict[str, Any]:
+def _run_statistics(catalogue: xarray.Dataset, low: float | None, high: float | None) -> dict[str, Any]:
     """Return the values of all variables for one catalogue."""
     length = catalogue.attrs["end_time"] - catalogue.attrs["begin_time"]
     if catalogue["status"].item() != Status.COMPLETED:
@@ -154,14 +158,14 @@ def _one(catalogue: xarray.Dataset, low: float | None, high: float | None) -> di
         "block_event_count": containing,
         "recurrence": mean,
         "recurrence_spread": spread,
-        "shown_time": _filled(time[-SHOWN:], np.nan, SHOWN),
-        "shown_magnitude": _filled(magnitude[-SHOWN:], np.nan, SHOWN),
-        **_bars([] if members is None else members[-SHOWN:]),
+        "shown_time": _pad(time[-LAST_EVENTS:], np.nan, LAST_EVENTS),
+        "shown_magnitude": _pad(magnitude[-LAST_EVENTS:], np.nan, LAST_EVENTS),
+        **_bars([] if members is None else members[-LAST_EVENTS:]),
     }
 
 
 def _members(catalogue: xarray.Dataset) -> Sequence[np.ndarray] | None:
-    """Return the blocks of each event; None if unknown, on a grid or network without profiles."""
+    """Return the blocks of each event; None if they are unknown, as on a grid or network without slip profiles."""
     if "slip_block" in catalogue:
         return np.split(catalogue["slip_block"].values, np.cumsum(catalogue["blocks"].values)[:-1])
     if catalogue.sizes["event"] and {"chain_grid", "chain_springs"} & set(catalogue.attrs):
@@ -170,7 +174,7 @@ def _members(catalogue: xarray.Dataset) -> Sequence[np.ndarray] | None:
 
 
 def _bars(members: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
-    """Return the stretches of consecutive blocks that slip together, in the order of the events."""
+    """Return the ranges of consecutive blocks that slip in the same event, in the order of the events."""
     event = np.repeat(np.arange(1, len(members) + 1), [len(part) for part in members])
     block = np.concatenate([np.zeros(0, dtype=int), *(np.sort(part) for part in members)])
     first = np.ones(len(block), dtype=bool)
@@ -179,8 +183,8 @@ def _bars(members: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
     return {"bar_event": event[first], "bar_first_block": block[first], "bar_last_block": block[last]}
 
 
-def _filled(values: np.ndarray, none: float, length: int) -> np.ndarray:
-    """Return values filled up to a length."""
+def _pad(values: np.ndarray, none: float, length: int) -> np.ndarray:
+    """Return values padded to a length."""
     return np.pad(values, (0, length - len(values)), constant_values=none)
 
 
@@ -188,7 +192,7 @@ def _slope(magnitude: np.ndarray, fitted: tuple[float, float], completed: bool) 
     """Return the fit of a slope in a range, NaN if there is none."""
     low, high = fitted
     found = {"low": low, "high": high, "b": np.nan, "error": np.nan, "p_value": np.nan, "count": 0}
-    # There is no slope of too few events, nor if all are of one magnitude.
+    # The fit fails if there are too few events, or if all have the same magnitude.
     with suppress(ValueError):
         found |= vars(fit_slope(magnitude, low, high)) if completed else {}
     names = {"slope": "b", **{f"slope_{name}": name for name in ("error", "low", "high", "count", "p_value")}}

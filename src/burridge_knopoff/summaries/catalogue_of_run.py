@@ -22,6 +22,6 @@ def make(
     run: Mapping[str, Any],
     catalogue: Mapping[str, Any],
 ) -> xarray.Dataset:
-    """Return the slip events of a run; run : its start, solver and step; the others as in a config."""
+    """Return the slip events of a run; run : its start, solver and step; the other arguments as in a config."""
     settings = CatalogueSettings(**catalogue)
     return catalogue_of_run(model_of(model, given.law, a), InitialState(**state), settings, **run)

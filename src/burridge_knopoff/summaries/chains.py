@@ -1,6 +1,6 @@
-"""Which fraction of the sampled initial states synchronizes, against a and the number of blocks.
+"""The fraction of sampled initial states that synchronize, over a and the number of blocks.
 
-A chain file holds what `motion.chain_synchronization` found for one number of blocks; the summary collects all.
+A chain file has the results of `motion.chain_synchronization` for one number of blocks; the summary collects all.
 """
 
 from __future__ import annotations
@@ -33,24 +33,28 @@ _OWN_ATTRIBUTES = ("blocks", *global_attributes("", {}, module=__name__))
 _STATE = (*_POINT, "state")
 _SYMMETRIC = (*_POINT, "symmetric_state")
 CHAIN_VARIABLES = {
-    "outcome": Variable(_STATE, "i1", "what became of the mirror blocks", flag("i1", Outcome)),
-    "time": Variable(_STATE, "f8", "time tau at which the synchronization distance was reached, NaN if it was not"),
+    "outcome": Variable(_STATE, "i1", "outcome: whether the mirror blocks synchronize", flag("i1", Outcome)),
+    "time": Variable(
+        _STATE, "f8", "time tau at which the synchronization distance was reached, NaN if it was not reached"
+    ),
     "distance": Variable(
         _STATE, "f8", "largest mirror distance in the last quarter of the time limit, or at that time"
     ),
     "mean_distance": Variable(
         _STATE, "f8", "mean mirror distance in the last quarter of the time limit, or at that time"
     ),
-    "pairs": Variable(_STATE, "i2", "number of pairs of mirror blocks that stay synchronized in the last quarter"),
+    "pairs": Variable(
+        _STATE, "i2", "number of pairs of mirror blocks that stay synchronized in the last quarter of the time limit"
+    ),
     "transverse_exponent": Variable(
         _STATE,
         "f8",
-        "largest transverse Lyapunov exponent of the symmetric motion that was reached or is near, else NaN",
+        "largest transverse Lyapunov exponent of the symmetric motion that was reached or is nearby, otherwise NaN",
     ),
     "symmetric_exponent": Variable(_SYMMETRIC, "f8", "largest transverse Lyapunov exponent of symmetric motion"),
     "symmetric_error": Variable(_SYMMETRIC, "f8", "standard error of this exponent from batches"),
     "lyapunov_exponent": Variable(_POINT, "f8", "largest Lyapunov exponent of the first state"),
-    "lyapunov_error": Variable(_POINT, "f8", "error of this exponent, of the batches and of the window"),
+    "lyapunov_error": Variable(_POINT, "f8", "error of this exponent, from batches and from the length of the window"),
 }
 VARIABLES = {
     **{
@@ -64,7 +68,7 @@ VARIABLES = {
             "synchronized_low": "lower end of its confidence interval",
             "synchronized_high": "upper end of its confidence interval, undetermined states counted as synchronized",
             "undetermined_fraction": "fraction of the states that are undetermined",
-            "partial_fraction": "fraction of the states with some, but not all pairs of mirror blocks synchronized",
+            "partial_fraction": "fraction of the states in which some but not all pairs of mirror blocks synchronize",
             "mean_mirror_distance": "mean over the states of the mean mirror distance; synchronized states count as 0",
         }.items()
     },
@@ -79,7 +83,7 @@ def make_of_length(
     sample: Mapping[str, Any],
     motion: Mapping[str, Any],
 ) -> xarray.Dataset:
-    """Return the outcomes for one number of blocks; grid : values of a; the others as in a config."""
+    """Return the outcomes for one number of blocks; grid : values of a; the other arguments as in a config."""
     models = models_of(model, grid[0], int(given.wildcards["blocks"]))
     return chain_dataset(models, grid, Sample(**sample), Watch(**watch, **motion))
 
@@ -113,14 +117,16 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
 
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
-    """Put chain files together, in the order of their numbers of blocks, and count outcomes.
+    """Combine chain files in the order of their numbers of blocks, and count outcomes.
 
-    Raises ValueError, one line, if one was made with other settings than the first.
+    Raises ValueError, one line, if a file was made with settings that differ from those of the first.
     """
     for part in parts:
         if _settings(part) != _settings(parts[0]):
             one, other = (dataset.encoding["source"] for dataset in (part, parts[0]))
-            raise ValueError(f"{one}: made with other settings than {other}; delete both and run snakemake again")
+            raise ValueError(
+                f"{one}: made with settings that differ from those of {other}; delete both and run snakemake again"
+            )
     chains = sorted(parts, key=lambda chain: chain.attrs["blocks"])
     first = chains[0]
     values = {name: np.stack([chain[name].values for chain in chains]) for name in CHAIN_VARIABLES}
@@ -145,7 +151,7 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
 
 
 def _settings(chain: xarray.Dataset) -> str:
-    """Return all that the chain files of a study have in common."""
+    """Return the settings that the chain files of a study have in common."""
     shared = {name: np.asarray(value).tolist() for name, value in chain.attrs.items() if name not in _OWN_ATTRIBUTES}
     return repr((shared, chain["law"].values.tolist(), chain["a"].values.tolist(), dict(chain.sizes)))
 

@@ -1,4 +1,4 @@
-"""How two velocities go together."""
+"""Correlation of two velocities."""
 
 from __future__ import annotations
 
@@ -14,6 +14,6 @@ def correlation(one: np.ndarray, other: np.ndarray) -> float:
     if is_constant(one) or is_constant(other):
         return math.nan
     one, other = one - one.mean(), other - other.mean()
-    # Sums, not products of matrices: the last bit of those depends on where in memory the values lie.
+    # Sums instead of matrix products, whose last bits depend on the alignment of the values in memory.
     product = (one * other).sum() / math.sqrt((one * one).sum() * (other * other).sum())
     return float(min(max(product, -1.0), 1.0))

@@ -1,10 +1,10 @@
 """Motion after detuning: are the end blocks locked to each other if their masses differ?
 
-By mirror symmetry both end blocks of a motion that is its own mirror image have one frequency, locked or not. If they
-are locked, they keep one frequency when their own frequencies are made to differ, up to some detuning. Where friction
-is constant, blocks that move in one mode of the springs keep one frequency as well, but nothing holds them there: other
-motions, with other frequencies, lie next to theirs. Locking also attracts. Of the phases of N blocks that oscillate
-freely none decays, and N Lyapunov exponents are 0; each relation between them that is locked makes one negative.
+If a motion is its own mirror image, its end blocks have the same frequency by symmetry, whether they are locked or not.
+Locked blocks keep a common frequency if their natural frequencies are made to differ, up to some detuning. Under
+constant friction, blocks that move in a single mode of the springs have a common frequency as well, but neighbouring
+motions have other frequencies. Locking is attracting. If N blocks oscillate freely, none of their phases decays and N
+Lyapunov exponents are 0; each locked relation between the phases makes one of them negative.
 
 Reference: A. Pikovsky, M. Rosenblum and J. Kurths, Synchronization (Cambridge University Press, 2001), chapter 8:
 mutual synchronization of two self-sustained oscillators, and its range of detuning.
@@ -21,8 +21,8 @@ from burridge_knopoff.motion.frequency import block_frequencies
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
-#: Time after the detuning for which the motion is left to settle, and for which its exponents and then its frequencies
-#: are measured.
+#: Time for which the motion settles after the detuning, and time for which its exponents, and then its frequencies, are
+#: measured.
 TRANSIENT, WINDOW = 4000.0, 4000.0
 
 
@@ -43,7 +43,7 @@ class DetunedMotion:
 def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: int) -> DetunedMotion:
     """Return the motion after a change of the mass of the last block.
 
-    start : state in which the mass becomes 1 + detuning times as large; exponents : how many are computed
+    start : state at which the mass is multiplied by 1 + detuning; exponents : number of exponents to compute
     """
     masses = model.chain.masses
     detuned = model.at(**{f"mass[{model.blocks}]": masses[-1] * (1.0 + detuning)})

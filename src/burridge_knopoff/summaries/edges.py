@@ -1,4 +1,4 @@
-"""The edge states of a study: on the boundaries between basins at each a, followed in a, and met by crises."""
+"""The edge states of a study, on the boundaries between basins: at each a, continued in a, and at crises."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ _LIFE = "mean time for which trajectories stay near the edge state"
 
 @dataclass(frozen=True, eq=False)
 class _Row:
-    """An edge state with the number of the segment of orbits that it lies on, −1 for none."""
+    """An edge state, and the number of the segment of orbits on which it lies, −1 for none."""
 
     edge: Edge
     segment: int
@@ -48,7 +48,7 @@ class _Row:
         return None if orbit is None else orbit.stop_counts
 
 
-#: Of an edge state.
+#: Columns of an edge state.
 EDGES = {
     "a": Column(_EDGE, "f8", "friction parameter a", value=lambda one: one.edge.a),
     "kind": Column(
@@ -64,14 +64,14 @@ EDGES = {
     "has_crossing": Column(
         _EDGE,
         "i1",
-        "whether states displaced to one side reach an attractor of the other: the boundary is fractal",
+        "whether states displaced to one side reach an attractor of the other side: the boundary is then fractal",
         YES_OR_NO,
         value=lambda one: one.edge.state.has_crossing,
     ),
     "branch": Column(
         _BANKS,
         "i2",
-        "branch of attractors that most states displaced to this side reach",
+        "branch of attractors reached by most states displaced to this side",
         value=lambda one: one.edge.branch,
     ),
     "side": Column(
@@ -84,7 +84,7 @@ EDGES = {
     "reached_count": Column(
         (*_BANKS, "attractor"),
         "i4",
-        "displaced states that reach this attractor, by its number in attractors.nc; -1 where there is none",
+        "number of displaced states that reach this attractor, numbered as in attractors.nc; -1 if there is none",
         value=lambda one: one.edge.reached,
     ),
     "period": Column(
@@ -93,11 +93,13 @@ EDGES = {
         "period of the saddle orbit; NaN for other edge states",
         value=lambda one: one.edge.state.orbit and one.edge.state.orbit.period,
     ),
-    "stops": Column((*_EDGE, "block"), "i4", "stops of each block in that period", value=lambda one: one.stops),
+    "stops": Column(
+        (*_EDGE, "block"), "i4", "stops of each block in a period of the saddle orbit", value=lambda one: one.stops
+    ),
     "multiplier": Column(
         _EDGE,
         "f8",
-        "modulus of the only Floquet multiplier of the saddle orbit outside the unit circle",
+        "modulus of the one Floquet multiplier of the saddle orbit outside the unit circle",
         value=lambda one: abs(one.edge.state.multiplier[0]) if one.edge.state.orbit else None,
     ),
     "lyapunov_exponent": Column(
@@ -107,22 +109,30 @@ EDGES = {
         value=lambda one: one.edge.state.exponent,
     ),
     "lyapunov_error": Column(
-        (*_EDGE, "exponent"), "f8", "their standard errors", value=lambda one: one.edge.state.exponent_error
+        (*_EDGE, "exponent"),
+        "f8",
+        "standard errors of these exponents",
+        value=lambda one: one.edge.state.exponent_error,
     ),
     "lifetime": Column(_EDGE, "f8", _LIFE, value=lambda one: one.edge.state.lifetime),
-    "lifetime_error": Column(_EDGE, "f8", "its standard error", value=lambda one: one.edge.state.lifetime_error),
+    "lifetime_error": Column(
+        _EDGE, "f8", "standard error of the lifetime", value=lambda one: one.edge.state.lifetime_error
+    ),
     "mean_distance": Column(_EDGE, "f8", "<J> along the edge state", value=lambda one: one.edge.state.mean_distance),
     "duration": Column(
         _EDGE, "f8", "time for which the boundary was followed", value=lambda one: one.edge.state.duration
     ),
     "segment": Column(
-        _EDGE, "i4", "number of the segment of orbits on which it lies, -1 for none", value=lambda one: one.segment
+        _EDGE,
+        "i4",
+        "number of the segment of orbits on which the edge state lies, -1 for none",
+        value=lambda one: one.segment,
     ),
 }
-#: Of an orbit of a segment.
+#: Columns of an orbit, from (number of its segment, orbit).
 ORBITS = {
     "orbit_segment": Column(
-        _ORBIT, "i4", "number of the segment of saddle orbits that were followed together", value=lambda one: one[0]
+        _ORBIT, "i4", "number of the segment of a branch of saddle orbits", value=lambda one: one[0]
     ),
     "orbit_a": Column(_ORBIT, "f8", "friction parameter a of the orbit", value=lambda one: one[1].orbit.a),
     "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda one: one[1].orbit.period),
@@ -132,30 +142,30 @@ ORBITS = {
     "orbit_multiplier": Column(
         _ORBIT,
         "f8",
-        "largest modulus of its Floquet multipliers",
+        "largest modulus of the Floquet multipliers of the orbit",
         value=lambda one: abs(one[1].multipliers.whole[0]),
     ),
     "orbit_unstable_count": Column(
         _ORBIT,
         "i4",
-        "multipliers outside the unit circle: 1 but at the ends",
-        value=lambda one: one[1].multipliers.unstable,
+        "number of multipliers outside the unit circle: 1 except at the ends of a segment",
+        value=lambda one: one[1].multipliers.unstable_count,
     ),
 }
-#: Of a crisis, by its a and branch in bifurcations.nc.
+#: Columns of a crisis, from its a and branch in bifurcations.nc and its `Approach`.
 CRISES = {
     "crisis_a": Column(_CRISIS, "f8", "friction parameter a of the crisis", value=lambda one: one[0]),
     "crisis_branch": Column(_CRISIS, "i2", "branch of the chaotic attractor", value=lambda one: one[1]),
     "crisis_edge": Column(
         _CRISIS,
         "i4",
-        "number of the edge state that this attractor comes closest to, along the dimension edge; -1 for none",
+        "index along the dimension edge of the edge state closest to this attractor, -1 for none",
         value=lambda one: one[2].edge,
     ),
     "crisis_distance": Column(
         _CRISIS,
         "f8",
-        "how close the attractor comes to its orbit at the value of refined.nc next to the crisis",
+        "smallest distance of the attractor from that orbit at the value of refined.nc next to the crisis",
         value=lambda one: one[2].distance,
     ),
     "crisis_size": Column(
@@ -169,11 +179,11 @@ VARIABLES: dict[str, Variable] = {
     **ORBITS,
     **CRISES,
 }
-#: Variables that count edges or segments of one law from 0, and the dimension that they count.
+#: Variables that number edges or segments of one law from 0, and a variable over what they number.
 _NUMBERS = {"segment": "orbit_segment", "orbit_segment": "orbit_segment", "crisis_edge": "a"}
 
-#: A crisis meets a saddle if the attractor comes this close to it, as a share of the size of the attractor.
-MET = 0.02
+#: At a crisis the attractor meets a saddle if it comes this close to it, relative to the size of the attractor.
+MEETING_DISTANCE = 0.02
 
 
 def make_of_law(
@@ -183,7 +193,7 @@ def make_of_law(
     attractors: Mapping[str, Any],
     edges: Mapping[str, Any],
 ) -> xarray.Dataset:
-    """Return the edge states under one law; grid : values of a; the others as in a config."""
+    """Return the edge states under one law; grid : values of a; the other arguments as in a config."""
     found, refined = given.summary("attractors"), given.summary("refined").sel(law=given.law)
     returns = given.summary("returns")
     known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
@@ -201,7 +211,7 @@ def make_of_law(
 
 
 def make(given: Given) -> tuple[xarray.Dataset, str]:
-    """Return the edge states under all laws, and the same in words."""
+    """Return the edge states under all laws, and their description as text."""
     dataset = merge(given.summaries("parts"))
     return dataset, digest(dataset)
 
@@ -220,7 +230,7 @@ def _crises(bifurcations: xarray.Dataset) -> list[tuple[float, int, float]]:
 
 
 def _approach(model: Model, refined: xarray.Dataset, states: Sequence[Edge], branch: int) -> Approach:
-    """Return how close the chaos of a branch comes to the saddles at the nearest a with edge states."""
+    """Return how close the chaotic attractor of a branch comes to the saddles at the nearest a with edge states."""
     place = int(np.flatnonzero(refined["a"].values == model.a)[0])
     slots = np.flatnonzero(refined["branch"].values[place] == branch)
     near = [edge for edge in states if branch in edge.branch]
@@ -287,14 +297,14 @@ def _dataset(names: Sequence[str], values: Mapping[str, np.ndarray], head: Mappi
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return a line for each edge state: between which branches, what it is, and whether the boundary is crossed."""
-    lines = [f"{described}." for described in map(partial(_described, dataset), range(dataset.sizes["edge"]))]
+    """Return a line for each edge state: the branches it separates, its motion, and whether the boundary is crossed."""
+    lines = [f"{described}." for described in map(partial(_edge_text, dataset), range(dataset.sizes["edge"]))]
     return "\n".join(lines or ["No edge state was found."]) + "\n"
 
 
-def _described(dataset: xarray.Dataset, number: int) -> str:
+def _edge_text(dataset: xarray.Dataset, number: int) -> str:
     one = {name: dataset[name].values[number] for name in ("law", *EDGES)}
-    branches = " and ".join(_named(*pair) for pair in zip(one["branch"], one["side"], strict=True))
+    branches = " and ".join(_branch_label(*pair) for pair in zip(one["branch"], one["side"], strict=True))
     motion = f"{Symmetry(one['symmetry']).name.lower()}, {MotionKind(one['kind']).words}"
     if np.isfinite(one["period"]):
         stops = " ".join(map(str, one["stops"]))
@@ -309,19 +319,19 @@ def _described(dataset: xarray.Dataset, number: int) -> str:
     )
 
 
-def _named(branch: int, side: int) -> str:
+def _branch_label(branch: int, side: int) -> str:
     return f"{branch}{'+' if side > 0 else '-' if side < 0 else ''}"
 
 
-def met_saddle(edges: xarray.Dataset, law: str, a: float) -> dict[str, Any]:
-    """Return period, stops and distance of the saddle orbit that the attractor of a crisis meets; {} if none is known.
+def saddle_at_crisis(edges: xarray.Dataset, law: str, a: float) -> dict[str, Any]:
+    """Return period, stops and distance of the saddle orbit that the attractor meets at a crisis; {} if none is known.
 
     edges : as `merge` returns them; a : of the crisis in bifurcations.nc
     """
     for k in np.flatnonzero((edges["crisis_law"].values == law) & (edges["crisis_a"].values == a)):
         number = int(edges["crisis_edge"].values[k])
         distance, size = (float(edges[f"crisis_{name}"].values[k]) for name in ("distance", "size"))
-        if number >= 0 and distance <= MET * size:
+        if number >= 0 and distance <= MEETING_DISTANCE * size:
             return {
                 "period": edges["period"].values[number],
                 "stops": edges["stops"].values[number],

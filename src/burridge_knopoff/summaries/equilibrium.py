@@ -1,10 +1,10 @@
-"""Uniform sliding over law and a: where the blocks lie, and how perturbations of it grow.
+"""Uniform sliding over (law, a): the positions of the blocks, and the growth of perturbations.
 
 In uniform sliding U_i = vτ + e_i with K e = −Φ(v)·threshold. A perturbation obeys δU'' = −M⁻¹K δU + G δU' with the
-diagonal matrices M of the masses and G of g_i = −threshold_i·dΦ/dU'/m_i at U' = v; under the linearized law with
-thresholds and masses of 1 they are a. Its growth rates are the eigenvalues λ of the Jacobian [[0, 1], [−M⁻¹K, G]].
-Where all g_i are one g, a normal mode of M⁻¹K with the eigenvalue κ has λ² − gλ + κ = 0, so that
-λ = g/2 ± i sqrt(κ − g²/4): real parts of modes that oscillate are g/2.
+diagonal matrices M of the masses and G of g_i = −threshold_i·dΦ/dU'/m_i at U' = v. Under the linearized law, with
+thresholds and masses of 1, all g_i are a. The growth rates are the eigenvalues λ of the Jacobian [[0, 1], [−M⁻¹K, G]].
+If all g_i have the same value g, a normal mode of M⁻¹K with eigenvalue κ has λ² − gλ + κ = 0. Thus
+λ = g/2 ± i sqrt(κ − g²/4): the real part of every oscillating mode is g/2.
 """
 
 from __future__ import annotations
@@ -24,21 +24,21 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.runner import Runner
 
-#: Time for which the equations are simulated from uniform sliding: a few periods of the slowest mode of the paper.
+#: Time for which uniform sliding is simulated: a few periods of the slowest mode of the paper's chain.
 DURATION = 20.0
 
-# Logarithm of how much a perturbation may grow in that time; where growth is faster, the time is shorter.
+# Logarithm of the largest growth of a perturbation in that time; if growth is faster, the time is shorter.
 LARGEST_GROWTH = 20.0
 
-#: What is said of a model under which no other attractor is found.
-SLIDING = "uniform sliding attracts here; it has no stops and is not looked for"
+#: Message about a model for which no other attractor is found.
+SLIDING = "uniform sliding attracts here; it has no stops and is not searched for"
 
 PARTS = ("real", "imaginary")
 
-#: Limit on the number of blocks: the modes of larger chains take hours, and their matrices more than any memory.
-MOST_BLOCKS = 1024
+#: Largest number of blocks: the modes of larger chains take hours, and their matrices need more memory than there is.
+MAX_BLOCKS = 1024
 
-# Digits kept of numbers that come from LAPACK, whose last bits depend on the machine.
+# Significant digits of results of LAPACK, whose last bits depend on the machine.
 DIGITS = 12
 
 _CURVE = ("law", "a")
@@ -50,24 +50,26 @@ VARIABLES = {
         {"comment": "K e = -Phi(v) threshold"},
     ),
     "equilibrium_drift": Variable(
-        _CURVE, "f8", "largest distance of a block from uniform sliding when it has been simulated for a while from it"
+        _CURVE, "f8", "largest distance of a block from uniform sliding at the end of a simulation that starts there"
     ),
     "eigenvalue": Variable(
-        (*_CURVE, "mode", "part"), "f8", "eigenvalues lambda of the Jacobian at uniform sliding, pair by pair"
+        (*_CURVE, "mode", "part"), "f8", "eigenvalues lambda of the Jacobian at uniform sliding, in pairs"
     ),
     "growth_rate": Variable(
-        _CURVE, "f8", "growth rate of the perturbation that grows most, from the tangent flow of the simulation"
+        _CURVE, "f8", "growth rate of the fastest-growing perturbation, from the tangent flow of the simulation"
     ),
     "strengthening_growth_rate": Variable(
         _CURVE,
         "f8",
-        "the same where friction grows with velocity: under the mirror image of the law at the velocity of the driver",
-        {"comment": "2 Phi(v) - Phi(U'); NaN where that is no friction law"},
+        "the same growth rate if friction increases with velocity, under the law reflected at the driver velocity",
+        {"comment": "2 Phi(v) - Phi(U'); NaN where this is not a friction law"},
     ),
 }
 _COORDINATES = {
     "block": Variable(("block",), "i4", "block number, 1 to N along the chain", coordinate=True),
-    "mode": Variable(("mode",), "i4", "number of the eigenvalue, from the slowest oscillation on", coordinate=True),
+    "mode": Variable(
+        ("mode",), "i4", "number of the eigenvalue, starting with the slowest oscillation", coordinate=True
+    ),
     "part": Variable(("part",), "O", "part of a complex number", coordinate=True),
 }
 
@@ -75,15 +77,15 @@ _COORDINATES = {
 def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     """Return position, simulated drift, eigenvalues and simulated growth rate of uniform sliding at each a of a grid.
 
-    They are NaN for more than MOST_BLOCKS blocks.
+    All are NaN for more than MAX_BLOCKS blocks.
 
-    models : one for each law, at any a, of one chain and velocity
+    models : one for each law, at any a, with the same chain and driver velocity
     """
     blocks = models[0].blocks
     sizes = {"law": len(models), "a": len(grid), "block": blocks, "mode": 2 * blocks, "part": len(PARTS)}
     values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
     for i, of_law in enumerate(models):
-        for k, a in enumerate(grid if blocks <= MOST_BLOCKS else ()):
+        for k, a in enumerate(grid if blocks <= MAX_BLOCKS else ()):
             model = of_law.at(a)
             position = sliding_position(model)
             values["equilibrium_position"][i, k] = position
@@ -113,9 +115,9 @@ def sliding_position(model: Model) -> np.ndarray:
     """Return e with K e = −Φ(v)·threshold, shape (blocks,), independently of the simulation."""
     chain = model.chain
     load = -float(model.law(model.v)) * chain.thresholds
-    # SciPy refuses a band matrix of one number.
+    # SciPy rejects a band matrix of a single number.
     if chain.ends == "ring" or chain.blocks == 1 or chain.is_network:
-        return np.array([_rounded(value) for value in solve(chain.stiffness, load, assume_a="pos")])
+        return np.array([_round(value) for value in solve(chain.stiffness, load, assume_a="pos")])
     bands = np.stack([np.append(0.0, np.diag(chain.stiffness, 1)), np.diag(chain.stiffness)])
     return solveh_banded(bands, load)
 
@@ -128,32 +130,32 @@ def weakening(model: Model) -> np.ndarray:
 def eigenvalues(model: Model) -> np.ndarray:
     """Return the eigenvalues of the Jacobian at uniform sliding, complex, shape (2 blocks,).
 
-    From the slowest oscillation to the fastest, of a pair the positive imaginary part first; those without oscillation
-    come before, the one that grows most first.
+    They are ordered from the slowest oscillation to the fastest, with the positive imaginary part of a pair first;
+    non-oscillating ones precede these in order of decreasing growth rate.
     """
     stiffness, rates, root = model.chain.stiffness, weakening(model), np.sqrt(model.chain.masses)
     if model.chain.is_damped or (rates != rates[0]).any():
         blocks, masses = model.blocks, model.chain.masses[:, None]
         damped = np.diag(rates) - model.chain.damping_matrix / masses
         jacobian = np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-stiffness / masses, damped]])
-        found = [complex(_rounded(value.real), _rounded(value.imag)) for value in np.linalg.eigvals(jacobian)]
+        found = [complex(_round(value.real), _round(value.imag)) for value in np.linalg.eigvals(jacobian)]
         return np.array(sorted(found, key=lambda value: (abs(value.imag), value.imag < 0.0, -value.real)))
     half = 0.5 * rates[0]
-    # The symmetric matrix with the eigenvalues of M⁻¹K.
+    # The symmetric matrix M^(−1/2) K M^(−1/2) has the eigenvalues of M⁻¹K.
     stiffness = stiffness / np.outer(root, root)
     if model.chain.ends == "ring" or model.chain.is_network:
         kappa = eigvalsh(stiffness)
     else:
         kappa = eigvalsh_tridiagonal(np.diag(stiffness), np.diag(stiffness, 1), lapack_driver="sterf")
     square = kappa - half**2
-    shift = np.array([_rounded(value) for value in np.sqrt(np.abs(square))])
+    shift = np.array([_round(value) for value in np.sqrt(np.abs(square))])
     # A mode that does not oscillate has two real eigenvalues.
     shift = np.where(square > 0.0, 1j, 1.0) * shift
     return (half + shift[:, None] * np.array([1.0, -1.0])).ravel()
 
 
-def sliding_attracts(model: Model) -> bool:
-    """Return whether every perturbation of uniform sliding that is small decays."""
+def is_sliding_attracting(model: Model) -> bool:
+    """Return whether uniform sliding attracts: every small perturbation decays."""
     return bool((eigenvalues(model).real < 0.0).all())
 
 
@@ -176,6 +178,6 @@ def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:
     return float(np.abs(end.position).max()), rate + 0.0
 
 
-def _rounded(value: float) -> float:
-    """Return a number to the digits that every machine agrees on."""
+def _round(value: float) -> float:
+    """Return a number rounded to the digits on which all machines agree."""
     return float(f"{value:.{DIGITS - 1}e}")

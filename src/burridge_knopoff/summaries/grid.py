@@ -38,11 +38,11 @@ VARIABLES["run_kind"] = replace(
 def summarize(
     grid: Grid, lyapunov_exponents: int, synchronization_threshold: float, motion: Mapping[str, Any]
 ) -> xarray.Dataset:
-    """Return one number a point of each variable, over (law, initial, parameters in the order of the config).
+    """Return each variable with one number per point, over (law, initial, parameters in the order of the config).
 
-    lyapunov_exponents : how many were computed in each run
+    lyapunov_exponents : number of exponents computed in each run
     motion : the config's section of that name: thresholds of the kinds of motion
-    Raises BadFile, one line, for a point that is missing, damaged, or not the one that the study would make now.
+    Raises BadFile, one line, for a point that is missing, damaged or out of date.
     """
     chosen = {**motion, "synchronization_threshold": synchronization_threshold, "section": grid.section}
     settings = MotionSettings(**chosen)

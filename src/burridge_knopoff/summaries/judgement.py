@@ -1,4 +1,4 @@
-"""When two friction laws agree: the verdict from motions and mean distances under both."""
+"""Whether two friction laws agree: the verdict from the kinds of motion and mean distances under both."""
 
 from __future__ import annotations
 
@@ -17,14 +17,15 @@ def compare(
     threshold: float,
     agreement: Mapping[str, Any],
 ) -> None:
-    """Fill in differences and verdicts: the laws agree where the motion is of one kind and ⟨J⟩ within a tolerance.
+    """Fill in differences and verdicts: the laws agree if the kind of motion is the same and ⟨J⟩ within a tolerance.
 
-    Periodic and quasiperiodic motion are one kind here: which of them a value of a shows, one beside it need not
-    (`motion.REGULAR`). Where the kind of one of the two motions is not determined, only ⟨J⟩ beyond the tolerance is
-    a verdict; where the difference is within its errors of the tolerance there is none, but for motions that both are
-    synchronized.
-    values : mean_distance, its error and kind of both laws, the first and the other, shape (2, …, a); the rest is
-        filled in
+    Periodic and quasiperiodic motion count as the same kind, because they alternate along a (`motion.REGULAR`). If one
+    kind is undetermined, the verdict can only be that the laws disagree, namely if ⟨J⟩ differs by more than the
+    tolerance. If the difference of ⟨J⟩ lies within its error of the tolerance, the verdict is undetermined, except that
+    two synchronized motions always agree.
+
+    values : mean_distance, its error and kind under the first and the other law, shape (2, …, a); the other variables
+        are filled in
     a : ascending, shape (a,)
     """
     first, other = values["mean_distance"]
@@ -34,18 +35,18 @@ def compare(
     determined = (kind != MotionKind.UNDETERMINED).all(axis=0)
     values["same_kind"][...] = np.where(determined, same_result(*kind), Answer.UNDETERMINED)
     same = same_mean(values, threshold, agreement)
-    apart = (values["same_kind"] == Answer.NO) | (same == Answer.NO)
-    together = determined & (same == Answer.YES)
-    values["agrees"][...] = np.select([apart, together], [Answer.NO, Answer.YES], Answer.UNDETERMINED)
+    disagree = (values["same_kind"] == Answer.NO) | (same == Answer.NO)
+    agree = determined & (same == Answer.YES)
+    values["agrees"][...] = np.select([disagree, agree], [Answer.NO, Answer.YES], Answer.UNDETERMINED)
     for j, agrees in enumerate(values["agrees"]):
-        parted = a[agrees == Answer.NO]
-        values["parting_a"][j] = parted[0] if len(parted) else np.nan
+        different = a[agrees == Answer.NO]
+        values["parting_a"][j] = different[0] if len(different) else np.nan
 
 
 def same_mean(values: Mapping[str, np.ndarray], threshold: float, agreement: Mapping[str, Any]) -> np.ndarray:
-    """Return whether ⟨J⟩ agrees, an Answer each, shape (…, a); values as in `compare`, with difference and its error.
+    """Return an Answer to whether ⟨J⟩ agrees, shape (…, a); values as in `compare`, with difference and its error.
 
-    Of two motions that are synchronized it does. Within its errors of the tolerance it is undetermined.
+    It agrees for two synchronized motions. It is undetermined if the difference lies within its error of the tolerance.
     """
     beyond, margin = excess(values, threshold, agreement), agreement["standard_errors"] * values["difference_error"]
     within = (beyond <= -margin) | np.isin(values["kind"], SYNCHRONOUS).all(axis=0)
@@ -53,6 +54,6 @@ def same_mean(values: Mapping[str, np.ndarray], threshold: float, agreement: Map
 
 
 def excess(values: Mapping[str, np.ndarray], threshold: float, agreement: Mapping[str, Any]) -> np.ndarray:
-    """Return by how much differences of ⟨J⟩ lie beyond the tolerance, shape (…, a); values as in `compare`."""
+    """Return by how much differences of ⟨J⟩ exceed the tolerance, shape (…, a); values as in `compare`."""
     tolerance = np.maximum(agreement["relative_tolerance"] * np.maximum(*values["mean_distance"]), threshold)
     return np.abs(values["difference"]) - tolerance

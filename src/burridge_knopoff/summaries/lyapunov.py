@@ -1,4 +1,4 @@
-"""Lyapunov exponents over (law, initial, a), and the kind of motion that they and the section points show."""
+"""Lyapunov exponents over (law, initial, a), and the kind of motion that follows from them and the section points."""
 
 from __future__ import annotations
 
@@ -21,23 +21,23 @@ VARIABLES = {
     "lyapunov_exponent": Variable(
         (*_AXES, "exponent"),
         "f8",
-        "Lyapunov exponents in the window, the largest first",
+        "Lyapunov exponents in the window, in descending order",
         {"ancillary_variables": "lyapunov_error status"},
     ),
     "lyapunov_error": Variable(
-        (*_AXES, "exponent"), "f8", "error of a Lyapunov exponent, of the batches and of the window"
+        (*_AXES, "exponent"), "f8", "error of a Lyapunov exponent, from batches and from the length of the window"
     ),
     "lyapunov_infinite_count": Variable(_AXES, "i4", "number of Lyapunov exponents known to be -infinity"),
     "run_kind": Variable(
         _AXES,
         "i1",
-        "kind of motion as far as the run alone shows it",
-        flag("i1", MotionKind) | {"comment": "agreement.nc has the kind of the attractor that the run has come to"},
+        "kind of motion that the run alone shows",
+        flag("i1", MotionKind) | {"comment": "agreement.nc has the kind of the attractor that the run has reached"},
     ),
-    "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be told from 0"),
-    "unstable": Variable(_AXES, "i1", "whether the run has stayed on a closed orbit that repels", YES_OR_NO),
+    "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be distinguished from 0"),
+    "unstable": Variable(_AXES, "i1", "whether the run has stayed on an unstable periodic orbit", YES_OR_NO),
     "section_period": Variable(
-        _AXES, "i2", "upward section points after which the state of all blocks repeats, 0 if it does not"
+        _AXES, "i2", "number of upward section points after which the state of all blocks repeats, 0 if it does not"
     ),
     "period": Variable(_AXES, "f8", *PERIOD),
     "mean_distance": Variable(_AXES, "f8", "time average <J> of the phase-space distance between the end blocks"),
@@ -49,9 +49,9 @@ _COPIED = ("lyapunov_exponent", "lyapunov_error", "lyapunov_infinite_count", "me
 def summarize(
     grid: Grid, lyapunov_exponents: int, synchronization_threshold: float, motion: Mapping[str, Any]
 ) -> xarray.Dataset:
-    """Return exponents and kinds of motion with the evidence for them.
+    """Return Lyapunov exponents and kinds of motion with the evidence for them.
 
-    lyapunov_exponents : how many were computed in each run
+    lyapunov_exponents : number of exponents computed in each run
     motion : the config's section of that name: thresholds of the kinds of motion
     """
     chosen = {**motion, "synchronization_threshold": synchronization_threshold, "section": grid.section}

@@ -1,4 +1,4 @@
-"""The maps of basins of attraction, a row each, for tables and texts."""
+"""The maps of basins of attraction, one row per map, for tables and texts."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import xarray
 
 from burridge_knopoff.attractors.lookup import branch_names, side_name
 
-#: What the branch of a state is called that reaches no known one; summaries have −1 for it.
+#: Name of the branch of a state that reaches no known branch; summaries have −1 for it.
 UNDETERMINED, _UNDETERMINED = "undetermined", -1
 
 
@@ -18,8 +18,8 @@ UNDETERMINED, _UNDETERMINED = "undetermined", -1
 class MapRow:
     """A map of basins.
 
-    states : in all; members : {branch and side: number of the states that reach it}, the undetermined ones first
-    alike : how many undetermined states are their own mirror images, see `undetermined_alike`
+    states : number of all states; members : {branch and side: number of states that reach it}, undetermined ones first
+    symmetric_count : number of undetermined states that are their own mirror images, see `count_symmetric_undetermined`
     exponent : uncertainty exponent of the boundary and its standard error, NaN if there is none
     """
 
@@ -27,7 +27,7 @@ class MapRow:
     a: float
     states: int
     members: Mapping[str, int]
-    alike: int
+    symmetric_count: int
     exponent: tuple[float, float]
 
     @property
@@ -37,7 +37,7 @@ class MapRow:
 
 
 def map_rows(basins: xarray.Dataset) -> Iterator[MapRow]:
-    """Yield the maps of a file in their order."""
+    """Yield the maps of a file in order."""
     names = {_UNDETERMINED: UNDETERMINED, **branch_names(basins)}
     for number in range(basins.sizes["map"]):
         one = basins.isel(map=number)
@@ -51,20 +51,20 @@ def map_rows(basins: xarray.Dataset) -> Iterator[MapRow]:
                 side_name(names[branch], side): count
                 for (branch, side), count in zip(pairs.T.tolist(), counts.tolist(), strict=True)
             },
-            undetermined_alike(one),
+            count_symmetric_undetermined(one),
             (one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()),
         )
 
 
-def undetermined_alike(one: xarray.Dataset) -> int:
-    """Return how many undetermined states of a map are their own mirror images: U_1(0) = U_N(0), a line of no area.
+def count_symmetric_undetermined(one: xarray.Dataset) -> int:
+    """Return how many undetermined states of a map are their own mirror images: U_1(0) = U_N(0), a line of zero area.
 
-    In a chain that is its own mirror image such states stay alike, and so come to no attractor where synchrony repels.
-    None is counted where all states of the map are undetermined, as this has other reasons then.
+    In a chain that is its own mirror image these states stay mirror-symmetric. They therefore reach no attractor where
+    synchrony is unstable. If all states of the map are undetermined, for other reasons, the result is 0.
     """
     position, velocity = one.attrs["plane_position"], one.attrs["plane_velocity"]
     undetermined = one["branch"].values == _UNDETERMINED
     if undetermined.all() or (position[1:-1] != position[-2:0:-1]).any() or (velocity != velocity[::-1]).any():
         return 0
-    alike = np.equal.outer(one["last_position"].values, one["first_position"].values)
-    return int(np.count_nonzero(undetermined[alike]))
+    symmetric = np.equal.outer(one["last_position"].values, one["first_position"].values)
+    return int(np.count_nonzero(undetermined[symmetric]))

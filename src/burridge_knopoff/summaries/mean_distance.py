@@ -14,7 +14,7 @@ from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.points import Grid, read_point
 
-#: Levels of J below which a run has to stay to have settled: the eye's, that of a figure, synchrony, and rounding.
+#: Levels of J that define settling: visible to the eye, visible in a figure, synchronization threshold, rounding error.
 LEVELS = (1.0e-2, 1.0e-3, 1.0e-6, 2.0e-15)
 LEVEL = Variable(("level",), "f8", "level of J", coordinate=True)
 
@@ -28,29 +28,30 @@ VARIABLES = {
     ),
     "mean_distance_error": Variable(_AXES, "f8", "standard error of <J> from the batch means"),
     "synchronized": Variable(_AXES, "i1", "whether <J> is below the threshold", YES_OR_NO),
-    "least_friction": Variable(_AXES, "f8", "least friction Phi on a slipping block in the whole run"),
-    "window_least_friction": Variable(_AXES, "f8", "least friction Phi on a slipping block in the window"),
-    "window_least_spring_force": Variable(_AXES, "f8", "least force on a stuck block in the window"),
+    "least_friction": Variable(_AXES, "f8", "smallest friction Phi on a slipping block in the whole run"),
+    "window_least_friction": Variable(_AXES, "f8", "smallest friction Phi on a slipping block in the window"),
+    "window_least_spring_force": Variable(_AXES, "f8", "smallest spring force on a stuck block in the window"),
     "event_count": Variable(_AXES, "i8", "number of stops and starts in the whole run"),
     "status": Variable(_AXES, "i1", "how the run ended", STATUS_FLAG),
     "settling_time": Variable(
-        (*_AXES, "level"), "f8", "least sampled time tau from which on all samples of J are below the level"
+        (*_AXES, "level"), "f8", "earliest sampled time tau after which all samples of J are below the level"
     ),
 }
 _UNDEFINED = replace(
     VARIABLES["synchronized"],
     attributes={
         **VARIABLES["synchronized"].attributes,
-        "comment": "no synchrony is defined: the chain is not its own mirror image",
+        "comment": "synchrony is not defined: the chain is not its own mirror image",
     },
 )
 _READ = [name for name in VARIABLES if name not in ("synchronized", "settling_time")]
 
 
 def summarize(grid: Grid, synchronization_threshold: float) -> xarray.Dataset:
-    """Return ⟨J⟩, its error, when J settles and which points are synchronized.
+    """Return ⟨J⟩, its error, the settling times of J and which points are synchronized.
 
-    A run that did not complete has NaN and is not synchronized. In a chain that is not its own mirror image no run is.
+    A run that did not complete has NaN and counts as not synchronized, as does every run of a chain that is not its own
+    mirror image.
     """
     values = {name: np.zeros(grid.shape, dtype=item.dtype) for name, item in VARIABLES.items()}
     values["settling_time"] = np.full((*grid.shape, len(LEVELS)), np.nan)
@@ -79,7 +80,7 @@ def summarize(grid: Grid, synchronization_threshold: float) -> xarray.Dataset:
 
 
 def settling_time(time: np.ndarray, distance: np.ndarray, levels: Sequence[float]) -> list[float]:
-    """Return, for each level, the least time from which on all samples are below it, NaN if the last one is not."""
+    """Return, for each level, the earliest time after which all samples are below it, NaN if the last one is not."""
     settled = []
     for level in levels:
         first = len(distance) - int(np.argmin(np.append((distance < level)[::-1], False)))

@@ -14,7 +14,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.summaries.all_laws import branch_numbers, merge
 from burridge_knopoff.summaries.attractors import one_law
-from burridge_knopoff.summaries.equilibrium import SLIDING, sliding_attracts
+from burridge_knopoff.summaries.equilibrium import SLIDING, is_sliding_attracting
 
 
 def coexisting_attractors(
@@ -25,20 +25,20 @@ def coexisting_attractors(
     starts: Sequence[InitialState] = (),
     start: str = "moving",
 ) -> tuple[xarray.Dataset, KnownAttractors]:
-    """Return the attractors of a model, as `attractors.nc` has them and as `label_states` takes them.
+    """Return the attractors of a model, in the form of `attractors.nc` and as arguments of `label_states`.
 
     settings, motion, starts, start : see `find_attractors`
 
-    Raises ValueError if an initial state does not fit the model, and where no attractor is found.
+    Raises ValueError if an initial state does not fit the model, and if no attractor is found.
     """
     found = continue_attractors([model], settings, motion, starts=starts, start=start)
     if not found.attractors[0]:
-        if sliding_attracts(model):
+        if is_sliding_attracting(model):
             raise ValueError(f"a: got {model.a!r}, at which no attractor was found; {SLIDING}")
         raise ValueError(
-            f"transient: got {settings.transient:g}, and no attractor was found at a = {model.a!r}; expected longer, "
-            f"or more than window {settings.window:g}, time_limit {settings.time_limit:g}, samples {settings.samples} "
-            "(at a = 0 there is none)"
+            f"transient: got {settings.transient:g}, at which no attractor was found at a = {model.a!r}; expected a "
+            f"longer one, or more than window {settings.window:g}, time_limit {settings.time_limit:g}, samples "
+            f"{settings.samples} (at a = 0 there is no attractor)"
         )
     parts = [one_law(found, starts, settings, motion, start)]
     dataset = merge(parts, branch_numbers(parts, [model], settings))

@@ -1,4 +1,4 @@
-"""Whether there is a synchronized orbit and how it is lost: one list for the file of orbits, figures and the report."""
+"""Flags of the synchronized orbit and its loss, shared by the file of orbits, the figures and the report."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from enum import IntEnum
 class OrbitStatus(IntEnum):
     """Whether there is a synchronized orbit, numbered as in netCDF files.
 
-    Where friction does not depend on speed, as under most laws at a = 0, nothing feeds or damps the motion: no periodic
-    orbit is isolated (neutral).
+    If friction does not depend on speed, as under most laws at a = 0, motion is neither driven nor damped and no
+    periodic orbit is isolated (neutral).
     """
 
     FOUND = 0
@@ -19,7 +19,7 @@ class OrbitStatus(IntEnum):
 
 
 class BifurcationSide(IntEnum):
-    """On which side of a_c the orbits that branch off lie, numbered as in netCDF files."""
+    """Side of a_c on which the branching orbits exist, numbered as in netCDF files."""
 
     UNDETERMINED = -1
     SUBCRITICAL = 0

@@ -1,4 +1,4 @@
-"""The synchronized orbit over law and a, where it is lost, what branches off there, and how alike the laws are."""
+"""The synchronized orbit over (law, a), its loss of stability, the branching orbits, and a comparison of the laws."""
 
 from __future__ import annotations
 
@@ -20,12 +20,12 @@ from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pitchfork import branching_orbit
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
+    a_unit,
     bifurcations_of,
     critical_a,
     critical_a_error,
     grazing_a,
     symmetric_period_doubling_a,
-    unit,
 )
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.amplitude import fit_power_law, sweep
@@ -36,11 +36,11 @@ MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2
 PARTS = ("real", "imaginary")
 DIRECTIONS = ("upward", "downward")
 
-#: Asymmetries x_1 − x_3 of the orbits that branch off, in units of v, and up to which the amplitude law is fitted.
+#: Asymmetries x_1 − x_3 of the branching orbits, in units of v, and the largest one in the fit of the amplitude law.
 ASYMMETRIES = tuple(float(f"{10 ** (k / 5 - 3):.3e}") for k in range(13))
 LARGEST_FITTED = 1.0e-2
 
-#: Distances from a_c at which runs go up and down in a, for the paper's springs and thresholds.
+#: Distances from a_c of the runs of upward and downward sweeps, for the paper's springs and thresholds.
 OFFSETS = (-2e-3, -1e-3, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2)
 
 _CURVE = ("law", "a")
@@ -48,13 +48,13 @@ _BRANCH = ("law", "branch_asymmetry")
 VARIABLES = {
     "status": Variable(_CURVE, "i1", "whether the synchronized orbit was found", flag("i1", OrbitStatus)),
     "period": Variable(_CURVE, "f8", "period T of the synchronized orbit"),
-    "residual": Variable(_CURVE, "f8", "largest difference of the state after one period"),
+    "residual": Variable(_CURVE, "f8", "largest difference between the state and its return after one period"),
     "lateral_slip_time": Variable(_CURVE, "f8", "time T_s for which blocks 1 and 3 slip in a period"),
     "center_stick_time": Variable(_CURVE, "f8", "time for which block 2 sticks in a period"),
     "transverse_multiplier": Variable(_CURVE, "f8", "Floquet multiplier mu of x_1 - x_3"),
     "multiplier": Variable((*_CURVE, "mode", "part"), "f8", "Floquet multipliers"),
     "critical_a": Variable(("law",), "f8", "a_c, at which |mu| reaches 1"),
-    "critical_a_error": Variable(("law",), "f8", "change of a_c if mu is taken from finite differences of the flow"),
+    "critical_a_error": Variable(("law",), "f8", "change of a_c if mu is computed from finite differences of the flow"),
     "grazing_a": Variable(("law",), "f8", "a at which block 2 begins to stick"),
     "symmetric_period_doubling_a": Variable(
         ("law",), "f8", "a at which a multiplier of symmetric perturbations reaches -1"
@@ -63,23 +63,23 @@ VARIABLES = {
         ("law",), "i1", "bifurcation at a_c, from the sign of mu there", flag("i1", BifurcationKind)
     ),
     "bifurcation_side": Variable(
-        ("law",), "i1", "side of a_c on which the orbits that branch off lie", flag("i1", BifurcationSide)
+        ("law",), "i1", "side of a_c on which the branching orbits exist", flag("i1", BifurcationSide)
     ),
     "branch_offset": Variable(_BRANCH, "f8", "a - a_c at which the asymmetric orbit exists"),
     "branch_period": Variable(_BRANCH, "f8", "period of the asymmetric orbit"),
-    "branch_residual": Variable(_BRANCH, "f8", "largest difference of the state after one period"),
+    "branch_residual": Variable(_BRANCH, "f8", "largest difference between the state and its return after one period"),
     "branch_multiplier": Variable(_BRANCH, "f8", "largest modulus of the multipliers of the asymmetric orbit"),
     "branch_mean_distance": Variable(_BRANCH, "f8", "<J> over a period of the asymmetric orbit"),
-    "amplitude_exponent": Variable(("law",), "f8", "exponent of |x_1 - x_3| against a - a_c, fitted"),
+    "amplitude_exponent": Variable(("law",), "f8", "exponent of a power law fitted to |x_1 - x_3| over a - a_c"),
     "amplitude_exponent_error": Variable(("law",), "f8", "standard error of the exponent"),
     "amplitude_coefficient": Variable(("law",), "f8", "coefficient of that power law"),
     "sweep_asymmetry": Variable(
-        ("law", "direction", "sweep_offset"), "f8", "|x_1 - x_3| of runs that go through a_c in steps of a"
+        ("law", "direction", "sweep_offset"), "f8", "|x_1 - x_3| in the runs of a sweep of a through a_c"
     ),
-    "hysteresis": Variable(("law",), "f8", "largest difference of |x_1 - x_3| between going up and going down"),
+    "hysteresis": Variable(("law",), "f8", "largest difference of |x_1 - x_3| between the upward and downward sweeps"),
 }
 
-#: How the second of the paper's laws at a differs from the first one at the same slope; only in studies with both.
+#: Differences between the paper's second law at a and the first law at the same slope; only in studies with both.
 COMPARISON = {
     "effective_a": Variable(
         ("a",), "f8", "minus the slope of the nonlinear law at the driver velocity, a / (1 + a v)^2"
@@ -99,16 +99,16 @@ _COORDINATES = {
     "mode": Variable(("mode",), "O", "Floquet mode", coordinate=True),
     "part": Variable(("part",), "O", "part of a complex number", coordinate=True),
     "branch_asymmetry": Variable(_BRANCH[1:], "f8", "x_1 - x_3 while both stick", coordinate=True),
-    "direction": Variable(("direction",), "O", "direction in which a goes", coordinate=True),
+    "direction": Variable(("direction",), "O", "direction of the sweep of a", coordinate=True),
     "sweep_offset": Variable(("sweep_offset",), "f8", "a - a_c of the runs of a sweep", coordinate=True),
 }
 
 
 def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
-    """Return the Dataset of the synchronized orbits of a chain, which has three blocks for there to be any.
+    """Return the Dataset of the synchronized orbits of a chain of three blocks; other chains have none.
 
-    models : one for each law, at any a, of one chain, velocity and contact
-    grid : values of a; the transitions do not depend on them
+    models : one for each law, at any a, with the same chain, driver velocity and contact
+    grid : values of a; the bifurcations do not depend on them
     """
     v, contact = models[0].v, models[0].contact
     asymmetry = v * np.array(ASYMMETRIES)
@@ -123,13 +123,13 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     }
     found: dict[str, KnownOrbits | None] = {}
     for i, model in enumerate(models):
-        found[laws[i]] = _known(model)
+        found[laws[i]] = _orbits_of_model(model)
         _fill_curve(values, i, model, found[laws[i]], grid)
         _fill_transition(values, i, found[laws[i]], asymmetry)
     if len(pair) == len(PAPER_LAWS):
         _compare(values, laws, pair[1], found[PAPER_LAWS[0]], grid)
     return summary(
-        "The synchronized orbit of three blocks, its Floquet multipliers, and where it is lost",
+        "The synchronized orbit of three blocks, its Floquet multipliers and its loss of stability",
         variables,
         values,
         coordinates,
@@ -152,10 +152,10 @@ def _coordinates(laws: Sequence[str], grid: Sequence[float], asymmetry: np.ndarr
     return named
 
 
-def _known(model: Model) -> KnownOrbits | None:
-    """Return the synchronized orbits of a model; None, with a line of the log, if there are none."""
+def _orbits_of_model(model: Model) -> KnownOrbits | None:
+    """Return the synchronized orbits of a model; None, with a line in the log, if there are none."""
     try:
-        # Variables and modes are those of three blocks.
+        # Variables and modes are defined for three blocks.
         return synchronized_orbits(model) if model.blocks == BLOCKS else None
     except OrbitError as error:
         print(f"{model.law.name}: {error}")
@@ -165,7 +165,7 @@ def _known(model: Model) -> KnownOrbits | None:
 def _fill_curve(
     values: dict[str, Any], i: int, model: Model, orbits: KnownOrbits | None, grid: Sequence[float]
 ) -> None:
-    """Fill in what is known along the grid for the law of that number."""
+    """Fill in the orbits along the grid for the i-th law."""
     for k, a in enumerate(grid):
         values["status"][i, k] = OrbitStatus.NOT_FOUND if model.blocks == BLOCKS else OrbitStatus.NOT_THREE_BLOCKS
         if model.blocks == BLOCKS and _is_constant(model.at(a).law):
@@ -190,21 +190,21 @@ def _fill_curve(
 def modes(orbit: PeriodicOrbit) -> np.ndarray:
     """Return the multipliers of a synchronized orbit of three blocks in the order of MODES, complex.
 
-    That of the flow is computed as the share of it that returns; those of the velocities of blocks 1 and 3 are 0, since
-    these stop.
+    The multiplier of the flow is the component of the returned flow along the flow. Those of the velocities of blocks 1
+    and 3 are 0, since these blocks stop.
     """
     found, flow = multipliers(orbit), rate(orbit.model, orbit.reference)
     returned = flow @ orbit.monodromy @ flow / (flow @ flow)
-    return np.array([found.transverse, returned, *found.keeping[:2], 0.0, 0.0], dtype=complex)
+    return np.array([found.transverse, returned, *found.symmetry_preserving[:2], 0.0, 0.0], dtype=complex)
 
 
 def _is_constant(law: Law) -> bool:
-    """Tell whether friction is the static one at every speed."""
+    """Return whether friction equals static friction at every speed."""
     return law.is_linear and float(law.slope(0.0)) == 0.0 and float(law(0.0)) == 1.0
 
 
 def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None, asymmetry: np.ndarray) -> None:
-    """Fill in where the orbit of the law of that number changes, and what branches off."""
+    """Fill in the bifurcations of the orbit for the i-th law, and the branching orbits."""
     if orbits is None:
         return
     bifurcations = bifurcations_of(orbits)
@@ -215,22 +215,24 @@ def _fill_transition(values: dict[str, Any], i: int, orbits: KnownOrbits | None,
     if not np.isfinite(critical):
         return
     values["critical_a_error"][i] = critical_a_error(orbits, critical)
-    kind = BifurcationKind.PITCHFORK if transverse(orbits, critical) > 0.0 else BifurcationKind.PERIOD_DOUBLING
+    kind = (
+        BifurcationKind.PITCHFORK if transverse_multiplier(orbits, critical) > 0.0 else BifurcationKind.PERIOD_DOUBLING
+    )
     values["bifurcation_kind"][i] = kind
-    runs = critical + unit(orbits.model.chain) * np.array(OFFSETS)
+    runs = critical + a_unit(orbits.model.chain) * np.array(OFFSETS)
     values["sweep_asymmetry"][i] = sweep(orbits, runs), sweep(orbits, runs[::-1])[::-1]
     values["hysteresis"][i] = np.abs(np.diff(values["sweep_asymmetry"][i], axis=0)).max()
     if kind == BifurcationKind.PITCHFORK:
         _fill_branch(values, i, orbits, critical, asymmetry)
 
 
-def transverse(orbits: KnownOrbits, a: float) -> float:
+def transverse_multiplier(orbits: KnownOrbits, a: float) -> float:
     """Return the transverse multiplier of the synchronized orbit at an a."""
     return multipliers(orbits.at(a)).transverse.real
 
 
 def _fill_branch(values: dict[str, Any], i: int, orbits: KnownOrbits, critical: float, asymmetry: np.ndarray) -> None:
-    """Fill in the orbits that branch off where the multiplier is 1, the side on which they lie, and their amplitude."""
+    """Fill in the orbits that branch off at a pitchfork, the side of a_c on which they exist, and the amplitude law."""
     orbit = None
     for k, d in enumerate(asymmetry):
         try:
@@ -246,7 +248,7 @@ def _fill_branch(values: dict[str, Any], i: int, orbits: KnownOrbits, critical: 
     small = np.array(ASYMMETRIES) <= LARGEST_FITTED
     offset = values["branch_offset"][i, small]
     if (offset > 0.0).all() or (offset < 0.0).all():
-        unstable = transverse(orbits, critical + float(offset[-1])) > 1.0
+        unstable = transverse_multiplier(orbits, critical + float(offset[-1])) > 1.0
         values["bifurcation_side"][i] = BifurcationSide.SUPERCRITICAL if unstable else BifurcationSide.SUBCRITICAL
         fit = fit_power_law(np.abs(offset), asymmetry[small])
         values["amplitude_exponent"][i] = fit.exponent
@@ -257,9 +259,9 @@ def _fill_branch(values: dict[str, Any], i: int, orbits: KnownOrbits, critical: 
 def _compare(
     values: dict[str, Any], laws: Sequence[str], other: Model, first: KnownOrbits | None, grid: Sequence[float]
 ) -> None:
-    """Fill in how the second of the paper's laws at a differs from the first one at the same slope.
+    """Fill in the differences between the paper's second law at a and the first law at the same slope.
 
-    other : a model under the second law; first : the orbits under the first one, whose slope is −a at any speed
+    other : a model under the second law; first : the orbits under the first law, whose slope is −a at every speed
     """
     first_row, other_row = (laws.index(law) for law in PAPER_LAWS)
     values["effective_a"] = np.array([effective_a(other, a) for a in grid])

@@ -1,4 +1,7 @@
-"""What initial phases lead to, over (law, a, inner share, amplitude, phase difference): `basins.initial_phases`."""
+"""The attractors reached from initial phases, over (law, a, inner share, amplitude, phase difference).
+
+See `basins.initial_phases` for the initial states.
+"""
 
 from __future__ import annotations
 
@@ -21,17 +24,17 @@ from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.processes import shared_out
 from burridge_knopoff.study.model import model_of
-from burridge_knopoff.summaries.along_attractor import along_attractor
+from burridge_knopoff.summaries.attractor_observables import follow_attractor
 
 TITLE = "Initial phases of the blocks"
 
 _V = Variable
 _CELL = ("a", "inner_share", "amplitude", "phase_difference")
 _STATE = (*_CELL, "state")
-# What does not differ between the shares: a state is the same in all of them, but for how far its inner blocks swing.
+# Dimensions of the phases, which are the same for all shares: these change only the amplitude of the inner blocks.
 _PHASE = ("a", "amplitude", "phase_difference", "state")
 _DEGREE = {"units": "degree"}
-#: What differs between the laws.
+#: Variables that differ between the laws.
 VARIABLES = {
     "branch": _V(_STATE, "i2", "branch of the attractor that the state reaches, -1 if undetermined"),
     "side": _V(_STATE, "i1", "side of that branch: 1 and -1 for mirror images, 0 for its own mirror image"),
@@ -43,24 +46,29 @@ VARIABLES = {
     "synchronized_high": _V(
         _CELL, "f8", "upper end of its 95 % Wilson interval, undetermined states counted as synchronized"
     ),
-    "undetermined_count": _V(_CELL, "i4", "states that reach no attractor by label_limit"),
+    "undetermined_count": _V(_CELL, "i4", "number of states that reach no attractor by label_limit"),
 }
-#: What is the same under each law.
+#: Variables that are the same under all laws.
 COMMON_VARIABLES = {
     "common_phase": _V(_PHASE, "f8", "phase theta of the first block at tau = 0", _DEGREE),
     "inner_phase": _V((*_PHASE, "inner_block"), "f8", "phase of an inner block at tau = 0", _DEGREE),
-    "standing_count": _V(_CELL, "i4", "states with a block that stands, as its velocity would be negative"),
+    "standing_count": _V(
+        _CELL, "i4", "number of states in which a block is at rest because its velocity would be negative"
+    ),
     "slipping_amplitude": _V(
-        ("inner_share",), "f8", "amplitude A up to which all velocities are positive, whatever the phases"
+        ("inner_share",), "f8", "largest amplitude A for which all velocities are positive at all phases"
     ),
 }
 COORDINATES = {
     "inner_share": _V(
-        ("inner_share",), "f8", "amplitude of the inner blocks over A; with 0 they slide uniformly", coordinate=True
+        ("inner_share",),
+        "f8",
+        "amplitude of the inner blocks relative to A; at 0 they slide uniformly",
+        coordinate=True,
     ),
     "amplitude": _V(("amplitude",), "f8", "amplitude A of both end blocks about uniform sliding", coordinate=True),
     "phase_difference": _V(
-        ("phase_difference",), "f8", "by how much the last block is ahead of the first", _DEGREE, coordinate=True
+        ("phase_difference",), "f8", "phase of the last block minus phase of the first", _DEGREE, coordinate=True
     ),
 }
 INNER_BLOCK = {"long_name": "block number, 2 to N - 1 along the chain", "units": "1"}
@@ -74,7 +82,7 @@ def make_of_law(
     attractors: Mapping[str, Any],
     phases: Mapping[str, Any],
 ) -> xarray.Dataset:
-    """Return the outcomes under one law; grid : values of a; the others as in a config."""
+    """Return the outcomes under one law; grid : values of a; the other arguments as in a config."""
     found, returns = given.summary("attractors"), given.summary("returns")
     known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
     return one_law(known, PhaseSettings(**phases), SearchSettings(**attractors).label_limit, given.cores)
@@ -88,14 +96,14 @@ def make(given: Given) -> xarray.Dataset:
 def one_law(
     known: Sequence[KnownAttractors], phases: PhaseSettings, label_limit: float, processes: int = 1
 ) -> xarray.Dataset:
-    """Label states by their phases under one law.
+    """Return the attractors that states with given phases reach under one law.
 
     known : the attractors at each a
     label_limit : time by which a state has to reach one of them
-    processes : that work at once; no result depends on them
+    processes : number of parallel processes; no result depends on it
     """
     with shared_out(processes) as each:
-        found = each("phases", partial(_at, phases=phases, label_limit=label_limit), known)
+        found = each("phases", partial(_values_at, phases=phases, label_limit=label_limit), known)
     model, grid = known[0].model, [item.model.a for item in known]
     inner = model.chain.blocks - 2
     coordinates: dict[str, Any] = {"a": ("a", np.array(grid, dtype=float), AXES["a"].all_attributes())}
@@ -117,23 +125,23 @@ def one_law(
     return summary(TITLE, variables, arrays, coordinates, attributes, module=__name__)
 
 
-def _at(known: KnownAttractors, phases: PhaseSettings, label_limit: float) -> dict[str, np.ndarray]:
-    """Return the values of all variables at one a, but for the slipping amplitude."""
+def _values_at(known: KnownAttractors, phases: PhaseSettings, label_limit: float) -> dict[str, np.ndarray]:
+    """Return the values of all variables at one a, except the slipping amplitude."""
     shape = (len(phases.amplitude), len(phases.phase_difference), phases.samples)
     amplitude, difference, _ = np.meshgrid(phases.amplitude, phases.phase_difference, range(shape[2]), indexing="ij")
     model = known.model
     inner = model.chain.blocks - 2
-    correlations = [along_attractor(model, item.motion.state()).velocity_correlation for item in known.attractors]
+    correlations = [follow_attractor(model, item.motion.state()).velocity_correlation for item in known.attractors]
     common = common_phases(model.a, shape, phases.seed)
     of_inner = inner_phases(model.a, (*shape, inner), phases.seed)
-    told = amplitude.ravel(), difference.ravel(), common.ravel()
+    phases_of_states = amplitude.ravel(), difference.ravel(), common.ravel()
     cells = []
     for share in phases.inner_share:
-        position, velocity, standing = oscillating_states(model, *told, share, of_inner.reshape(-1, inner))
-        # Every block slips in the midst of its oscillation: there is no stick rule to apply at τ = 0.
+        position, velocity, standing = oscillating_states(model, *phases_of_states, share, of_inner.reshape(-1, inner))
+        # Every block is in the middle of an oscillation, so that no convention for the start applies at τ = 0.
         labels, _ = label_states(model, known.attractors, position, velocity, time_limit=label_limit)
         cell = {"standing_count": standing.reshape(shape).sum(axis=2)}
-        cells.append({**cell, **_reached(known, correlations, labels.reshape(shape))})
+        cells.append({**cell, **_outcomes(known, correlations, labels.reshape(shape))})
     values = {name: np.array([cell[name] for cell in cells]) for name in cells[0]}
     return {"common_phase": common, "inner_phase": of_inner, **values}
 
@@ -149,12 +157,12 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     return summary(TITLE, {**variables, **COMMON_VARIABLES}, values, coordinates, attributes, module=__name__)
 
 
-def _reached(known: KnownAttractors, correlations: Sequence[float], labels: np.ndarray) -> dict[str, np.ndarray]:
-    """Return what states reach by their labels, shape (amplitude, phase_difference, state).
+def _outcomes(known: KnownAttractors, correlations: Sequence[float], labels: np.ndarray) -> dict[str, np.ndarray]:
+    """Return the variables of the states from their labels, of shape (amplitude, phase_difference, state).
 
     correlations : of the velocities of the end blocks on each attractor
     """
-    # The last entry is that of the label −1.
+    # The last entry is that of the label −1, undetermined.
     tables = {
         "branch": np.append(known.branch, UNDETERMINED),
         "side": np.append(known.side, 0),

@@ -1,4 +1,4 @@
-"""Plateaux of a rotation number, and the share of a that is locked, from `rotation.nc`."""
+"""Plateaux of the rotation number, and the fraction of a at which the motion is locked, from `rotation.nc`."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ from burridge_knopoff.model.sampling import fraction_interval
 if TYPE_CHECKING:
     import xarray
 
-# Denominators of the fractions that rotation numbers of closed orbits are told by, at most.
+# Largest denominator of the fractions that describe rotation numbers of periodic orbits.
 LARGEST_DENOMINATOR = 1000
 
-# Only rotation numbers as exact as this can be seen to be the same.
-SHARP = 1e-6
+# Rotation numbers with larger errors are not compared with each other.
+LARGEST_ERROR = 1e-6
 
-# What rounding leaves of a rotation number.
+# Rounding error of a rotation number.
 ROUNDING = 1e-9
 
 
 @dataclass(frozen=True)
 class Plateau:
-    """A range of a in which the motion is locked: from the first to the last value that shows it.
+    """A range of a in which the motion is locked, from the first to the last locked value.
 
-    ratio : the rotation number as a fraction, the simplest one within its error
+    ratio : the rotation number as the simplest fraction within its error
     """
 
     first: float
@@ -36,9 +36,9 @@ class Plateau:
 
 
 def plateaux(rotation: xarray.Dataset) -> list[Plateau]:
-    """Return the plateaux of one law: successive values of a that are locked and have one rotation number.
+    """Return the plateaux of one law: successive locked values of a with the same rotation number.
 
-    Values at which the motion was not looked at are passed over: between those of the grid only what changes is.
+    Values without a rotation number are skipped; between values of the grid only changes are resolved.
     """
     number, error, a = (rotation[name].values for name in ("rotation_number", "rotation_error", "a"))
     locked = rotation["locked"].values
@@ -46,21 +46,24 @@ def plateaux(rotation: xarray.Dataset) -> list[Plateau]:
     last = -1
     for k in np.flatnonzero((locked >= 0) & np.isfinite(number)).tolist():
         if locked[k]:
-            sharp = max(error[k], error[last]) <= SHARP
-            if runs and runs[-1][-1] == last and sharp and abs(number[k] - number[last]) <= 2.0 * SHARP:
+            sharp = max(error[k], error[last]) <= LARGEST_ERROR
+            if runs and runs[-1][-1] == last and sharp and abs(number[k] - number[last]) <= 2.0 * LARGEST_ERROR:
                 runs[-1].append(k)
             else:
                 runs.append([k])
         last = k
-    return [Plateau(float(a[run[0]]), float(a[run[-1]]), _simplest(*_best(number[run], error[run]))) for run in runs]
+    return [
+        Plateau(float(a[run[0]]), float(a[run[-1]]), _simplest_fraction(*_best(number[run], error[run])))
+        for run in runs
+    ]
 
 
 def _best(number: np.ndarray, error: np.ndarray) -> tuple[float, float]:
     return number[error.argmin()], error.min()
 
 
-def _simplest(number: float, error: float) -> Fraction:
-    """Return the fraction with the least denominator within the error of a number."""
+def _simplest_fraction(number: float, error: float) -> Fraction:
+    """Return the fraction with the smallest denominator within the error of a number."""
     for denominator in range(1, LARGEST_DENOMINATOR + 1):
         numerator = round(number * denominator)
         if abs(numerator / denominator - number) <= error + ROUNDING:
@@ -69,11 +72,11 @@ def _simplest(number: float, error: float) -> Fraction:
 
 
 def locked_share(rotation: xarray.Dataset, inside: np.ndarray) -> tuple[float, float, float]:
-    """Return the share of a at which one law is locked, and the ends of its 95 % Wilson interval; NaN if none is known.
+    """Return the fraction of a at which the motion is locked, and its 95 % Wilson interval; NaN if none is known.
 
-    inside : which values of a are looked at, shape (value,)
+    inside : which values of a count, shape (value,)
 
-    By the values of the grid alone: those put in between lie where something changes.
+    Only values of the grid count, since values are inserted where the motion changes.
     """
     locked = rotation["locked"].values[inside & (rotation["in_grid"].values == 1)]
     locked = locked[locked >= 0]

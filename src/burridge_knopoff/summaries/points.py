@@ -1,4 +1,4 @@
-"""Reading point files, one at a time, and checking that each is the point that it is named for."""
+"""Reading of point files, with a check that each file contains the point that its name promises."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ EVENTS = tuple(f"{part}event_{name}" for part in ("earlier_", "") for name in _E
 
 @dataclass(frozen=True)
 class Grid:
-    """The points of a study: where they lie and what they hold.
+    """The points of a study: their files and their contents.
 
-    folder : holds <law>/<initial>/a<name>.nc, with the names of other parameters too if there are any
+    folder : contains <law>/<initial>/a<name>.nc, with the names of other parameters too if there are any
     initial : {name: initial state}
     parameters : {parameter: {name in file names: value}}
     settings : {law: settings of its runs}
-    models : what decides the models: the config's laws, chain, v and contact
+    models : the config's description of the models: laws, chain, v and contact
     """
 
     folder: Path
@@ -50,7 +50,7 @@ class Grid:
     models: Mapping[str, Any]
 
     @classmethod
-    def of(cls, folder: str | Path, points: Mapping[str, Any]) -> Grid:
+    def from_points(cls, folder: str | Path, points: Mapping[str, Any]) -> Grid:
         """Return the grid of the points that `Study.points` describes."""
         return cls(
             Path(folder),
@@ -61,12 +61,12 @@ class Grid:
         )
 
     @classmethod
-    def given(cls, given: Given) -> Grid:
+    def from_job(cls, given: Given) -> Grid:
         """Return the grid of the points that a job reads."""
-        return cls.of(given.results / "points", given.points)
+        return cls.from_points(given.results / "points", given.points)
 
-    def elsewhere(self, folder: Path, settings: Mapping[str, Mapping[str, Any]]) -> Grid:
-        """Return the same points as they were run with other settings, {law: settings}, below another folder."""
+    def copy_with(self, folder: Path, settings: Mapping[str, Mapping[str, Any]]) -> Grid:
+        """Return the grid of the same points in another folder, run with other settings, {law: settings}."""
         others = {law: Settings(**items) for law, items in settings.items()}
         return Grid(folder, self.initial, self.parameters, others, self.models)
 
@@ -93,11 +93,11 @@ class Grid:
 
     @property
     def section(self) -> Section:
-        """The section of the runs."""
+        """The section on which the runs record crossings."""
         return next(iter(self.settings.values())).section
 
     def model(self, law: str, a: float, **others: float) -> Model:
-        """Return the model of the points under one law at one a, and at values of the other parameters."""
+        """Return the model of the points under one law, at one a and given values of the other parameters."""
         return model_of(self.models, law, a, others=others)
 
     def model_of(self, law: str, *names: str) -> Model:
@@ -107,7 +107,7 @@ class Grid:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Numbers of laws, initial states and values of each parameter."""
+        """Number of laws, of initial states, and of values of each parameter."""
         return len(self.laws), len(self.initial), *map(len, self.parameters.values())
 
     def axes(self) -> dict[str, Any]:
@@ -118,13 +118,13 @@ class Grid:
     def path(self, law: str, initial: str, *names: str) -> Path:
         """Return the path of a point file; names : of the values of the parameters."""
         file = point_file(self.parameters)
-        return self.folder / file.format(law=law, initial=initial, **self._named(names))
+        return self.folder / file.format(law=law, initial=initial, **self._value_names(names))
 
     def command(self, law: str, initial: str, *names: str) -> str:
         """Return the `bk simulate` command that makes a point."""
         return simulate_command(self.model_of(law, *names), self.initial[initial], self.settings[law])
 
-    def _named(self, names: tuple[str, ...]) -> dict[str, str]:
+    def _value_names(self, names: tuple[str, ...]) -> dict[str, str]:
         return dict(zip(map(plain_name, self.parameters), names, strict=True))
 
     def __iter__(self) -> Iterator[tuple[tuple[int, ...], tuple[str, ...]]]:
@@ -137,13 +137,13 @@ def read_point(grid: Grid, point: Sequence[str], names: Sequence[str]) -> dict[s
     """Return the named variables of one point.
 
     point : law, initial state and names of the values of the parameters
-    Raises BadFile, one line, if the file is missing, damaged, or not the one that the study would make now.
+    Raises BadFile, one line, if the file is missing, damaged or out of date.
     """
     return read_run(grid.path(*point), grid.command(*point), names)
 
 
 def read_run(path: Path, command: str, names: Sequence[str]) -> dict[str, np.ndarray]:
-    """Return the named variables of the point file of a run, which `command` makes.
+    """Return the named variables of the point file of a run that `command` starts.
 
     Raises BadFile as `read_point` does.
     """
@@ -161,7 +161,7 @@ def open_point(grid: Grid, law: str, initial: str, a: str) -> xarray.Dataset:
 
 
 def check_run(path: Path, command: str) -> str:
-    """Return how the run of a point file ended, after comparing its seal with the command and the present sources.
+    """Return how the run of a point file ended, after comparing its seal with the command and the current sources.
 
     Raises BadFile as `read_point` does.
     """
@@ -169,6 +169,6 @@ def check_run(path: Path, command: str) -> str:
 
 
 def all_events(run: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return time, block and kind of all events of a run, of which EVENTS were read."""
+    """Return time, block and kind of all events of a run whose variables EVENTS have been read."""
     time, block, kind = (np.concatenate([run[f"earlier_event_{name}"], run[f"event_{name}"]]) for name in _EVENT)
     return time, block, kind

@@ -1,6 +1,6 @@
-"""What is proved of the synchronized orbit: its existence, its multipliers, and where it is lost.
+"""Proved statements on the synchronized orbit: its existence, its multipliers and its loss of stability.
 
-The numbers are enclosures: ends between which the true value lies, whatever rounding did. See docs/synchronization.md.
+The numbers are enclosures: the true value lies between their ends despite rounding. See docs/synchronization.md.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcations_of, critical_a
 from burridge_knopoff.proof.balls import BITS, ProofError, arithmetic, decimal, digits, limits, width
-from burridge_knopoff.proof.critical import Critical, Piece, prove_branch, prove_critical
-from burridge_knopoff.proof.orbit import PLACES, ProvedOrbit, prove_orbit
+from burridge_knopoff.proof.critical import CriticalOrbit, Piece, prove_branch, prove_critical
+from burridge_knopoff.proof.orbit import POSITIONS, ProvedOrbit, prove_orbit
 from burridge_knopoff.proof.scope import NONLINEAR_V, is_covered, is_linearized
 from burridge_knopoff.study.model import models_of
 
 #: Number of blocks of the chain.
 CHAIN_BLOCKS = 3
-#: The friction parameter of the orbit that is proved besides the critical one, as a fraction: the paper's 0.08.
-GIVEN = (8, 100)
-#: Ends of the range of a in which the family of orbits is proved under the linearized law.
+#: The paper's a = 0.08 as a fraction, at which an orbit is proved in addition to the critical one.
+GIVEN_A = (8, 100)
+#: Ends of the range of a over which the family of orbits is proved under the linearized law.
 RANGE = ((8, 100), (10, 100))
-#: The interval of a_c is narrower than this.
-NARROW = 1e-15
+#: Largest width of the interval of a_c.
+LARGEST_WIDTH = 1e-15
 
 ORBITS = ("given", "critical")
 END = ("low", "high")
@@ -40,36 +40,42 @@ EVENTS = ("lateral_start", "lateral_stop", "center_stop", "center_start")
 MODES = ("transverse", "symmetric")
 BLOCKS = (1, 2)
 
-#: What the proof takes for granted.
-ASSUMED = (
+#: Assumptions of the proof.
+ASSUMPTIONS = (
     "Assumed: the model of docs/model.md, with the laws and the chain of the paper. Linearized: v is only a scale.",
-    "Nonlinear: v is the decimal. Shown by hand, in docs/synchronization.md: mirror-symmetric motion stays so; the",
-    "closed forms; what stops and starts do to perturbations. Taken for granted: Arb's balls hold what they say, and",
-    "the machine computes as told.",
+    "Nonlinear: v is the decimal. Shown by hand, in docs/synchronization.md: mirror-symmetric motion stays symmetric;",
+    "the closed forms; the effect of stops and starts on perturbations. Taken for granted: Arb's balls contain the",
+    "exact results, and the machine computes correctly.",
 )
 
 _LAW, _ORBIT = ("law", "end"), ("law", "orbit", "end")
 VARIABLES = {
     "critical_a": Variable(_LAW, "f8", "a_c, at which the transverse multiplier mu is 1"),
-    "critical_a_digits": Variable(("law",), "O", "a_c with all digits, and how far it may be off"),
-    "critical_a_width": Variable(("law",), "f8", "width of the interval of those digits"),
+    "critical_a_digits": Variable(("law",), "O", "a_c with all digits and its error bound"),
+    "critical_a_width": Variable(("law",), "f8", "width of the interval of a_c with all digits"),
     "only_between": Variable(_LAW, "f8", "range of a in which a_c is the only a with mu = 1, for orbits near this one"),
-    "family_between": Variable(_LAW, "f8", "range of a in which the orbit exists for every a, and mu rises with a"),
-    "pieces": Variable(("law",), "i4", "balls of a that cover that range"),
+    "family_between": Variable(_LAW, "f8", "range of a in which the orbit exists at every a and mu increases with a"),
+    "pieces": Variable(("law",), "i4", "number of balls of a that cover that range"),
     "a": Variable(_ORBIT, "f8", "friction parameter a of an orbit"),
     "period": Variable(_ORBIT, "f8", "period T"),
     "event_time": Variable(
-        ("law", "orbit", "event", "end"), "f8", "time of an event since block 2 starts, the first one of the period"
+        ("law", "orbit", "event", "end"),
+        "f8",
+        "time of an event after the start of block 2, the first event of the period",
     ),
-    "position": Variable(("law", "orbit", "block", "end"), "f8", "U - v tau - e of blocks 1 and 2 at that start"),
-    "multiplier": Variable(("law", "orbit", "mode", "end"), "f8", "Floquet multipliers, but 0 and that of the flow"),
-    "multiplier_slope": Variable(_ORBIT, "f8", "d mu/d a, of the transverse one"),
+    "position": Variable(
+        ("law", "orbit", "block", "end"), "f8", "position U - v tau - e of blocks 1 and 2 at this start"
+    ),
+    "multiplier": Variable(
+        ("law", "orbit", "mode", "end"), "f8", "Floquet multipliers, except those that are 0 and that of the flow"
+    ),
+    "multiplier_slope": Variable(_ORBIT, "f8", "derivative d mu/d a of the transverse multiplier"),
     "least_friction": Variable(("law", "orbit"), "f8", "lower bound of the friction on slipping blocks"),
-    "least_spring_force": Variable(("law", "orbit"), "f8", "lower bound of the spring force on blocks that stick"),
+    "least_spring_force": Variable(("law", "orbit"), "f8", "lower bound of the spring force on stuck blocks"),
 }
 _COORDINATES = {
     "orbit": (ORBITS, "O", "orbit: at the given a, or at a_c"),
-    "end": (END, "O", "end of the interval that holds the number"),
+    "end": (END, "O", "end of the interval that contains the number"),
     "event": (EVENTS, "O", "event of a period: blocks 1 and 3 are lateral, block 2 is the center"),
     "mode": (MODES, "O", "Floquet mode"),
     "block": (BLOCKS, "i4", "number of the block"),
@@ -77,15 +83,18 @@ _COORDINATES = {
 
 
 def make(given: Given, model: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
-    """Return the proofs under all laws, and the same in words; model : what decides the models."""
-    dataset = summarize(models_of(model, GIVEN[0] / GIVEN[1], CHAIN_BLOCKS))
+    """Return the proofs under all laws, and their description as text.
+
+    model : the config's description of the models
+    """
+    dataset = summarize(models_of(model, GIVEN_A[0] / GIVEN_A[1], CHAIN_BLOCKS))
     return dataset, digest(dataset)
 
 
 def summarize(models: Sequence[Model]) -> xarray.Dataset:
-    """Return the Dataset of what is proved of models of the paper's chain, one for each law, at any a.
+    """Return the Dataset of proved statements; models : of the paper's chain, one for each law, at any a.
 
-    Raises ProofError, one line, for a model that is not covered, and where a proof fails.
+    Raises ProofError, one line, for a model that is not covered, and if a proof fails.
     """
     each = [_of_law(model) for model in models]
     coordinates = {
@@ -95,7 +104,7 @@ def summarize(models: Sequence[Model]) -> xarray.Dataset:
         attributes = Variable((name,), dtype, long_name).all_attributes()
         coordinates[name] = (name, np.array(named, dtype=dtype), attributes)
     return summary(
-        "What is proved of the synchronized orbit of three blocks, as intervals that hold the true numbers",
+        "Proved statements on the synchronized orbit of three blocks, as intervals that contain the true numbers",
         VARIABLES,
         {name: np.array([one[name] for one in each], dtype=item.dtype) for name, item in VARIABLES.items()},
         coordinates,
@@ -113,9 +122,9 @@ def _of_law(model: Model) -> dict[str, Any]:
     """Return the variables for one law; raises ProofError as `summarize` does."""
     if not is_covered(model):
         raise ProofError(f"law {model.law.name}: not covered: the paper's laws and chain of {CHAIN_BLOCKS} blocks")
-    # Only the guess comes from a simulation. Under the linearized law it serves for every v.
+    # Only the initial guess comes from a simulation. Under the linearized law it is valid for every v.
     orbits = synchronized_orbits(replace(model, v=NONLINEAR_V, contact="one_sided"))
-    given = prove_orbit(orbits.at(GIVEN[0] / GIVEN[1]), decimal(*GIVEN))
+    given = prove_orbit(orbits.at(GIVEN_A[0] / GIVEN_A[1]), decimal(*GIVEN_A))
     critical = prove_critical(orbits.at(critical_a(bifurcations_of(orbits))))
     branch: list[Piece] = []
     between = np.nan, np.nan
@@ -130,58 +139,63 @@ def _of_law(model: Model) -> dict[str, Any]:
         "critical_a": limits(critical.a),
         "critical_a_digits": digits(critical.a),
         "critical_a_width": width(critical.a),
-        "only_between": between if branch else _inward(critical.unique),
+        "only_between": between if branch else _inner_limits(critical.uniqueness_range),
         "family_between": between,
         "pieces": len(branch),
         **{name: [one[name] for one in each] for name in each[0]},
     }
 
 
-def _inward(ball: arb) -> tuple[float, float]:
+def _inner_limits(ball: arb) -> tuple[float, float]:
     """Return doubles that lie in a ball, next to its ends."""
     low, high = limits(ball)
     return float(np.nextafter(low, np.inf)), float(np.nextafter(high, -np.inf))
 
 
-def _check_branch(given: ProvedOrbit, critical: Critical, branch: Sequence[Piece]) -> None:
-    """Prove that the family has both orbits; raises ProofError, one line, if that fails."""
-    branch[0].check_holds(given.enclosure, arb(fmpq(*GIVEN)))
+def _check_branch(given: ProvedOrbit, critical: CriticalOrbit, branch: Sequence[Piece]) -> None:
+    """Prove that the family contains both orbits; raises ProofError, one line, if that fails."""
+    branch[0].check_contains(given.enclosure, arb(fmpq(*GIVEN_A)))
     for piece in branch:
         if piece.orbit.a.overlaps(critical.a):
-            piece.check_holds(critical.orbit.enclosure, critical.a)
+            piece.check_contains(critical.orbit.enclosure, critical.a)
     low, high = (decimal(*end) for end in RANGE)
     if not low < critical.a < high:
         raise ProofError(f"a_c = {critical.a}: not in the range of a that is covered")
 
 
-def _check(model: Model, given: ProvedOrbit, critical: Critical, branch: Sequence[Piece]) -> None:
-    """Prove what is left: stuck blocks hold, the given orbit attracts, a_c is narrow.
+def _check(model: Model, given: ProvedOrbit, critical: CriticalOrbit, branch: Sequence[Piece]) -> None:
+    """Prove that stuck blocks stay stuck, that the given orbit attracts, and that the interval of a_c is narrow.
 
     Raises ProofError, one line, if that fails.
     """
     if model.contact == "symmetric":
         for orbit in (given, critical.orbit, *(piece.orbit for piece in branch)):
-            if not model.v * orbit.tightest() < 2:
-                raise ProofError(f"a = {orbit.a}, v = {model.v!r}: stuck blocks are not known to hold a pull back")
+            if not model.v * orbit.force_margin_range() < 2:
+                raise ProofError(
+                    f"a = {orbit.a}, v = {model.v!r}: not proved that stuck blocks resist the backward pull"
+                )
     for orbit in (given, critical.orbit):
         if not abs(orbit.symmetric_multiplier) < 1:
-            raise ProofError(f"a = {orbit.a}: symmetric perturbations are not known to fade")
+            raise ProofError(f"a = {orbit.a}: not proved that symmetric perturbations decay")
     if not abs(given.multiplier) < 1:
-        raise ProofError(f"a = {given.a}: transverse perturbations are not known to fade")
-    if not width(critical.a) < NARROW:
-        raise ProofError(f"a_c: got an interval of width {width(critical.a)!r}, expected below {NARROW!r}")
+        raise ProofError(f"a = {given.a}: not proved that transverse perturbations decay")
+    if not width(critical.a) < LARGEST_WIDTH:
+        raise ProofError(f"a_c: got an interval of width {width(critical.a)!r}, expected below {LARGEST_WIDTH!r}")
 
 
 def _of_orbit(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
-    """Return the variables over orbits, for one; raises ProofError if its events are others."""
-    names = [f"{('lateral', 'center')[arc.ends]}_{'stop' if arc.slips[arc.ends] else 'start'}" for arc in orbit.arcs]
+    """Return the variables of one orbit; raises ProofError if its events differ from EVENTS."""
+    names = [
+        f"{('lateral', 'center')[arc.event_block]}_{'stop' if arc.slips[arc.event_block] else 'start'}"
+        for arc in orbit.arcs
+    ]
     if tuple(names) != EVENTS:
         raise ProofError(f"events: got {', '.join(names)}, expected {', '.join(EVENTS)}")
     with arithmetic():
-        positions = [limits(model.v * place) for place in orbit.enclosure.inner[:PLACES]]
-        speed = orbit.a * model.v * orbit.fastest()
+        positions = [limits(model.v * place) for place in orbit.enclosure.inner[:POSITIONS]]
+        speed = orbit.a * model.v * orbit.speed_range()
         friction = limits(1 - speed if is_linearized(model) else 1 / (1 + speed))[0]
-        force = limits(1 - model.v * orbit.tightest())[0]
+        force = limits(1 - model.v * orbit.force_margin_range())[0]
     return {
         "a": limits(orbit.a),
         "period": limits(orbit.period),
@@ -195,21 +209,22 @@ def _of_orbit(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return the summary in words: what is proved, with its numbers, and what is assumed."""
+    """Return the summary as text: the proved statements with their numbers, and the assumptions."""
     lines = ["Proved by Krawczyk's operator in ball arithmetic, and by bounds over whole arcs of the motion.", ""]
     for law in dataset["law"].values:
-        lines += [*_of_one(dataset.sel(law=law), f"{law} law"), ""]
-    return "\n".join([*lines, *ASSUMED]) + "\n"
+        lines += [*_law_lines(dataset.sel(law=law), f"{law} law"), ""]
+    return "\n".join([*lines, *ASSUMPTIONS]) + "\n"
 
 
-def _of_one(dataset: xarray.Dataset, name: str) -> list[str]:
+def _law_lines(dataset: xarray.Dataset, name: str) -> list[str]:
     """Return the lines on one law."""
     low, high = dataset["family_between"].values
+    slope = dataset["multiplier_slope"].sel(orbit="critical")
     lines = [
         f"{name}: a_c = {dataset['critical_a_digits'].item()}",
-        f"    lies between the doubles {_between(dataset['critical_a'])}.",
-        f"    It is the only a between {_between(dataset['only_between'])} with mu = 1 on orbits near this one.",
-        f"    There mu passes 1 with d mu/d a between {_between(dataset['multiplier_slope'].sel(orbit='critical'))}.",
+        f"    lies between the doubles {_format_ends(dataset['critical_a'])}.",
+        f"    It is the only a between {_format_ends(dataset['only_between'])} with mu = 1 on orbits near this one.",
+        f"    There mu passes 1 with d mu/d a between {_format_ends(slope)}.",
     ]
     if np.isfinite(low):
         lines += [
@@ -219,16 +234,16 @@ def _of_one(dataset: xarray.Dataset, name: str) -> list[str]:
     for title, one in zip(("At a = 0.08, where the orbit attracts", "At a_c"), dataset["orbit"].values, strict=True):
         orbit = dataset.sel(orbit=one)
         lines += ["", f"{name}: {title}, these lie between"]
-        lines += [f"    period              {_between(orbit['period'])}"]
-        lines += [f"    {event:<19} {_between(orbit['event_time'].sel(event=event))}" for event in EVENTS]
-        lines += [f"    mu, {mode:<15} {_between(orbit['multiplier'].sel(mode=mode))}" for mode in MODES]
-        lines += ["    All other multipliers but that of the flow are 0. No block stops or starts in between."]
+        lines += [f"    period              {_format_ends(orbit['period'])}"]
+        lines += [f"    {event:<19} {_format_ends(orbit['event_time'].sel(event=event))}" for event in EVENTS]
+        lines += [f"    mu, {mode:<15} {_format_ends(orbit['multiplier'].sel(mode=mode))}" for mode in MODES]
+        lines += ["    All other multipliers except that of the flow are 0. No block stops or starts in between."]
         friction, force = orbit["least_friction"].item(), orbit["least_spring_force"].item()
         lines += [f"    Friction is above {friction!r}, the spring force on stuck blocks above {force!r}."]
     return lines
 
 
-def _between(ends: xarray.DataArray) -> str:
-    """Return two ends with all digits of their doubles: rounding would make them ends of something else."""
+def _format_ends(ends: xarray.DataArray) -> str:
+    """Return both ends with all digits of their doubles: rounded ends would not enclose the interval."""
     low, high = (float(end) for end in ends.values)
     return f"{low!r} and {high!r}"

@@ -1,7 +1,7 @@
-"""The attractors of each law at all values of a: those of the grid, and those put in between where something changes.
+"""The attractors of each law at all values of a: those of the grid, and those inserted where the attractors change.
 
-Each law has values of its own. The file has the slots of `attractors`, over (law, value, attractor), with a over
-(law, value): see `continuation.along_a`.
+Each law has its own values. The file has the variables of `attractors` over (law, value, attractor), and a over
+(law, value); see `continuation.along_a`.
 """
 
 from __future__ import annotations
@@ -29,8 +29,8 @@ VARIABLES = {
     "section_velocity": Variable(
         ("value", "attractor", "crossing"),
         "f8",
-        "W' at successive crossings of the section W = 0 on the attractor: upward above 0, downward below",
-        {"comment": "of mirror images those of one side: W is the same for both; NaN beyond the last crossing"},
+        "W' at successive crossings of the section W = 0 on the attractor, positive if upward, negative if downward",
+        {"comment": "for mirror images, of one side only, since W is the same for both; NaN beyond the last crossing"},
     ),
 }
 

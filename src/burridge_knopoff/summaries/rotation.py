@@ -1,9 +1,9 @@
-"""How the blocks of branch 1 are locked: its rotation number over (law, a), and its frequencies under detuning.
+"""Locking of the blocks on branch 1: its rotation number over (law, a), and its frequencies after detuning.
 
-Branch 1 is the motion without synchrony that `plus` reaches at a = 0.08. Whether its end blocks are locked to the
-middle one is shown by its rotation number (`motion.rotation`), at all values of `refined`. Whether they are locked to
-each other is shown where mirror symmetry does not make their frequencies equal: with another mass of the last block
-(`summaries.detuning`), at the values of the grid, by their frequencies and by the Lyapunov exponents.
+Branch 1 is the motion without synchrony that `plus` reaches at a = 0.08. Its rotation number (`motion.rotation`), at
+all values of `refined`, shows whether its end blocks are locked to the middle block. To show whether the end blocks are
+locked to each other, the mirror symmetry that makes their frequencies equal is broken by changing the mass of the last
+block (`summaries.detuning`), at the values of the grid; their frequencies and the Lyapunov exponents then decide.
 """
 
 from __future__ import annotations
@@ -24,13 +24,13 @@ from burridge_knopoff.summaries.detuning import TRANSIENT, WINDOW, detuned_motio
 TITLE = "Rotation number of branch 1, and its frequencies after detuning"
 BRANCH = 1
 
-#: Time for which the motion is followed at each a: the error is then below 1e-5 as a rule, on closed orbits far less.
-FOLLOWED = 1000.0
+#: Time for which the motion is followed at each a. The error is usually below 1e-5, and far smaller on periodic orbits.
+DURATION = 1000.0
 
-#: Detunings, small and large, that are tried on branch 1.
+#: Detunings of branch 1, from small to large.
 DETUNINGS = (0.1, 0.3, 0.8)
 
-_WHERE = "NaN beyond the grid of the study, and where there is no such motion"
+_WHERE = "NaN at values of a outside the grid of the study, and where there is no such motion"
 
 _VALUE = ("law", "value")
 _DETUNED = (*_VALUE, "detuning")
@@ -40,12 +40,12 @@ VARIABLES = {
     "rotation_number": Variable(
         _VALUE,
         "f8",
-        "oscillations of the end blocks against each other for one of the middle block",
-        {"comment": "NaN where there is no such motion, or an oscillation has no phase"},
+        "oscillations of the end blocks against each other per oscillation of the middle block",
+        {"comment": "NaN where there is no such motion, or the phase of an oscillation is undefined"},
     ),
-    "rotation_error": Variable(_VALUE, "f8", "difference of the rotation number between both halves of the time"),
+    "rotation_error": Variable(_VALUE, "f8", "difference of the rotation number between the two halves of the time"),
     "locked": Variable(
-        _VALUE, "i1", "whether the motion is a closed orbit", flag("i1", {-1: "unknown", 0: "no", 1: "yes"})
+        _VALUE, "i1", "whether the motion is a periodic orbit", flag("i1", {-1: "unknown", 0: "no", 1: "yes"})
     ),
     "detuned_frequency": Variable(
         (*_DETUNED, "block"),
@@ -54,23 +54,21 @@ VARIABLES = {
         {"ancillary_variables": "detuned_frequency_error", "comment": _WHERE},
     ),
     "detuned_frequency_error": Variable(
-        (*_DETUNED, "block"), "f8", "difference of this frequency between both halves of the time"
+        (*_DETUNED, "block"), "f8", "difference of this frequency between the two halves of the time"
     ),
     "detuned_exponent": Variable(
         (*_DETUNED, "exponent"),
         "f8",
-        "Lyapunov exponents after detuning, the largest first",
+        "Lyapunov exponents after detuning, in descending order",
         {"ancillary_variables": "detuned_exponent_error", "comment": _WHERE},
     ),
     "detuned_exponent_error": Variable((*_DETUNED, "exponent"), "f8", "standard error of this exponent"),
 }
-DETUNING = Variable(
-    ("detuning",), "f8", "by how much the mass of the last block is larger, as a fraction of it", coordinate=True
-)
+DETUNING = Variable(("detuning",), "f8", "relative increase of the mass of the last block", coordinate=True)
 
 
 def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Dataset:
-    """Return the rotation number of branch 1 at all values of a, and where it is locked.
+    """Return the rotation number of branch 1 at all values of a, whether it is locked, and its motion after detuning.
 
     refined : the summary of that name; models : one for each of its laws, at any a
     """
@@ -81,7 +79,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
         for name, item in VARIABLES.items()
     }
     values["a"], values["in_grid"] = refined["a"].values, refined["in_grid"].values
-    # Of a mirror pair, into which the branch parts where the middle block makes an odd number of turns, one is enough.
+    # Where the middle block oscillates an odd number of times in a period, the branch is a mirror pair: use one side.
     slots = (refined["branch"].values == BRANCH) & (refined["side"].values >= 0)
     slots &= np.isin(refined["kind"].values, REGULAR)
     for law, value, slot in np.argwhere(slots).tolist():
@@ -89,7 +87,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
         one = refined.isel(law=law, value=value, attractor=slot)
         model, velocity = models[law].at(float(values["a"][at])), one["velocity"].values
         start = ChainState(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
-        values["rotation_number"][at], values["rotation_error"][at] = rotation_number(model, start, FOLLOWED)
+        values["rotation_number"][at], values["rotation_error"][at] = rotation_number(model, start, DURATION)
         values["locked"][at] = one["kind"].item() == MotionKind.PERIODIC
         if not values["in_grid"][at]:
             continue
@@ -99,7 +97,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
                 values[f"detuned_{name}"][*at, k] = getattr(found, name)
     attributes = {
         "branch": BRANCH,
-        "duration": FOLLOWED,
+        "duration": DURATION,
         "detuned_transient": TRANSIENT,
         "detuned_window": WINDOW,
         "history": "snakemake, from refined.nc",

@@ -1,4 +1,4 @@
-"""Do independent solvers of the same equations agree? ⟨J⟩, cost and order of events of every solver of each law."""
+"""Comparison of independent solvers of the same equations: ⟨J⟩, cost and order of events for each law."""
 
 from __future__ import annotations
 
@@ -32,15 +32,17 @@ VARIABLES = {
     "end_time": Variable(_AXES, "f8", "time tau at which the run ended"),
     "difference": Variable(_AXES, "f8", "<J> minus <J> of the solver of the study's points"),
     "difference_error": Variable(
-        _AXES, "f8", "standard error of the difference of <J>, as of two independent runs; 0 for the solver itself"
+        _AXES,
+        "f8",
+        "standard error of the difference of <J>, for two independent runs; 0 for the solver of the study's points",
     ),
     "event_order_time": Variable(
-        _AXES, "f8", "time tau until which the order of events is that of the solver of the study's points"
+        _AXES, "f8", "time tau until which the order of events agrees with the solver of the study's points"
     ),
     "event_order_count": Variable(
         _AXES,
         "i8",
-        "number of events that come in the order of the solver of the study's points, -1 if there is no run",
+        "number of events in the same order as with the solver of the study's points, -1 if there is no run",
     ),
 }
 SOLVER = Variable(("solver",), "O", "solver", coordinate=True)
@@ -50,8 +52,8 @@ _READ = [*_COPIED, *EVENTS]
 
 def make(given: Given, others: Mapping[str, Mapping[str, Any]], step: float) -> xarray.Dataset:
     """Return the comparison; others : {solver: {law: settings of its runs}}; step : of rk4."""
-    grid, folder = Grid.given(given), given.results / "solvers"
-    grids = {solver: grid.elsewhere(folder / solver, settings) for solver, settings in others.items()}
+    grid, folder = Grid.from_job(given), given.results / "solvers"
+    grids = {solver: grid.copy_with(folder / solver, settings) for solver, settings in others.items()}
     return summarize(grid, grids, step)
 
 
@@ -59,8 +61,8 @@ def summarize(grid: Grid, others: Mapping[str, Grid], step: float) -> xarray.Dat
     """Compare the solvers of each law at every point of a grid.
 
     grid : the study's points at the values of a that are compared
-    others : {solver: its runs of the same points, with settings for each law that it is another solver of}
-    step : of rk4 in these runs, unless it makes the points
+    others : {solver: its runs of the same points, with settings for each law whose points another solver computes}
+    step : of rk4 in these runs, unless rk4 computes the study's points
     """
     shape = (grid.shape[0], len(SOLVERS), *grid.shape[1:])
     values = {name: np.full(shape, NO_RUN if item.dtype[0] == "i" else np.nan) for name, item in VARIABLES.items()}

@@ -1,4 +1,4 @@
-"""Stick-slip cycles over (law, initial, a): how often and how long each block sticks, and how velocities relate."""
+"""Stick-slip cycles over (law, initial, a): rate and duration of sticks, and correlation of the velocities."""
 
 from __future__ import annotations
 
@@ -20,39 +20,39 @@ from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_poi
 
 STOP, START = 0, 1
 
-AGAIN = "followed once more from the first stop: in chaos another trajectory than that of the run, soon"
+RECOMPUTED = "recomputed from the first stop: in chaos, this soon diverges from the trajectory of the run"
 
 _POINT = ("law", "initial", "a")
 _BLOCK = (*_POINT, "block")
 VARIABLES = {
-    "stop_rate": Variable(_BLOCK, "f8", "stops in a unit of time, in the window"),
+    "stop_rate": Variable(_BLOCK, "f8", "stops per unit of time tau in the window"),
     "cycle_time": Variable(
         _BLOCK,
         "f8",
-        "mean time from one stop of a block to its next, in the window",
+        "mean time between successive stops of a block in the window",
         {"ancillary_variables": "cycle_time_error"},
     ),
     "cycle_time_error": Variable(_BLOCK, "f8", "standard error of the mean time between stops, from batches of cycles"),
-    "stick_fraction": Variable(_BLOCK, "f8", "share of the window in which a block sticks"),
+    "stick_fraction": Variable(_BLOCK, "f8", "fraction of the window in which a block sticks"),
     "velocity_frequency": Variable(
         _BLOCK,
         "f8",
         "frequency, in cycles per unit time, of the highest peak of the spectrum of U' over the time of events with "
         "states",
-        {"ancillary_variables": "velocity_frequency_error", "comment": AGAIN},
+        {"ancillary_variables": "velocity_frequency_error", "comment": RECOMPUTED},
     ),
     "velocity_frequency_error": Variable(
-        _BLOCK, "f8", "half of the resolution of that spectrum, 1/(2 T) for a length T"
+        _BLOCK, "f8", "half the resolution of this spectrum, 1/(2 T) for a duration T"
     ),
     "velocity_correlation": Variable(
         _POINT,
         "f8",
         "Pearson correlation of the velocities U' of the end blocks over the time of events with states",
-        {"comment": AGAIN},
+        {"comment": RECOMPUTED},
     ),
-    "least_velocity": Variable(_BLOCK, "f8", "least U' among the samples of the kept trajectory"),
+    "least_velocity": Variable(_BLOCK, "f8", "smallest U' among the samples of the stored trajectory"),
     "position_amplitude": Variable(
-        _BLOCK, "f8", "half of the range of the position relative to the driver, of the samples of the kept trajectory"
+        _BLOCK, "f8", "half the range of the position relative to the driver among the samples of the stored trajectory"
     ),
 }
 BLOCK = Variable(("block",), "i4", "block number, 1 to N along the chain", coordinate=True)
@@ -60,7 +60,7 @@ _READ = ["status", "position", "velocity", "trajectory_time", "event_position", 
 
 
 def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarray.Dataset:
-    """Return rates, durations and velocities of the stick-slip motion; a run that did not complete has NaN.
+    """Return rates, durations and velocities of the stick-slip motion; NaN for a run that did not complete.
 
     transient, window, batches : of the runs; stops are counted from transient to transient + window
     """
@@ -91,7 +91,7 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
         values["least_velocity"][index] = velocity.min(axis=0)
         values["position_amplitude"][index] = 0.5 * np.ptp(read["position"], axis=0)
     return summary(
-        "Stick-slip cycles of each block, and how the velocities of the blocks go together",
+        "Stick-slip cycles of each block, and correlation of the velocities of the end blocks",
         VARIABLES,
         values,
         {
@@ -104,12 +104,12 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
 
 
 def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float) -> tuple[np.ndarray, float]:
-    """Return equidistant velocities U', shape (n, blocks), and the time for which they last, as long as they are known.
+    """Return the longest available series of equidistant velocities U', shape (n, blocks), and its duration.
 
     run : arrays of a point file of the model; transient : of the run
 
-    The motion is followed once more from the first stop with a state after the transient to the last event. Where the
-    kept trajectory lasts longer, its samples are returned.
+    The motion is recomputed from the first stop with a stored state after the transient to the last event. If the
+    stored trajectory lasts longer, its samples are returned instead.
     """
     time, kept = run["event_time"], float(np.ptp(run["trajectory_time"]))
     stops = np.flatnonzero((run["event_kind"] == STOP) & (time >= transient))
@@ -125,8 +125,8 @@ def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float)
 def cycle_time(stops: np.ndarray, batches: int) -> tuple[float, float]:
     """Return the mean time between successive stops and its standard error, NaN for fewer than two stops.
 
-    Successive cycles depend on each other. The error is that of the means of `batches` runs of successive cycles, as
-    for ⟨J⟩; of single cycles if there are fewer.
+    Successive cycles are correlated. The error is therefore that of the means of `batches` batches of successive
+    cycles, as for ⟨J⟩, or of single cycles if there are fewer.
     """
     cycles = np.diff(stops)
     if not len(cycles):
@@ -137,10 +137,10 @@ def cycle_time(stops: np.ndarray, batches: int) -> tuple[float, float]:
 
 
 def stick_fraction(time: np.ndarray, kind: np.ndarray, start: float, end: float, ends_stuck: bool) -> float:
-    """Return the share of [start, end] in which a block sticks.
+    """Return the fraction of [start, end] in which a block sticks.
 
-    time, kind : all its stops and starts from τ = 0 on, in order
-    ends_stuck : whether it sticks at the end, which decides if it has neither stopped nor started
+    time, kind : all stops and starts of the block since τ = 0, in order
+    ends_stuck : whether the block sticks at the end; needed if it has no stops and starts
     """
     before = kind[0] == START if len(kind) else ends_stuck
     edge = np.clip(np.concatenate([[start], time, [end]]), start, end)

@@ -1,10 +1,11 @@
 """Two blocks under the laws of a study, from the same sampled initial states: each other law against the first one.
 
-There are two chains of two blocks. The train is pulled at its first block only; of it the paper speaks. In the other
-one, the study's chain with two blocks, both are pulled. One block is followed beside them, from the first state.
+There are two chains of two blocks. The train, which the paper describes, is pulled at its first block only. In the
+other chain, the study's chain with two blocks, both blocks are pulled. A single block is followed in addition, from the
+first state.
 
-The verdict is that of `agreement`: the kind of motion is the same, and ⟨J⟩ differs by no more than a tolerance. Both
-are those of the motion that a state ends on; only the order of events is that of runs from the state.
+The verdict is that of `agreement`: the laws agree if the kind of motion is the same and ⟨J⟩ differs by no more than a
+tolerance. Both refer to the asymptotic motion of each state, whereas the order of events refers to runs from the state.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ from burridge_knopoff.summaries.judgement import compare, excess
 
 BLOCKS = 2
 
-#: The two chains: the train, and the one of which both blocks are pulled.
+#: The two chains: the train, and the chain in which both blocks are pulled.
 CHAINS = ("train", "both_pulled")
 
 _MOTION = ("chain", "law", "state", "a")
@@ -50,12 +51,12 @@ MOTION_VARIABLES = {
     "mean_distance": Variable(
         _MOTION,
         "f8",
-        "time average <J> of the phase-space distance between the two blocks, in the motion that is reached",
+        "time average <J> of the phase-space distance between the two blocks in the asymptotic motion",
     ),
     "mean_distance_error": Variable(_MOTION, "f8", "standard error of <J> from the batch means"),
-    "kind": Variable(_MOTION, "i1", "kind of the motion that is reached", flag("i1", MotionKind)),
+    "kind": Variable(_MOTION, "i1", "kind of the asymptotic motion", flag("i1", MotionKind)),
     "section_period": Variable(
-        _MOTION, "i2", "upward section points after which the state of all blocks repeats, 0 if it does not"
+        _MOTION, "i2", "number of upward section points after which the state of all blocks repeats, 0 if it does not"
     ),
 }
 PAIR_VARIABLES = {
@@ -64,23 +65,23 @@ PAIR_VARIABLES = {
     "margin": Variable(
         _PAIR,
         "f8",
-        "how far |difference| lies beyond the tolerance of agreement, in standard errors of the difference",
-        {"comment": "negative where it is allowed; within agreement_standard_errors of 0 the verdict is left open"},
+        "excess of |difference| over the tolerance of agreement, in standard errors of the difference",
+        {"comment": "negative within the tolerance; within agreement_standard_errors of 0 the verdict is undetermined"},
     ),
     "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
-    "event_order_count": Variable(_PAIR, "i8", "number of events that come in the same order under both laws"),
+    "event_order_count": Variable(_PAIR, "i8", "number of events that occur in the same order under both laws"),
     "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", ANSWER),
-    "agrees": Variable(_PAIR, "i1", "whether kind of motion and <J> agree", ANSWER),
-    "parting_a": Variable(_PAIR[:3], "f8", "least a at which the laws disagree, NaN if there is none"),
+    "agrees": Variable(_PAIR, "i1", "whether the kind of motion and <J> agree", ANSWER),
+    "parting_a": Variable(_PAIR[:3], "f8", "smallest a at which the laws disagree, NaN if there is none"),
     "agreeing_fraction": Variable(
-        _FRACTION, "f8", "fraction of the initial states for which the laws agree, as is known"
+        _FRACTION, "f8", "fraction of the initial states for which the laws are known to agree"
     ),
     "agreeing_low": Variable(_FRACTION, "f8", "lower end of the confidence interval of this fraction"),
-    "agreeing_high": Variable(_FRACTION, "f8", "upper end, undetermined states counted as agreeing"),
+    "agreeing_high": Variable(_FRACTION, "f8", "upper end of this interval, undetermined states counted as agreeing"),
 }
 ONE_BLOCK_VARIABLES = {
-    "one_block_kind": Variable(_ONE, "i1", "kind of motion that one block ends on", flag("i1", MotionKind)),
-    "one_block_stop_rate": Variable(_ONE, "f8", "stops of one block in a unit of time, in the window"),
+    "one_block_kind": Variable(_ONE, "i1", "kind of the asymptotic motion of one block", flag("i1", MotionKind)),
+    "one_block_stop_rate": Variable(_ONE, "f8", "stops of one block per unit of time tau in the window"),
 }
 VARIABLES = {
     "initial_position": Variable(("state", "block"), "f8", "initial position U(0)"),
@@ -103,8 +104,8 @@ def make(
 ) -> xarray.Dataset:
     """Return the comparison.
 
-    two_blocks : values of a and number of states; sample, settings : of the states and of the runs; the others as in a
-        config
+    two_blocks : values of a and number of states; sample, settings : of the states and of the runs; the other arguments
+        as in a config
     """
     grid = two_blocks["a"]
     initial = Sample(samples=two_blocks["samples"], symmetric_samples=0, **sample).initial(BLOCKS)
@@ -114,9 +115,9 @@ def make(
 
 
 def train(chain: Chain, blocks: int) -> Chain:
-    """Return the train of so many blocks with the strengths of a chain: only its first block is pulled.
+    """Return the train of a number of blocks with the parameters of a chain: only its first block is pulled.
 
-    chain : one number gives each of its strengths; the spring to the driver is 1 where it is `neighbours`
+    chain : each parameter is a single number; if `pulling` is `neighbours`, the spring to the driver has stiffness 1
     """
     first = 1.0 if isinstance(chain.pulling, str) else chain.pulling
     pulling = (first, *(blocks - 1) * (0.0,))
@@ -125,15 +126,17 @@ def train(chain: Chain, blocks: int) -> Chain:
 
 
 def run_settings(**settings: Any) -> Settings:
-    """Return the settings of the runs whose orders of events are compared: nothing is sampled, all events are kept."""
+    """Return the settings of the runs whose orders of events are compared: no samples, all events."""
     duration = settings["transient"] + settings["window"]
     return Settings(**settings, events="all", sampling=duration, trajectory=0.0, lyapunov_exponents=0)
 
 
 def agreeing_fraction(agrees: np.ndarray) -> tuple[float, float, float]:
-    """Return the fraction of the states for which the laws are known to agree, and an interval, shape (states,).
+    """Return the fraction of the states for which the laws are known to agree, and its confidence interval.
 
-    At the ends of the interval those that are undetermined count either way.
+    agrees : Answer for each state, shape (states,)
+
+    Undetermined states count as disagreeing at the lower end of the interval and as agreeing at the upper end.
     """
     known, possible = (int(np.count_nonzero(such)) for such in (agrees == Answer.YES, agrees != Answer.NO))
     fraction, low, _ = fraction_interval(known, len(agrees))
@@ -150,13 +153,13 @@ def summarize(
     agreement: Mapping[str, Any],
     processes: int = 1,
 ) -> xarray.Dataset:
-    """Compare what two blocks end on from each initial state at each a of an ascending grid under each law.
+    """Compare the asymptotic motion of two blocks from each initial state at each a of an ascending grid.
 
-    models : one of two blocks for each law, at any a, both of them pulled; each other law is compared with the first
-    settings : of the runs for the order of events, see `run_settings`, and how all motion begins
-    search, motion : how attractors are looked for, and how kinds of motion are told apart
+    models : one for each law, at any a, with two blocks, both pulled; each other law is compared with the first
+    settings : of the runs for the order of events, see `run_settings`; its `start` applies to all motion
+    search, motion : settings of the search for attractors and of the kinds of motion
     agreement : the config's section of that name
-    processes : that work at once; no result depends on them
+    processes : number of parallel processes; no result depends on it
     """
     laws = [model.law.name for model in models]
     sizes = {"law": len(laws), "other_law": len(laws) - 1, "state": len(initial), "a": len(grid), "block": BLOCKS}
@@ -173,7 +176,7 @@ def summarize(
     first = InitialState(initial[0].name, tuple(position[:1]), tuple(velocity[:1]))
     with shared_out(processes) as each:
         for c, (name, chosen) in enumerate(zip(CHAINS, (trains, models), strict=True)):
-            of_one = partial(_at, chosen, initial=initial, settings=settings, search=search, motion=motion)
+            of_one = partial(_compare_at, chosen, initial=initial, settings=settings, search=search, motion=motion)
             for k, found in enumerate(each(f"two blocks, {name}", of_one, grid)):
                 for variable, value in found.items():
                     values[variable][c, ..., k] = value
@@ -193,8 +196,8 @@ def summarize(
             for name, value in zip(("fraction", "low", "high"), agreeing_fraction(column), strict=True):
                 compared[f"agreeing_{name}"][k] = value
     shared = axes(law=laws, a=grid)
-    chain_about = {"long_name": "chain of two blocks: the train, pulled at its first block only, or both pulled"}
-    about = {**shared["law"][2], "long_name": "friction law that is compared with the first one"}
+    chain_about = {"long_name": "chain of two blocks: the train, pulled at its first block only, or both blocks pulled"}
+    about = {**shared["law"][2], "long_name": "friction law compared with the first one"}
     judged = motion.at_speed(models[0].v).told
     threshold = judged.pop("synchronization_threshold")
     return summary(
@@ -221,7 +224,7 @@ def summarize(
     )
 
 
-def _at(
+def _compare_at(
     models: Sequence[Model],
     a: float,
     initial: Sequence[InitialState],
@@ -229,7 +232,7 @@ def _at(
     search: SearchSettings,
     motion: MotionSettings,
 ) -> dict[str, np.ndarray]:
-    """Return at one a what each state ends on, shape (law, state), and the common order, (other law, state)."""
+    """Return all variables at one a: of motions, shape (law, state), of pairs, shape (other law, state)."""
     here = [model.at(a) for model in models]
     ends = [endings(model, initial, search, motion, start=settings.start) for model in here]
     values = {name: np.array([[getattr(found, name) for found in row] for row in ends]) for name in MOTION_VARIABLES}
@@ -237,7 +240,7 @@ def _at(
     for j, state in enumerate(initial):
         first, *others = (run(model, state, settings) for model in here)
         for i, other in enumerate(others):
-            count[i, j], time = common_order(_sequence(first), _sequence(other))
+            count[i, j], time = common_order(_event_sequence(first), _event_sequence(other))
             until[i, j] = min(time, first.end_time, other.end_time)
     return {**values, "event_order_count": count, "event_order_time": until}
 
@@ -249,7 +252,7 @@ def _one_block(
     settings: Settings,
     motion: MotionSettings,
 ) -> dict[str, np.ndarray]:
-    """Return at one a how one block moves, shape (law,)."""
+    """Return the motion of one block at one a, shape (law,)."""
     kind, rate = (np.zeros(len(models)) for _ in range(2))
     measured = replace(settings, events="window", lyapunov_exponents=2)
     for i, of_law in enumerate(models):
@@ -260,6 +263,6 @@ def _one_block(
     return {"one_block_kind": kind, "one_block_stop_rate": rate}
 
 
-def _sequence(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return time, block and kind of all events of a run that has kept all of them with states."""
+def _event_sequence(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return time, block and kind of all events of a run that has stored all of them with states."""
     return trajectory.event_time, trajectory.event_block, trajectory.event_kind
