@@ -9,8 +9,8 @@ import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, MotionKind, law_of, limit_cycle, simulate, synchronized_orbit
 from burridge_knopoff.attractors import asymptotic_states as module
-from burridge_knopoff.attractors.asymptotic_states import Ending, endings
-from burridge_knopoff.attractors.labels import UNDETERMINED, moved
+from burridge_knopoff.attractors.asymptotic_states import AsymptoticState, asymptotic_states
+from burridge_knopoff.attractors.labels import UNDETERMINED, advance
 from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.motion.chain_settings import Sample
@@ -30,7 +30,7 @@ def pair(law, a):
 def test_slow_synchrony_is_synchrony(law, a):
     """Next to where it is lost, which 40 digits tell, the blocks are apart for far longer than any run."""
     assert -1e-3 < two_block_exponent(law, a) < 0.0
-    (found,) = endings(pair(law, a), [APART])
+    (found,) = asymptotic_states(pair(law, a), [APART])
     assert (found.kind, found.section_period) == (MotionKind.SYNCHRONIZED, 1)
     assert found.mean_distance < 1e-7
     assert simulate(pair(law, a), initial=APART, transient=3000.0, window=7000.0).mean_distance > 5e-5
@@ -56,7 +56,7 @@ def test_only_what_is_next_to_synchrony_is_on_its_way_there(v, apart, kind):
 
 def test_what_synchrony_repels_does_not_synchronize():
     assert two_block_exponent("linearized", 0.05013) > 0.0
-    (found,) = endings(pair("linearized", 0.05013), [APART])
+    (found,) = asymptotic_states(pair("linearized", 0.05013), [APART])
     assert found.kind != MotionKind.SYNCHRONIZED
 
 
@@ -66,9 +66,9 @@ def test_chaos_that_ends_is_the_orbit_after_it(law, a, state):
     model = pair(law, a)
     early = simulate(model, initial=STATES[state], transient=3000.0, window=7000.0)
     assert early.lyapunov_exponent[0] > 3.0 * early.lyapunov_error[0]
-    found = endings(model, STATES)[state]
+    found = asymptotic_states(model, STATES)[state]
     assert found.kind == MotionKind.PERIODIC
-    (later,) = moved(model, [model.begin(STATES[state])], 100_000.0)
+    (later,) = advance(model, [model.begin(STATES[state])], 100_000.0)
     orbit = limit_cycle(model, later)
     options = {"transient": 100_000.0, "window": 20.0 * orbit.period, "batches": 10, "lyapunov_exponents": 0}
     assert found.mean_distance == pytest.approx(
@@ -79,7 +79,7 @@ def test_chaos_that_ends_is_the_orbit_after_it(law, a, state):
 @pytest.mark.slow
 def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
     """In runs of the usual length some of these look like a torus; a window of 400 000 tells them apart from one."""
-    found = endings(pair("linearized", 0.08), STATES)
+    found = asymptotic_states(pair("linearized", 0.08), STATES)
     inner = [k for k in range(8) if found[k].mean_distance < 0.1]
     assert inner == [0, 2, 4, 5, 7]
     assert {found[k] for k in inner} == {found[0]}
@@ -98,7 +98,7 @@ def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
 def test_chaos_that_does_not_last_is_followed_out_of(monkeypatch):
     """At a = 0.18 under the linearized law it does last: nobody leaves it, and then nothing is known."""
     model = pair("linearized", 0.18)
-    chaotic = [k for k, found in enumerate(endings(model, STATES)) if found.kind == MotionKind.CHAOTIC]
+    chaotic = [k for k, found in enumerate(asymptotic_states(model, STATES)) if found.kind == MotionKind.CHAOTIC]
     assert chaotic == [0, 3, 7]
 
     def dying(model, attractors, settings):
@@ -106,17 +106,17 @@ def test_chaos_that_does_not_last_is_followed_out_of(monkeypatch):
         return [Lifetime(9, 900.0) if kind == MotionKind.CHAOTIC else None for kind in kinds]
 
     monkeypatch.setattr(module, "lifetimes", dying)
-    found = endings(model, STATES)
-    assert {k for k in range(8) if repr(found[k]) == repr(Ending())} == {*chaotic}
+    found = asymptotic_states(model, STATES)
+    assert {k for k in range(8) if repr(found[k]) == repr(AsymptoticState())} == {*chaotic}
     assert {found[k].kind for k in range(8) if k not in chaotic} == {MotionKind.PERIODIC}
     # Under the nonlinear law chaos at a = 0.2 ends, in a run of the fourth state within its window.
     monkeypatch.undo()
-    assert {found.kind for found in endings(pair("nonlinear", 0.2), STATES)} == {MotionKind.PERIODIC}
+    assert {found.kind for found in asymptotic_states(pair("nonlinear", 0.2), STATES)} == {MotionKind.PERIODIC}
 
 
 def test_an_average_over_chaos_that_ends_is_not_taken(monkeypatch):
     model = pair("linearized", 0.18)
-    whole = endings(model, STATES[:1])[0]
+    whole = asymptotic_states(model, STATES[:1])[0]
     own = module.label
 
     def gone(model, attractors, starts, time_limit):
@@ -124,7 +124,7 @@ def test_an_average_over_chaos_that_ends_is_not_taken(monkeypatch):
         return (labels * 0 + UNDETERMINED if time_limit == SEARCH.time_limit else labels), times
 
     monkeypatch.setattr(module, "label", gone)
-    short = endings(model, STATES[:1])[0]
+    short = asymptotic_states(model, STATES[:1])[0]
     assert short.kind == whole.kind
     assert short.mean_distance_error > 2.0 * whole.mean_distance_error
     assert short.mean_distance == pytest.approx(whole.mean_distance, abs=4.0 * short.mean_distance_error)
@@ -142,7 +142,7 @@ def test_an_average_over_chaos_and_its_mirror_image_is_taken(tell, at, whole):
     tell(module, "run", [long])
     tell(module, "label", [(np.array([at]), None)])
     model = Model(Chain(3), law_of("linearized", 0.08))
-    found = module._ending(model, [*chaos, stand_in(partner=2)], 0, SEARCH)
+    found = module._state_on(model, [*chaos, stand_in(partner=2)], 0, SEARCH)
     assert found.kind == MotionKind.CHAOTIC
     assert (found.mean_distance, found.mean_distance_error) == ((0.2, 0.01) if whole else (0.3, 0.0))
 
@@ -151,8 +151,8 @@ def test_mirror_images_have_the_same_numbers(monkeypatch):
     images = [stand_in(kind=MotionKind.CHAOTIC, partner=partner) for partner in (1, 0)]
     monkeypatch.setattr(module, "find_attractors", lambda *_, **__: (images, np.array([1, 0, 1])))
     monkeypatch.setattr(module, "lifetimes", lambda *_: [Lifetime(0, 1e9)] * 2)
-    monkeypatch.setattr(module, "_ending", lambda model, attractors, index, *_: index)
-    assert endings(pair("linearized", 0.18), [APART] * 3) == [0, 0, 0]
+    monkeypatch.setattr(module, "_state_on", lambda model, attractors, index, *_: index)
+    assert asymptotic_states(pair("linearized", 0.18), [APART] * 3) == [0, 0, 0]
 
 
 @pytest.mark.parametrize("start", ["moving", "tested"])
@@ -164,16 +164,16 @@ def test_states_that_are_followed_on_begin_as_they_are_told_to(monkeypatch, tell
     assert 0.2 < stuck.mean() < 0.9
     monkeypatch.setattr(module, "find_attractors", lambda *_, **__: ([], np.full(12, UNDETERMINED)))
     followed = tell(module, "label", [(np.full(12, UNDETERMINED), None)])
-    monkeypatch.setattr(module, "moved", lambda model, starts, time: starts)
+    monkeypatch.setattr(module, "advance", lambda model, starts, time: starts)
     monkeypatch.setattr(module, "_slow_synchrony", lambda model, end, *_: end.stuck.tolist())
-    assert endings(pair("linearized", 0.1), initial, start=start) == (stuck & (start == "tested")).tolist()
+    assert asymptotic_states(pair("linearized", 0.1), initial, start=start) == (stuck & (start == "tested")).tolist()
     assert [at.stuck.tolist() for at in followed[0][2]] == (stuck & (start == "tested")).tolist()
 
 
 def test_what_settles_on_nothing_is_undetermined():
     """Without friction that weakens the last slip never ends."""
     settings = replace(SEARCH, transient=200.0, window=200.0, time_limit=500.0)
-    (found,) = endings(pair("linearized", 0.0), [APART], settings)
-    assert repr(found) == repr(Ending())
+    (found,) = asymptotic_states(pair("linearized", 0.0), [APART], settings)
+    assert repr(found) == repr(AsymptoticState())
     uneven = Model(Chain(2, threshold=(1.0, 0.9)), law_of("linearized", 0.0))
-    assert endings(uneven, [APART], settings)[0].kind == MotionKind.UNDETERMINED
+    assert asymptotic_states(uneven, [APART], settings)[0].kind == MotionKind.UNDETERMINED

@@ -7,7 +7,7 @@ import pytest
 
 from burridge_knopoff import Chain, Model, SearchSettings, law_of
 from burridge_knopoff.attractors import convergence as settling
-from burridge_knopoff.attractors.convergence import LASTING, Convergence
+from burridge_knopoff.attractors.convergence import SYMMETRY_WINDOW, Convergence
 from burridge_knopoff.motion.section_returns import state_of
 from tests.motion.stand_in import shown
 
@@ -50,8 +50,8 @@ def creeping(time, tau, size, window=100.0):
 def test_how_far_a_motion_still_is_follows_from_how_its_drift_dies_out(tau):
     first, later = creeping(0.0, tau, 0.3), creeping(5100.0, tau, 0.3)
     # After the half of the window between which and the one before it the drift was seen.
-    assert settling._left(first, later, 5000.0) == pytest.approx(0.3 * np.exp(-5150.0 / tau), rel=1e-4)
-    assert settling._left(first, first, 5000.0) == np.inf
+    assert settling._remaining_distance(first, later, 5000.0) == pytest.approx(0.3 * np.exp(-5150.0 / tau), rel=1e-4)
+    assert settling._remaining_distance(first, first, 5000.0) == np.inf
 
 
 @pytest.mark.parametrize(("tau", "visits", "rests"), [(5.0, 1, True), (100.0, 3, True), (1e6, 5, False)])
@@ -63,7 +63,7 @@ def test_a_motion_that_drifts_is_followed_until_it_is_there(tell, tau, visits, r
         time += wait + 100.0
         seen.append(creeping(time, tau * SETTINGS.time_limit / 100.0, 0.005))
     asked = tell(settling, "visit", seen[:visits])
-    found = own.at_rest(creeping(0.0, tau * SETTINGS.time_limit / 100.0, 0.005))
+    found = own.follow_until_steady(creeping(0.0, tau * SETTINGS.time_limit / 100.0, 0.005))
     assert found is (seen[visits - 1] if rests else None)
     assert [arguments[2] for arguments in asked] == waits[:visits]
 
@@ -72,10 +72,10 @@ def test_a_set_that_is_no_closed_orbit_has_to_stay_where_it_is(tell):
     """Or it drifts: slowly along a torus, or to another motion."""
     own, moving = Convergence(MODEL, SETTINGS), shown(ONE, ONE, WIDE, 1.0)
     tell(settling, "visit", [moving])
-    assert own.at_rest(moving) is moving
+    assert own.follow_until_steady(moving) is moving
     elsewhere = [shown(ONE + k, ONE + k, WIDE, 1.0) for k in range(1, 6)]
     tell(settling, "visit", elsewhere)
-    assert own.at_rest(moving) is None
+    assert own.follow_until_steady(moving) is None
 
 
 def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
@@ -87,10 +87,10 @@ def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
     both = np.concatenate([rows, touching])
     for later, changes in ((both, True), (rows, False)):
         asked = tell(settling, "visit", [shown(later, later, WIDE, 0.0)])
-        assert own.changes_sides(shown(rows, touching, WIDE, 0.0)) == changes
-        assert asked[0][2:4] == (0.0, LASTING * 3)
+        assert own.is_eventually_symmetric(shown(rows, touching, WIDE, 0.0)) == changes
+        assert asked[0][2:4] == (0.0, SYMMETRY_WINDOW * 3)
     for apart in (shown(rows, rows - 1.002, WIDE, 0.0), shown(rows, touching, CLOSED, 0.0)):
-        assert not own.changes_sides(apart)
+        assert not own.is_eventually_symmetric(apart)
     # Where only one block of a mirror pair stops again and again, the two show different sets.
     assert not own.is_symmetric(replace(shown(rows, rows, WIDE, 0.0), mirror_block=3))
 
@@ -113,9 +113,9 @@ def test_a_set_of_a_chain_without_a_mirror_image_has_to_fill_as_well(tell):
 def test_a_motion_touches_its_mirror_image_within_the_resolution(tell):
     own = Convergence(MODEL, SETTINGS)
     for away, touches in ((0.9e-3, True), (1.1e-3, False)):
-        assert own.touches(shown(ONE, ONE + away, WIDE, 0.0)) == touches
-    assert not own.touches(shown(ONE, ONE[:0], WIDE, 0.0))
+        assert own.is_close_to_mirror_image(shown(ONE, ONE + away, WIDE, 0.0)) == touches
+    assert not own.is_close_to_mirror_image(shown(ONE, ONE[:0], WIDE, 0.0))
     # What leaves for another block, or ends, in the longer time does not cover its mirror image.
     found = shown(ONE, ONE + 0.9e-3, WIDE, 0.0)
     tell(settling, "visit", [found, replace(found, block=2), None])
-    assert [own.changes_sides(found) for _ in range(3)] == [True, False, False]
+    assert [own.is_eventually_symmetric(found) for _ in range(3)] == [True, False, False]

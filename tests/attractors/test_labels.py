@@ -50,7 +50,7 @@ def test_what_comes_to_an_orbit_within_the_patience_is_labelled_so(found, patien
 def test_patience_is_spared_where_a_sample_comes_early(tell, came, expected):
     chaos = stand_in(ahead=0.05, kind=MotionKind.CHAOTIC, spacing=1.0, patience=10_000.0)
     labels, times = np.array([1] * len(came) + [0, -1]), np.array([*came, 5000.0, 20_000.0])
-    asked = tell(fractions, "label_together", [(labels, times, None), (np.zeros(50, dtype=int), None, None)])
+    asked = tell(fractions, "label_arrays", [(labels, times, None), (np.zeros(50, dtype=int), None, None)])
     known = [chaos, stand_in(partner=1, ahead=0.0)]
     search = Search(MODEL, SearchSettings(samples=20, fraction_width=0.134), attractors=known)
     with shared_out(1) as each:
@@ -66,7 +66,7 @@ def sticking(position):
 
 def test_states_of_the_basin_fractions_begin_as_they_are_told_to(tell):
     """Tested, blocks whose springs do not pull hard enough stick; each a has states of its own."""
-    asked = tell(fractions, "label_together", [(np.zeros(50, dtype=int), None, None)] * 3)
+    asked = tell(fractions, "label_arrays", [(np.zeros(50, dtype=int), None, None)] * 3)
     settings = SearchSettings(samples=0, fraction_width=0.134)
     for a, start in ((0.08, "tested"), (0.08, "moving"), (0.09, "tested")):
         with shared_out(1) as each:

@@ -9,15 +9,15 @@ from scipy.stats import poisson
 
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, find_attractors, law_of
 from burridge_knopoff.attractors import lifetime
-from burridge_knopoff.attractors.capture_radius import PATIENT_TIME
-from burridge_knopoff.attractors.lifetime import EXPOSURE, FOLLOWED, UNDECIDED, Lifetime, lifetimes
+from burridge_knopoff.attractors.capture_radius import LONGEST_PATIENCE
+from burridge_knopoff.attractors.lifetime import EXPOSURE, EXTENSION, TRAJECTORIES, Lifetime, lifetimes
 from burridge_knopoff.motion.set_distance import SPACINGS
 from tests.motion.stand_in import stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.2))
 SETTINGS = SearchSettings(lifetime=800.0, time_limit=50.0, seed=5, window=10.0)
 #: Of each trajectory.
-TIME = EXPOSURE * SETTINGS.lifetime / FOLLOWED
+TIME = EXPOSURE * SETTINGS.lifetime / TRAJECTORIES
 
 
 @pytest.mark.parametrize("ends", [0, 1, 5, 40])
@@ -30,8 +30,8 @@ def test_the_interval_is_that_of_a_poisson_count(ends):
         assert Lifetime(ends, 1e6).mean == 1e6 / ends
     else:
         assert (high, Lifetime(0, 1e6).mean) == (math.inf, math.inf)
-    assert Lifetime(ends, 1e6).lasts(0.99 * low)
-    assert not Lifetime(ends, 1e6).lasts(low)
+    assert Lifetime(ends, 1e6).is_longer_than(0.99 * low)
+    assert not Lifetime(ends, 1e6).is_longer_than(low)
 
 
 def test_the_interval_holds_the_lifetime_as_often_as_it_says():
@@ -47,8 +47,8 @@ def test_the_interval_holds_the_lifetime_as_often_as_it_says():
 
 def test_an_ensemble_that_nothing_leaves_shows_that_chaos_lasts():
     """The time of all trajectories is just enough for that."""
-    assert Lifetime(0, EXPOSURE * 1e5).lasts(1e5)
-    assert not Lifetime(1, EXPOSURE * 1e5).lasts(1e5)
+    assert Lifetime(0, EXPOSURE * 1e5).is_longer_than(1e5)
+    assert not Lifetime(1, EXPOSURE * 1e5).is_longer_than(1e5)
 
 
 @pytest.mark.parametrize(("share", "least", "most"), [(1.0, 0.025, 0.04), (0.8, 0.0, 0.012)])
@@ -57,14 +57,14 @@ def test_chaos_that_is_too_short_passes_for_lasting_no_more_often_than_settings_
 
     def drawn(model, attractors, index, settings, exposure, random, count):
         lives = random.exponential(share * settings.lifetime, count)
-        time = exposure * settings.lifetime / FOLLOWED
+        time = exposure * settings.lifetime / TRAJECTORIES
         return Lifetime(int((lives < time).sum()), float(np.minimum(lives, time).sum()))
 
-    monkeypatch.setattr(lifetime, "_followed", drawn)
+    monkeypatch.setattr(lifetime, "_follow", drawn)
     passed = 0
     for seed in range(6000):
         settings = replace(SETTINGS, seed=seed)
-        passed += lifetime._lifetime(MODEL, [], 0, settings, EXPOSURE).lasts(settings.lifetime)
+        passed += lifetime._lifetime(MODEL, [], 0, settings, EXPOSURE).is_longer_than(settings.lifetime)
     assert least <= passed / 6000 <= most
 
 
@@ -90,18 +90,18 @@ def find(monkeypatch, tell):
     def found(attractors, *rounds):
         runs = []
 
-        def moved(model, starts, time):
+        def advance(model, starts, time):
             runs.append((len(starts), time))
             return starts
 
-        monkeypatch.setattr(lifetime, "moved", moved)
+        monkeypatch.setattr(lifetime, "advance", advance)
         first, later = [], []
         for when, nowhere, early in rounds:
             first.append((np.where(np.isnan(when), -1, 0), np.nan_to_num(when), np.zeros((len(when), 6))))
             ends = np.zeros(int(np.isnan(when).sum()), int)
             ends[:nowhere] = -1
             later += [(ends, None), (np.array(early, int), None)]
-        followed, asked = tell(lifetime, "label_together", first), tell(lifetime, "label", later)
+        followed, asked = tell(lifetime, "label_arrays", first), tell(lifetime, "label", later)
         lives = lifetimes(MODEL, attractors, SETTINGS)
         calls = [(len(position), time_limit, len(known)) for _, known, position, *_, time_limit in followed]
         return lives, runs + calls + [(len(starts), time_limit, len(known)) for _, known, starts, time_limit in asked]
@@ -113,7 +113,7 @@ def chaos(partner=0):
     return stand_in(partner=partner, kind=MotionKind.CHAOTIC)
 
 
-MANY = 32 * UNDECIDED
+MANY = 32 * EXTENSION
 NEVER = math.nan
 #: More than enough to show that chaos lasts: none of so many trajectories leaves.
 ALL_STAY = ([NEVER] * MANY, 0, [])
@@ -142,7 +142,7 @@ def test_where_some_leave_so_many_more_are_followed_that_they_decide(find):
     first = [LATE + 20.0] + [NEVER] * 31
     found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (first, 0, []), ALL_STAY)
     assert found == [Lifetime(1, (31 + MANY) * TIME + 20.0), None]
-    assert found[0].lasts(SETTINGS.lifetime)
+    assert found[0].is_longer_than(SETTINGS.lifetime)
     assert asked[:2] == [(32, LATE + TIME, 1), (MANY, LATE + TIME, 1)]
 
 
@@ -160,9 +160,9 @@ def test_motion_that_is_not_chaotic_has_no_lifetime(find):
     ("rate", "radius", "way"),
     [
         # A torus, chaos or a locked torus.
-        (0.0, 0.2 / math.e, 0.5 * PATIENT_TIME - 20.0),
-        (0.99e-4, 0.005, 0.5 * PATIENT_TIME - 20.0),
-        (-1e-4, 0.2, 0.5 * PATIENT_TIME - 20.0),
+        (0.0, 0.2 / math.e, 0.5 * LONGEST_PATIENCE - 20.0),
+        (0.99e-4, 0.005, 0.5 * LONGEST_PATIENCE - 20.0),
+        (-1e-4, 0.2, 0.5 * LONGEST_PATIENCE - 20.0),
         (1.01e-4, 0.2 / math.e, 1.0 / 1.01e-4),
         (5e-4, 0.2 / math.e, 2000.0),
         (5e-4, 0.4, 0.0),
@@ -195,7 +195,7 @@ def test_trajectories_begin_apart_by_the_seed_and_the_speed(tell):
     """At twice the speed of the paper they are pushed by up to twice a tenth of the resolution."""
     fast, away = Model(Chain(3), MODEL.law, 0.2), []
     for seed in (3, 3, 4):
-        asked = tell(lifetime, "label_together", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
+        asked = tell(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
         tell(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
         wide = stand_in(kind=MotionKind.CHAOTIC, radius=0.021)
         lifetimes(fast, [wide], replace(SETTINGS, seed=seed, lifetime=100.0))
@@ -208,7 +208,7 @@ def test_trajectories_begin_apart_by_the_seed_and_the_speed(tell):
 def test_thin_chaos_is_begun_on_and_known_however_small_its_radius(tell):
     """Pushes are far smaller than the radius; what is as near to the set as its returns are to each other is on it."""
     thin = stand_in(kind=MotionKind.CHAOTIC, radius=1e-6, spacing=0.01)
-    followed = tell(lifetime, "label_together", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
+    followed = tell(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
     asked = tell(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
     (found,) = lifetimes(MODEL, [thin], SETTINGS)
     assert found.ends == 0

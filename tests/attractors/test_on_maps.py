@@ -44,7 +44,7 @@ def test_chaos_is_one_attractor_that_lasts(maps):
     assert (labels == 0).all()
     assert found.motion.exponent[0] == pytest.approx(np.log(2.0), abs=0.02)
     (life,) = lifetimes(search.model, search.attractors, SEARCH)
-    assert life.lasts(SEARCH.lifetime)
+    assert life.is_longer_than(SEARCH.lifetime)
 
 
 def test_motion_that_never_returns_is_quasiperiodic(maps):

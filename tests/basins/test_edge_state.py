@@ -109,7 +109,7 @@ def test_each_side_leads_to_one_of_the_two(between_mirror_images):
     assert sorted(map(len, found.sides)) == [1, 1]
     (first,), (second,) = found.sides
     assert attractors[first].partner == second
-    assert found.reached.sum(axis=1).tolist() == [100, 100]
+    assert found.reached_count.sum(axis=1).tolist() == [100, 100]
     assert not found.has_crossing
 
 

@@ -75,9 +75,9 @@ def test_exponent_of_counts():
     bent = np.where(np.arange(len(SEPARATIONS)) > FITTED_FROM + 3, 1e-3 * fraction, fraction)
     assert uncertainty_exponent(counted(bent, 0.0, few)).alpha[0] == pytest.approx(0.4, abs=1e-9)
     pairs = counted(fraction)
-    pairs.different[2:, -1] = 0.0
+    pairs.different_weight[2:, -1] = 0.0
     two = uncertainty_exponent(pairs)
-    pairs.different[1:, -1] = 0.0
+    pairs.different_weight[1:, -1] = 0.0
     alone = uncertainty_exponent(pairs)
     # Those of two batches count, which makes f fall more steeply towards the least separation.
     assert two.alpha[0] > 0.5

@@ -33,9 +33,9 @@ def scripted(monkeypatch):
         def labels(self, starts, check=True):
             if check:
                 self.attractors = [at(STILL)]
-                self.vain = (b"a state",)
+                self.unsuccessful_states = (b"a state",)
             else:
-                assert not self.vain
+                assert not self.unsuccessful_states
                 followed.append((self.model.a, [round(start.position[1]) for start in starts]))
             if self.model.a == 0.2 or (not check and self.model.a <= 0.3):
                 self.attractors = [at(STILL), at(OTHER, partner=1)]
@@ -99,7 +99,7 @@ def test_what_only_the_counted_states_lead_to_is_looked_for_at_the_others():
 
 def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkeypatch, caplog):
     """Few values, then with one more: what is kept is taken, and all is as if nothing had been."""
-    monkeypatch.setattr(fractions, "PART", 30)
+    monkeypatch.setattr(fractions, "LABELLED_AT_ONCE", 30)
     settings = SearchSettings(samples=10, fraction_width=0.13, transient=1000.0, window=800.0, perturbations=4)
 
     def found(a_values, **share):

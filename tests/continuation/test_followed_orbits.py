@@ -43,7 +43,7 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, fail
     position[0, :, 0] = range(4)
     one = one.assign(a=("value", [0.05]), in_grid=("value", [1]), position=(names, position))
     one["velocity"] = names, np.zeros((1, 4, 3))
-    found = followed_orbits.followed(orbit.model, one, [], processes)
+    found = followed_orbits.follow_orbits(orbit.model, one, [], processes)
     assert found.of_place == {(0, slot): number for slot, number in numbers.items()}
     assert [found.of_place[place] for place in found.places] == list(range(len(expected)))
     followed = [item.upward.orbits[0].orbit.period / orbit.period for item in found.segments]
@@ -54,7 +54,7 @@ def test_the_longest_orbits_are_followed_first_and_neighbours_late():
     periods = [6.0] * 8 + [100.0, 6.3, 90.0]
     placed = [((k, 0), type("Orbit", (), {"period": period})) for k, period in enumerate(periods)]
     # Their places within an octave are those of the van der Corput sequence.
-    assert [k for (k, _), _ in followed_orbits._in_turn(placed)] == [8, 10, 0, 4, 2, 6, 1, 9, 5, 3, 7]
+    assert [k for (k, _), _ in followed_orbits._sort(placed)] == [8, 10, 0, 4, 2, 6, 1, 9, 5, 3, 7]
 
 
 @pytest.mark.parametrize(

@@ -5,7 +5,7 @@ import pytest
 
 from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
 from burridge_knopoff.continuation import law_homotopy as joining
-from burridge_knopoff.continuation.law_homotopy import STEPS, follow_law, joined
+from burridge_knopoff.continuation.law_homotopy import STEPS, follow_law, match_branches
 from burridge_knopoff.continuation.matching import SAME_SET
 from burridge_knopoff.motion.set_distance import least_distance
 from tests.motion.stand_in import shown
@@ -48,7 +48,7 @@ def test_branches_are_joined_whatever_their_numbers(models, found):
         ({0: others[0], 1: others[1]}, {0: 0, 1: 2}),
         ({0: others[0]}, {0: 0}),
     ):
-        assert joined([models[0]], [models[1]], states, there, SETTINGS) == expected
+        assert match_branches([models[0]], [models[1]], states, there, SETTINGS) == expected
 
 
 def test_mirror_images_are_one_branch():
@@ -58,7 +58,7 @@ def test_mirror_images_are_one_branch():
     one, other = (item.motion.state() for index, item in enumerate(attractors) if item.partner != index)
     assert np.abs(one.vector() - other.vector()).max() > 0.01
     for there in (one, other):
-        assert joined([model], [model], {1: {0: one}}, {4: {0: there}}, SETTINGS) == {0: 0, 4: 1}
+        assert match_branches([model], [model], {1: {0: one}}, {4: {0: there}}, SETTINGS) == {0: 0, 4: 1}
 
 
 @pytest.mark.parametrize(("v", "expected"), [(0.1, {0: 0}), (0.2, {0: 0, 3: 1})])
@@ -67,7 +67,7 @@ def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monk
     one, other = (part[1].motion.state() for part in found)
     near = other.vector()[None] + 1.5 * SAME_SET
     monkeypatch.setattr(joining, "follow_law", lambda *_, **__: shown(near, near, 0.0, 0.0))
-    assert joined([models[0]], [models[1]], {1: {0: one}}, {3: {0: other}}, SETTINGS) == expected
+    assert match_branches([models[0]], [models[1]], {1: {0: one}}, {3: {0: other}}, SETTINGS) == expected
 
 
 @pytest.fixture
@@ -118,7 +118,7 @@ def test_of_two_branches_that_come_to_one_the_longer_one_is_it(monkeypatch):
     on_it, there_on_it = here.state(), there.state()
     monkeypatch.setattr(joining, "follow_law", follow)
     states = {1: dict.fromkeys(range(3), on_it), 2: dict.fromkeys(range(6), there_on_it)}
-    assert joined(*models, states, {7: dict.fromkeys(range(6), on_it)}, SETTINGS) == {0: 0, 7: 2}
+    assert match_branches(*models, states, {7: dict.fromkeys(range(6), on_it)}, SETTINGS) == {0: 0, 7: 2}
     expected = [(False, a) for a in (0.0, 0.1, 0.2)] + [(True, a) for a in (0.0, 0.2, 0.5)]
     assert [long for long, _ in asked] == [long for long, _ in expected]
     assert [a for _, a in asked] == pytest.approx([a for _, a in expected])

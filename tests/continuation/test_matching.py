@@ -40,10 +40,10 @@ def test_an_orbit_and_the_chaos_around_it_go_on_as_they_are():
     here, there = np.linspace(0.0, 0.1, 6), np.linspace(0.008, 0.108, 6)
     before = outlines([at(*here, partner=0), at(0.041, partner=1)])
     after = outlines([at(0.042, partner=0), at(*there, partner=1)])
-    assert Matcher(1.0).matched(before, after) == {0: 1, 1: 0}
+    assert Matcher(1.0).match(before, after) == {0: 1, 1: 0}
     # Alone each may follow the other.
-    assert Matcher(1.0).matched({0: before[0]}, {0: after[0]}) == {0: 0}
-    assert Matcher(1.0).matched({1: before[1]}, {1: after[1]}) == {1: 1}
+    assert Matcher(1.0).match({0: before[0]}, {0: after[0]}) == {0: 0}
+    assert Matcher(1.0).match({1: before[1]}, {1: after[1]}) == {1: 1}
 
 
 def test_returns_are_thinned_out_evenly():
@@ -56,21 +56,21 @@ def test_pairs_are_chosen_together():
     """Of two that are near one set the nearer one has it, if the other finds another; none reaches beyond the limit."""
     before = outlines([at(0.0, partner=0), at(0.02, partner=1)])
     after = outlines([at(0.015, partner=0), at(0.035, partner=1)])
-    assert Matcher(1.0).matched(before, after) == {0: 0, 1: 1}
-    assert Matcher(1.0).matched(before, outlines([at(0.015, partner=0)])) == {0: 1}
+    assert Matcher(1.0).match(before, after) == {0: 0, 1: 1}
+    assert Matcher(1.0).match(before, outlines([at(0.015, partner=0)])) == {0: 1}
     limit = SAME_SET
     for place, found in ((0.99 * limit, {0: 0}), (1.01 * limit, {})):
         one = {0: Outline(at(0.0))}
-        assert Matcher(1.0).matched(one, {0: Outline(at(place))}) == found
-    assert Matcher(1.1).matched(one, {0: Outline(at(1.01 * limit))}) == {0: 0}
-    assert Matcher(1.0).matched({}, after) == {}
+        assert Matcher(1.0).match(one, {0: Outline(at(place))}) == found
+    assert Matcher(1.1).match(one, {0: Outline(at(1.01 * limit))}) == {0: 0}
+    assert Matcher(1.0).match({}, after) == {}
 
 
 def test_synchrony_is_followed_by_synchrony_alone():
     """However far it has moved."""
     still, far = (at(place, symmetry=SYNCHRONIZED) for place in (0.0, 9.0))
     for before, after, found in ((still, at(0.0), {}), (at(0.0), still, {}), (still, far, {0: 0})):
-        assert Matcher(1.0).matched(outlines([before]), outlines([after])) == found
+        assert Matcher(1.0).match(outlines([before]), outlines([after])) == found
 
 
 def test_several_synchronized_attractors_are_several_branches():

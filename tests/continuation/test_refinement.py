@@ -5,7 +5,7 @@ import pytest
 from burridge_knopoff import Chain, Model, MotionKind, law_of
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher
-from burridge_knopoff.continuation.refinement import refined
+from burridge_knopoff.continuation.refinement import refine_searches
 from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.running.processes import shared_out
 from tests.motion.stand_in import ASYMMETRIC, at
@@ -28,7 +28,7 @@ def values():
 
         ends = [Scripted(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
         with shared_out(1) as each:
-            (inner,) = refined(ends, Refine(resolution), Matcher(1.0), each)
+            (inner,) = refine_searches(ends, Refine(resolution), Matcher(1.0), each)
         return [search.model.a for search in inner], asked
 
     return put_in

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.attractors.labels import UNDETERMINED, label, moved
+from burridge_knopoff.attractors.labels import UNDETERMINED, advance, label
 from burridge_knopoff.attractors.lifetime import EXPOSURE, lifetimes
 from burridge_knopoff.attractors.search import find_attractors
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
@@ -38,7 +38,7 @@ BATCHES = 20
 
 
 @dataclass(frozen=True)
-class Ending:
+class AsymptoticState:
     """The motion that a state ends in.
 
     kind : undetermined where the state reaches nothing that is known to last, and then nothing else is known
@@ -52,14 +52,14 @@ class Ending:
     section_period: int = 0
 
 
-def endings(
+def asymptotic_states(
     model: Model,
     initial: Sequence[InitialState],
     settings: SearchSettings = SEARCH,
     motion: MotionSettings = MOTION,
     *,
     start: str = "moving",
-) -> list[Ending]:
+) -> list[AsymptoticState]:
     """Return what each initial state ends on.
 
     settings : of the search for attractors, which is made from these states alone; motion : how kinds of motion are
@@ -71,7 +71,7 @@ def endings(
     settings = replace(settings, samples=0)
     attractors, labels = find_attractors(model, settings, motion, starts=initial, start=start)
     lives = lifetimes(model, attractors, settings)
-    lasting = [index for index, life in enumerate(lives) if life is None or life.lasts(settings.lifetime)]
+    lasting = [index for index, life in enumerate(lives) if life is None or life.is_longer_than(settings.lifetime)]
     starts = [model.begin(state, start) for state in initial]
     # Out of chaos that ends, and out of what the search has given up, states are followed for as long as labels are.
     late = [k for k, index in enumerate(labels.tolist()) if index not in lasting]
@@ -80,20 +80,20 @@ def endings(
     # A mirror image has the same ⟨J⟩ and the same kind.
     labels = np.array([*(min(index, one.partner) for index, one in enumerate(attractors)), UNDETERMINED])[labels]
     reached = {*labels.tolist()} - {UNDETERMINED}
-    known = {index: _ending(model, attractors, index, settings) for index in reached}
+    known = {index: _state_on(model, attractors, index, settings) for index in reached}
     lost = np.flatnonzero(labels == UNDETERMINED).tolist()
-    ends = moved(model, [starts[k] for k in lost], settings.label_limit) if lost else []
+    ends = advance(model, [starts[k] for k in lost], settings.label_limit) if lost else []
     slow = {k: _slow_synchrony(model, end, settings, motion) for k, end in zip(lost, ends, strict=True)}
     return [slow[k] if k in slow else known[index] for k, index in enumerate(labels.tolist())]
 
 
-def _ending(model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings) -> Ending:
+def _state_on(model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings) -> AsymptoticState:
     """Return the motion on an attractor, ⟨J⟩ of chaos from the time for which it is followed to see whether it lasts.
 
     The search's own window leaves ⟨J⟩ of chaos an error of half a percent and more: too much where that decides.
     """
     motion = attractors[index].motion
-    found = _ending_of(motion)
+    found = _from_motion(motion)
     if motion.kind not in CHAOS:
         return found
     window = EXPOSURE * settings.lifetime
@@ -117,24 +117,24 @@ def _ending(model: Model, attractors: Sequence[Attractor], index: int, settings:
     return replace(found, mean_distance=trajectory.mean_distance, mean_distance_error=trajectory.mean_distance_error)
 
 
-def _slow_synchrony(model: Model, end: ChainState, settings: SearchSettings, motion: MotionSettings) -> Ending:
+def _slow_synchrony(model: Model, end: ChainState, settings: SearchSettings, motion: MotionSettings) -> AsymptoticState:
     """Return the ending in synchrony of a state that is on its way there; undetermined if it is not.
 
     Next to the loss of synchrony a state neither reaches it nor leaves it in the time it has: whether it attracts is
     told by the multipliers of the synchronized orbit.
     """
     if not model.chain.is_mirror_symmetric or pair_distances(end).max() > settings.resolution * model.scale:
-        return Ending()
+        return AsymptoticState()
     symmetric = symmetrized(end)
     try:
         orbit = limit_cycle(model, symmetric)
     except OrbitError:
-        return Ending()
+        return AsymptoticState()
     if orbit.symmetry != Symmetry.SYNCHRONIZED or multipliers(orbit).unstable:
-        return Ending()
+        return AsymptoticState()
     found = Classifier(model, settings.transient, settings.window, motion).measure(symmetric)
-    return _ending_of(found) if found is not None else Ending()
+    return _from_motion(found) if found is not None else AsymptoticState()
 
 
-def _ending_of(motion: SteadyMotion) -> Ending:
-    return Ending(motion.kind, motion.mean_distance, motion.mean_distance_error, motion.section_period)
+def _from_motion(motion: SteadyMotion) -> AsymptoticState:
+    return AsymptoticState(motion.kind, motion.mean_distance, motion.mean_distance_error, motion.section_period)

@@ -61,7 +61,7 @@ def close_returns(found: Returns, tolerance: float) -> int:
     return max(CLOSE_RETURNS, 2 * orbit_length(found.returns, 10.0 * tolerance, LONGEST_ORBIT))
 
 
-def perturbed(start: ChainState, size: float, generator: np.random.Generator) -> ChainState:
+def perturb(start: ChainState, size: float, generator: np.random.Generator) -> ChainState:
     """Return a state with all positions and all velocities of slipping blocks changed by at most `size` at random.
 
     A block does not turn round by it.

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from burridge_knopoff.attractors.attractor import Attractor, perturbed
-from burridge_knopoff.attractors.labels import label, moved
+from burridge_knopoff.attractors.attractor import Attractor, perturb
+from burridge_knopoff.attractors.labels import advance, label
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.slow_set import SLOW_TIME
 from burridge_knopoff.model.model import Model
@@ -29,16 +29,16 @@ SMALLEST_RADIUS = 1e-5
 TINY_RADIUS = 1e-8
 
 #: Time by which a trajectory that comes near a set has come to a closed orbit in its midst, if it does at all.
-PATIENT_TIME = 10_000.0
+LONGEST_PATIENCE = 10_000.0
 
 # Part of the way to another attractor that a radius takes at most: less than half, so that no state is near both.
-SHARED = 0.4
+SEPARATION_SHARE = 0.4
 
 #: Perturbed trajectories that are followed at once: one that does not come back saves following the others.
-PUSH_GROUP = 4
+PERTURBATION_GROUP = 4
 
 
-def midst(attractors: Sequence[Attractor], index: int, tolerance: float) -> list[int]:
+def embedded_orbits(attractors: Sequence[Attractor], index: int, tolerance: float) -> list[int]:
     """Return the closed orbits that lie in the midst of an attractor, which is chaos or a slow set.
 
     tolerance : distance within which the returns of closed orbits repeat
@@ -71,25 +71,25 @@ class Capture:
     recovery: float = 10.0
     shrinking: float = 2.0
 
-    def recovered(self, motion: SteadyMotion, radius: float) -> float:
+    def recovery_distance(self, motion: SteadyMotion, radius: float) -> float:
         """Return how close to an attractor a trajectory has to come after a perturbation by that radius."""
         return max(SPACINGS * motion.spacing, radius / self.recovery)
 
-    def bounded(self, model: Model, attractors: Sequence[Attractor], tolerance: float) -> list[Attractor]:
+    def bound_radii(self, model: Model, attractors: Sequence[Attractor], tolerance: float) -> list[Attractor]:
         """Return the attractors with all radii bounded by the distances between them.
 
         Chaos with a closed orbit in its midst keeps its radius but asks for patience, as a trajectory that comes near
         it may be on its way to the orbit.
         """
-        within = [midst(attractors, index, tolerance) for index in range(len(attractors))]
+        within = [embedded_orbits(attractors, index, tolerance) for index in range(len(attractors))]
         result = []
         for index, attractor in enumerate(attractors):
             radius = min(attractor.radius, max(self.largest * model.scale, attractor.motion.spacing))
             for k, other in enumerate(attractors):
                 if k != index and k not in within[index] and index not in within[k]:
-                    apart = least_distance(attractor.motion.returns, other.motion.returns, radius / SHARED)
-                    radius = min(radius, SHARED * apart)
-            result.append(replace(attractor, radius=radius, patience=PATIENT_TIME if within[index] else 0.0))
+                    apart = least_distance(attractor.motion.returns, other.motion.returns, radius / SEPARATION_SHARE)
+                    radius = min(radius, SEPARATION_SHARE * apart)
+            result.append(replace(attractor, radius=radius, patience=LONGEST_PATIENCE if within[index] else 0.0))
         return result
 
     def radius(
@@ -107,20 +107,20 @@ class Capture:
         """
         motion = attractors[index].motion
         radius = attractors[index].radius
-        inner = midst(attractors, index, tolerance)
+        inner = embedded_orbits(attractors, index, tolerance)
         generator = np.random.default_rng(settings.seed)
         while radius >= least * model.scale:
-            close = self.recovered(motion, radius)
+            close = self.recovery_distance(motion, radius)
             narrow = [replace(item, radius=min(item.radius, close)) for item in attractors]
             if inner:
                 narrow[index] = replace(narrow[index], patience=0.0)
             left = settings.perturbations
             while left > 0:
-                chosen = generator.integers(len(motion.returns), size=min(PUSH_GROUP, left))
-                starts = [perturbed(state_of(motion.returns[k]), radius, generator) for k in chosen]
+                chosen = generator.integers(len(motion.returns), size=min(PERTURBATION_GROUP, left))
+                starts = [perturb(state_of(motion.returns[k]), radius, generator) for k in chosen]
                 if close >= radius:
                     # The gaps hide whether they come closer: wherever they are later, they have to be recognised.
-                    starts = moved(model, starts, SLOW_TIME * settings.transient)
+                    starts = advance(model, starts, SLOW_TIME * settings.transient)
                 reached, _ = label(model, narrow, starts, settings.time_limit)
                 if not np.isin(reached, [index, *inner]).all():
                     break

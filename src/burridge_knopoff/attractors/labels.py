@@ -31,10 +31,10 @@ def label(
     """
     if not len(attractors) or not len(starts):
         return np.full(len(starts), UNDETERMINED, dtype=np.intc), np.zeros(len(starts))
-    return label_together(model, attractors, *arrays(starts), time_limit)[:2]
+    return label_arrays(model, attractors, *stack_states(starts), time_limit)[:2]
 
 
-def arrays(starts: Sequence[ChainState]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def stack_states(starts: Sequence[ChainState]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return positions, velocities and which blocks stick of states, each of shape (n, blocks)."""
     position, velocity, stuck = (
         np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity", "stuck")
@@ -42,7 +42,7 @@ def arrays(starts: Sequence[ChainState]) -> tuple[np.ndarray, np.ndarray, np.nda
     return position, velocity, stuck
 
 
-def label_together(
+def label_arrays(
     model: Model,
     attractors: Sequence[Attractor],
     position: np.ndarray,
@@ -84,7 +84,7 @@ def label_together(
     return labels, times, last
 
 
-def moved(model: Model, starts: Sequence[ChainState], time: float) -> list[ChainState]:
+def advance(model: Model, starts: Sequence[ChainState], time: float) -> list[ChainState]:
     """Return where states are after a time."""
     position, velocity = (np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity"))
     stuck = np.array([start.stuck for start in starts], dtype=bool)
@@ -148,7 +148,7 @@ def label_states(
 
     def work(first: int, last: int) -> None:
         part = slice(first, last)
-        labels[part], times[part], _ = label_together(
+        labels[part], times[part], _ = label_arrays(
             model, attractors, offset[part], velocity[part], stuck[part], time_limit
         )
 

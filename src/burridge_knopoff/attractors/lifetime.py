@@ -17,9 +17,9 @@ from functools import partial
 import numpy as np
 import scipy.special
 
-from burridge_knopoff.attractors.attractor import Attractor, perturbed
-from burridge_knopoff.attractors.capture_radius import PATIENT_TIME
-from burridge_knopoff.attractors.labels import UNDETERMINED, arrays, label, label_together, moved
+from burridge_knopoff.attractors.attractor import Attractor, perturb
+from burridge_knopoff.attractors.capture_radius import LONGEST_PATIENCE
+from burridge_knopoff.attractors.labels import UNDETERMINED, advance, label, label_arrays, stack_states
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.sampling import CONFIDENCE
@@ -29,28 +29,28 @@ from burridge_knopoff.motion.set_distance import SPACINGS
 
 #: Trajectories of chaos that are followed, and the time for all of them together, in units of the lifetime beyond which
 #: it counts as lasting. If none of them leaves it, its lifetime is beyond that with 98 % certainty.
-FOLLOWED = 32
+TRAJECTORIES = 32
 EXPOSURE = 4.0
 
 # Where these leave open whether the lifetime is below or beyond, or where fewer than FEWEST_ENDS leave, so many times
 # more are followed: stopping at few ends would favour samples in which, by chance, many left. Looking twice leaves 96
 # %.
-UNDECIDED = 10
+EXTENSION = 10
 FEWEST_ENDS = 30
 
 # Times, in those that another attractor takes to capture a trajectory, after which those who left at once and are not
 # yet captured no longer make chaos seem to last.
-LATENESS = 2.0
+CAPTURE_MARGIN = 2.0
 
 # Distance, for v = 0.1, from which they come, and how few that are left by then make the captures before count instead.
-FAR = 0.2
+ESCAPE_DISTANCE = 0.2
 FEWEST_LEFT = 8
 
 # Perturbation, in resolutions, that parts trajectories which begin at different times of one and the same; and the
 # share of the radius that it has at most. The radius of thin chaos rests on few perturbations: of as large ones a third
 # may leave.
-PARTING_PUSH = 0.1
-PARTING_SHARE = 0.01
+ENSEMBLE_PERTURBATION = 0.1
+ENSEMBLE_RADIUS_SHARE = 0.01
 
 
 @dataclass(frozen=True)
@@ -75,7 +75,7 @@ class Lifetime:
         low = self.time / float(scipy.special.gammainccinv(self.ends + 1, tail))
         return low, self.time / float(scipy.special.gammaincinv(self.ends, tail)) if self.ends else math.inf
 
-    def lasts(self, least: float) -> bool:
+    def is_longer_than(self, least: float) -> bool:
         """Tell whether the mean lifetime is certain to be above that."""
         return self.interval[0] > least
 
@@ -103,16 +103,16 @@ def _lifetime(
 ) -> Lifetime:
     """Follow trajectories from states on a chaotic set, and more where few left it or where it is open if it lasts."""
     generator = np.random.default_rng(settings.seed)
-    follow = partial(_followed, model, attractors, index, settings, exposure, generator)
-    first = follow(FOLLOWED)
+    follow = partial(_follow, model, attractors, index, settings, exposure, generator)
+    first = follow(TRAJECTORIES)
     low, high = first.interval
     if (not first.ends or first.ends >= FEWEST_ENDS) and not low <= settings.lifetime < high:
         return first
-    more = follow(FOLLOWED * UNDECIDED)
+    more = follow(TRAJECTORIES * EXTENSION)
     return Lifetime(first.ends + more.ends, first.time + more.time)
 
 
-def _followed(
+def _follow(
     model: Model,
     attractors: Sequence[Attractor],
     index: int,
@@ -123,16 +123,16 @@ def _followed(
 ) -> Lifetime:
     """Follow so many trajectories from a chaotic set and see which are still on it, or on its mirror image."""
     attractor = attractors[index]
-    time = exposure * settings.lifetime / FOLLOWED
+    time = exposure * settings.lifetime / TRAJECTORIES
     returns = attractor.motion.returns
-    size = min(PARTING_PUSH * settings.resolution * model.scale, PARTING_SHARE * attractor.radius)
+    size = min(ENSEMBLE_PERTURBATION * settings.resolution * model.scale, ENSEMBLE_RADIUS_SHARE * attractor.radius)
     chosen = generator.integers(len(returns), size=count)
-    starts = [perturbed(state_of(returns[k]), size, generator) for k in chosen]
+    starts = [perturb(state_of(returns[k]), size, generator) for k in chosen]
     others = [other for k, other in enumerate(attractors) if k not in (index, attractor.partner)]
     # Chaos is left at a constant rate, and so is, once the first have had the time for it, the state of not being
     # certain of another attractor: what comes before that time says nothing.
     late = max((_capture_time(model, other) for other in others), default=0.0)
-    gone, when, last = label_together(model, others, *arrays(starts), late + time)
+    gone, when, last = label_arrays(model, others, *stack_states(starts), late + time)
     known = gone != UNDETERMINED
 
     # The radius of thin chaos may be smaller than the distances within it: by that it does not know its own states.
@@ -141,13 +141,13 @@ def _followed(
         for k, one in enumerate(attractors)
     ]
 
-    def nowhere(chosen: np.ndarray, there: list[ChainState]) -> np.ndarray:
+    def find_undetermined(chosen: np.ndarray, there: list[ChainState]) -> np.ndarray:
         """Return which of the chosen trajectories come from where they are to nothing that is known."""
         return chosen[label(model, sets, there, settings.time_limit)[0] == UNDETERMINED]
 
     # A trajectory that reaches no known set has left at an unknown time; some had left already by then.
-    lost = nowhere(np.flatnonzero(~known), [state_of(state) for state in last[~known]])
-    early = nowhere(lost, moved(model, [starts[k] for k in lost], late) if len(lost) else [])
+    lost = find_undetermined(np.flatnonzero(~known), [state_of(state) for state in last[~known]])
+    early = find_undetermined(lost, advance(model, [starts[k] for k in lost], late) if len(lost) else [])
     if count - np.count_nonzero(known & (when <= late)) - len(early) < FEWEST_LEFT:
         # Chaos that is as short as that: captures are all that is seen.
         spent = np.where(known, when, late + time)
@@ -168,8 +168,8 @@ def _capture_time(model: Model, attractor: Attractor) -> float:
     have to. Of a torus, of chaos, and of an orbit to which a torus is locked this exponent tells nothing.
     """
     motion, rate = attractor.motion, -attractor.motion.exponent[1]
-    if rate < 1.0 / PATIENT_TIME:
-        return PATIENT_TIME
-    nearer = math.log(FAR * model.scale / attractor.radius) / rate
+    if rate < 1.0 / LONGEST_PATIENCE:
+        return LONGEST_PATIENCE
+    nearer = math.log(ESCAPE_DISTANCE * model.scale / attractor.radius) / rate
     close = attractor.close_returns / motion.stop_rate[motion.block - 1]
-    return LATENESS * (max(nearer, 0.0) + close)
+    return CAPTURE_MARGIN * (max(nearer, 0.0) + close)

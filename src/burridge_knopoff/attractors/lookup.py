@@ -34,7 +34,7 @@ def largest_basin_fraction(attractors: xarray.Dataset, branch: int) -> tuple[flo
     return float(fraction[largest]), float(attractors["a"].values[there][largest])
 
 
-def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
+def reached_values(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return (known, values) of a variable on the attractors that an initial state reaches.
 
     attractors : with a, under one convention

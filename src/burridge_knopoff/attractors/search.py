@@ -10,12 +10,12 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from burridge_knopoff.attractors.attractor import CLOSE_RETURNS, Attractor, close_returns, perturbed
-from burridge_knopoff.attractors.capture_radius import SMALLEST_RADIUS, TINY_RADIUS, Capture, midst
+from burridge_knopoff.attractors.attractor import CLOSE_RETURNS, Attractor, close_returns, perturb
+from burridge_knopoff.attractors.capture_radius import SMALLEST_RADIUS, TINY_RADIUS, Capture, embedded_orbits
 from burridge_knopoff.attractors.convergence import Convergence
 from burridge_knopoff.attractors.labels import UNDETERMINED, label
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
-from burridge_knopoff.attractors.slow_set import SLOW_TIME, spread
+from burridge_knopoff.attractors.slow_set import SLOW_TIME, sample_slow_set
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.sampling import sampled_states
@@ -75,19 +75,19 @@ def find_attractors(
 
 
 # Time, in transients, of the first search, in which most trajectories have decided.
-QUICK = 0.3
+QUICK_SEARCH = 0.3
 
 # Trajectories that are followed without finding anything new before the others are left to what is known.
-FRUITLESS = 3
+ATTEMPTS = 3
 
 # Rounds of labelling, each after something new was found, before the labels are left as they are.
 ROUNDS = 20
 
 # States, the first of each sample, whose labels are verified; the cost grows with them.
-VERIFIED = 60
+VERIFIED_STATES = 60
 
 # States ascribed to a chaotic attractor that are followed until they have converged.
-CHECKED = 6
+VERIFIED_CHAOTIC_STATES = 6
 
 # Perturbations, in resolutions, off an unstable motion on which a trajectory has converged, and off an unstable
 # symmetry, of a state that is carried to the next a.
@@ -119,21 +119,21 @@ class Candidate:
 class Search(Convergence):
     """Finds the attractors of one model.
 
-    attractors : those found so far; vain : states that were followed without finding one
-    in_vain : trajectories that may be followed so, over all rounds
+    attractors : those found so far; unsuccessful_states : states that were followed without finding one
+    max_unsuccessful : trajectories that may be followed so, over all rounds
     capture : how the capture radius of each is found
     """
 
     attractors: list[Attractor] = field(default_factory=list)
-    vain: tuple[bytes, ...] = ()
-    in_vain: int = 6
+    unsuccessful_states: tuple[bytes, ...] = ()
+    max_unsuccessful: int = 6
     capture: Capture = field(default_factory=Capture)
 
     def seeds(self, attractors: Iterable[Attractor]) -> list[ChainState]:
         """Return a state on each of some attractors of a neighbouring a, pushed a little off any symmetry."""
         generator = np.random.default_rng(self.settings.seed)
         size = SYMMETRY_PUSH * self.resolution
-        return [perturbed(attractor.motion.state(), size, generator) for attractor in attractors]
+        return [perturb(attractor.motion.state(), size, generator) for attractor in attractors]
 
     def starts(self, given: Sequence[InitialState], start: str) -> list[ChainState]:
         """Return where the drawn states, and after them those that are given, begin."""
@@ -153,7 +153,7 @@ class Search(Convergence):
         undecided = list(range(len(starts)))
         for _ in range(ROUNDS):
             found, _ = label(
-                self.model, self.attractors, [starts[k] for k in undecided], QUICK * self.settings.transient
+                self.model, self.attractors, [starts[k] for k in undecided], QUICK_SEARCH * self.settings.transient
             )
             undecided = [k for k, index in zip(undecided, found, strict=True) if index == UNDETERMINED]
             if not self.discover([starts[k] for k in undecided]):
@@ -163,32 +163,34 @@ class Search(Convergence):
             more = self.discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()])
             if more:
                 continue
-            if not check or (self._verified(starts, labels) and self._single(starts, labels)):
+            if not check or (self._verify_labels(starts, labels) and self._verify_chaotic_labels(starts, labels)):
                 break
         return labels
 
-    def _single(self, starts: Sequence[ChainState], labels: np.ndarray) -> bool:
+    def _verify_chaotic_labels(self, starts: Sequence[ChainState], labels: np.ndarray) -> bool:
         """Follow a few states that are ascribed to chaotic attractors; tell whether they lead to nothing new."""
         known = len(self.attractors)
         for index, attractor in enumerate(self.attractors):
             if attractor.slow or attractor.motion.kind not in CHAOS:
                 continue
-            for k in np.flatnonzero(labels == index)[:CHECKED]:
+            for k in np.flatnonzero(labels == index)[:VERIFIED_CHAOTIC_STATES]:
                 self.reach(starts[k])
         return len(self.attractors) == known
 
-    def _verified(self, starts: Sequence[ChainState], labels: np.ndarray) -> bool:
+    def _verify_labels(self, starts: Sequence[ChainState], labels: np.ndarray) -> bool:
         """Follow the first states until they are much closer to their attractors; tell whether all get there.
 
         If one settles elsewhere, an attractor that was not known lies within the radius: it is known then, and the
         radius of the one that the state was ascribed to is halved.
         """
-        starts, labels = starts[:VERIFIED], labels[:VERIFIED]
-        narrow = [replace(item, radius=self.capture.recovered(item.motion, item.radius)) for item in self.attractors]
+        starts, labels = starts[:VERIFIED_STATES], labels[:VERIFIED_STATES]
+        narrow = [
+            replace(item, radius=self.capture.recovery_distance(item.motion, item.radius)) for item in self.attractors
+        ]
         closer, _ = label(self.model, narrow, starts, self.settings.time_limit)
         doubtful = np.flatnonzero((closer != labels) & (labels != UNDETERMINED)).tolist()
         verified = True
-        for k in doubtful[:FRUITLESS]:
+        for k in doubtful[:ATTEMPTS]:
             if self.reach(starts[k]) not in (UNDETERMINED, labels[k]):
                 verified = False
                 attractor = self.attractors[labels[k]]
@@ -199,14 +201,16 @@ class Search(Convergence):
     def discover(self, starts: Sequence[ChainState]) -> bool:
         """Follow undecided states until one leads to an attractor that was not known, or a few lead to nothing new."""
         known = len(self.attractors)
-        fresh = {state: start for start in starts if (state := start.vector().tobytes()) not in self.vain}
-        for state, start in list(fresh.items())[:FRUITLESS]:
-            if len(self.vain) >= self.in_vain:
+        fresh = {
+            state: start for start in starts if (state := start.vector().tobytes()) not in self.unsuccessful_states
+        }
+        for state, start in list(fresh.items())[:ATTEMPTS]:
+            if len(self.unsuccessful_states) >= self.max_unsuccessful:
                 break
             self.reach(start)
             if len(self.attractors) > known:
                 return True
-            self.vain += (state,)
+            self.unsuccessful_states += (state,)
         return False
 
     def known_labels(self, starts: Sequence[ChainState]) -> np.ndarray:
@@ -234,16 +238,16 @@ class Search(Convergence):
             if self._add(found):
                 return index
             # An unstable motion that the trajectory has come very close to: perturbed off it, the trajectory goes on.
-            start = perturbed(found.state(), UNSTABLE_PUSH * resolution, generator)
+            start = perturb(found.state(), UNSTABLE_PUSH * resolution, generator)
         return UNDETERMINED
 
     def _add(self, found: Returns) -> bool:
         """Add a converged motion, and its mirror image if that is another one; tell whether they are attractors."""
-        measured = self.measured(found)
+        measured = self.measure(found)
         if measured is None:
             return False
         for candidate in self.candidates(*measured):
-            accepted = self.accepted(candidate)
+            accepted = self.accept(candidate)
             if accepted is not None:
                 self.attractors = accepted
                 return True
@@ -261,7 +265,7 @@ class Search(Convergence):
         if synchronized:
             new = [Attractor(motion, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=enough)]
         else:
-            new = self._images(motion, self.is_symmetric(found) or self.changes_sides(found), enough)
+            new = self._images(motion, self.is_symmetric(found) or self.is_eventually_symmetric(found), enough)
         yield Candidate(new, SMALLEST_RADIUS, self.capture)
         # Synchrony that does not attract is unstable. Other motion may lie on a set that attracts as a whole; but where
         # that is chaos, it is a motion of its own, in whose midst an orbit may attract from nearby alone, and so it is
@@ -269,9 +273,9 @@ class Search(Convergence):
         if mirror and motion.mean_distance < NEXT_TO_SYNCHRONY * self.resolution:
             return
         quick = motion.exponent[1] * SLOW_TIME * self.settings.transient < -1.0
-        if not (closed and (quick or self.lies_in_chaos(found))):
-            whole = spread(self.model, motion, self.settings)
-            images = self._images(whole, self.touches(whole), CLOSE_RETURNS)
+        if not (closed and (quick or self.is_embedded_in_chaos(found))):
+            whole = sample_slow_set(self.model, motion, self.settings)
+            images = self._images(whole, self.is_close_to_mirror_image(whole), CLOSE_RETURNS)
             yield Candidate([replace(item, slow=True) for item in images], SMALLEST_RADIUS, self.capture)
         if closed:
             yield Candidate(new, TINY_RADIUS, self.capture)
@@ -308,12 +312,12 @@ class Search(Convergence):
         found = Attractor(exact, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=CLOSE_RETURNS)
         yield Candidate([found], SMALLEST_RADIUS, replace(self.capture, recovery=SLOW_RECOVERY))
 
-    def accepted(self, candidate: Candidate) -> list[Attractor] | None:
+    def accept(self, candidate: Candidate) -> list[Attractor] | None:
         """Return all attractors with a candidate among them; None if it does not attract from its least radius."""
         index = len(self.attractors)
-        known = candidate.capture.bounded(self.model, [*self.attractors, *candidate.attractors], self.tolerance)
+        known = candidate.capture.bound_radii(self.model, [*self.attractors, *candidate.attractors], self.tolerance)
         # A slow set that contains a known attractor is not another one.
-        if candidate.attractors[0].slow and midst(known, index, self.tolerance):
+        if candidate.attractors[0].slow and embedded_orbits(known, index, self.tolerance):
             return None
         radius = candidate.capture.radius(self.model, known, index, candidate.least, self.tolerance, self.settings)
         if radius == 0.0:

@@ -81,4 +81,4 @@ class SearchSettings:
 SEARCH = SearchSettings()
 
 #: Its fields that bear upon what given states end on; the others say which states are drawn.
-OF_GIVEN_STATES = ("seed", "transient", "window", "time_limit", "resolution", "perturbations", "lifetime")
+GIVEN_STATE_KEYS = ("seed", "transient", "window", "time_limit", "resolution", "perturbations", "lifetime")

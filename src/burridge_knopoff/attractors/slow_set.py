@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from burridge_knopoff.attractors.attractor import perturbed
+from burridge_knopoff.attractors.attractor import perturb
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.observables import SteadyMotion
@@ -17,7 +17,7 @@ SLOW_PUSH = 5.0
 SLOW_TIME = 0.3
 
 
-def spread(model: Model, motion: SteadyMotion, settings: SearchSettings) -> SteadyMotion:
+def sample_slow_set(model: Model, motion: SteadyMotion, settings: SearchSettings) -> SteadyMotion:
     """Return a motion with the returns of trajectories that were perturbed off it as its own.
 
     Near a resonance the motion on a torus is locked, or nearly so, to orbits that hardly attract anything. The torus
@@ -28,7 +28,7 @@ def spread(model: Model, motion: SteadyMotion, settings: SearchSettings) -> Stea
     blocks = motion.block, motion.mirror_block
     for k in generator.integers(len(motion.returns), size=SLOW_STATES):
         size = SLOW_PUSH * settings.resolution * model.scale
-        start = perturbed(state_of(motion.returns[k]), size, generator)
+        start = perturb(state_of(motion.returns[k]), size, generator)
         found = visit(model, start, SLOW_TIME * settings.transient, settings.window)
         # A state that has left for another motion shows nothing of this one.
         if (

@@ -36,17 +36,17 @@ class Row:
 
 @dataclass(frozen=True, eq=False)
 class Slot:
-    """A row with its model; lasting : mean lifetime that chaos has to exceed, or its kind is transient chaos."""
+    """A row with its model; least_lifetime : mean lifetime that chaos has to exceed, or its kind is transient chaos."""
 
     row: Row
     model: Model
-    lasting: float
+    least_lifetime: float
 
     @property
     def kind(self) -> int:
         """The kind of motion, of chaos also by its lifetime."""
         life = self.row.lifetime
-        lasts = life is None or life.lasts(self.lasting)
+        lasts = life is None or life.is_longer_than(self.least_lifetime)
         return self.row.attractor.motion.kind if lasts else MotionKind.TRANSIENT_CHAOS
 
     @property
@@ -126,11 +126,11 @@ def slot_coordinates(blocks: int) -> dict[str, Any]:
 
 
 def slot_values(
-    models: Sequence[Model], rows: Sequence[Sequence[Row]], lasting: float, dimension: str
+    models: Sequence[Model], rows: Sequence[Sequence[Row]], least_lifetime: float, dimension: str
 ) -> dict[str, np.ndarray]:
     """Return the variables of all slots.
 
-    models, rows : at each a; lasting : mean lifetime that chaos has to exceed, or its kind is transient chaos
+    models, rows : at each a; least_lifetime : mean lifetime that chaos has to exceed, or its kind is transient chaos
     dimension : name of that of a
     """
     shape = {
@@ -140,7 +140,7 @@ def slot_values(
         "exponent": EXPONENTS,
     }
     slots = {
-        (k, slot): Slot(row, model, lasting)
+        (k, slot): Slot(row, model, least_lifetime)
         for k, (model, here) in enumerate(zip(models, rows, strict=True))
         for slot, row in enumerate(here)
     }

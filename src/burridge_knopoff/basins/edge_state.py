@@ -19,10 +19,10 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.attractors.labels import UNDETERMINED, label, label_together
+from burridge_knopoff.attractors.labels import UNDETERMINED, label, label_arrays
 from burridge_knopoff.attractors.search import find_attractors
 from burridge_knopoff.attractors.settings import SEARCH
-from burridge_knopoff.basins.edge_tracking import FAR, EdgeTrack, LabelError
+from burridge_knopoff.basins.edge_tracking import SEPARATED_DISTANCE, EdgeTrack, LabelError
 from burridge_knopoff.basins.settings import EDGES, EdgeSettings
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
@@ -44,15 +44,15 @@ FIRST_PART = 8
 
 # A trajectory on the boundary lies on an orbit if its last return is as close to it as the two sides are to each other,
 # within this factor, or this many times closer than its first return.
-CLOSER = 10.0
+CLOSE_FACTOR = 10.0
 
 #: Displacements from an edge state, for v = 0.1 in the chain's own units: far beyond the distance of the two sides,
 #: and small enough for the motion to be linear.
-DISPLACED = (1e-6, 1e-4)
+DISPLACEMENTS = (1e-6, 1e-4)
 
 # Capture radii, as parts of those of the attractors, one after another until no label is contradicted by a later one.
 # Within a radius there may be states from which the motion leaves, as random perturbations do not show.
-RADII = (1.0, 0.1, 0.01, 1e-3)
+RADIUS_SHARES = (1.0, 0.1, 0.01, 1e-3)
 
 # Parts of the trajectory whose scatter gives the errors of the exponents.
 BATCHES = 20
@@ -72,7 +72,7 @@ class EdgeState:
     lifetime, lifetime_error : mean time for which trajectories stay near the set, the reciprocal of the escape rate,
         with its standard error: of a saddle orbit the period over the logarithm of the multiplier, of a saddle torus
         the reciprocal of the largest exponent, of a chaotic saddle that of displaced states
-    reached : number of displaced states that reach each attractor, a row for each side, shape (2, attractors)
+    reached_count : number of displaced states that reach each attractor, a row for each side, shape (2, attractors)
     returns : states of the settled trajectory at stops of one block, shape (n, 2 blocks)
     duration : time for which the boundary was followed
 
@@ -96,7 +96,7 @@ class EdgeState:
     mean_distance: float
     lifetime: float
     lifetime_error: float
-    reached: np.ndarray
+    reached_count: np.ndarray
     returns: np.ndarray
     duration: float
 
@@ -113,7 +113,7 @@ class EdgeState:
     @property
     def sides(self) -> tuple[set[int], set[int]]:
         """Indices of the attractors that displaced states reach on either side."""
-        first, second = ({int(k) for k in np.flatnonzero(row)} for row in self.reached)
+        first, second = ({int(k) for k in np.flatnonzero(row)} for row in self.reached_count)
         return first, second
 
     @property
@@ -168,12 +168,12 @@ def edge_state(
     attractors = each_instance_of(attractors, Attractor, "attractors")
     instance_of(settings, EdgeSettings, "settings")
     time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
-    for share in RADII:
-        narrowed = [_narrowed(attractor, share) for attractor in attractors]
+    for share in RADIUS_SHARES:
+        narrowed = [_narrow(attractor, share) for attractor in attractors]
         track = EdgeTrack(
             model,
             narrowed,
-            _own(model, narrowed, state_a, state_b, time_limit),
+            _first_side(model, narrowed, state_a, state_b, time_limit),
             state_a,
             state_b,
             time_limit,
@@ -181,19 +181,19 @@ def edge_state(
         )
         try:
             orbit = _settle(track, settings.duration)
-            return _measured(track, orbit, settings)
+            return _measure(track, orbit, settings)
         except LabelError:
             continue
     raise OrbitError(f"a = {model.a:.12g}: the boundary is lost: states near it change their labels")
 
 
-def _narrowed(attractor: Attractor, share: float) -> Attractor:
+def _narrow(attractor: Attractor, share: float) -> Attractor:
     """Return an attractor with a smaller capture radius, if its returns are close enough together."""
     least = min(attractor.radius, SPACINGS * attractor.motion.spacing)
     return replace(attractor, radius=max(share * attractor.radius, least))
 
 
-def _own(
+def _first_side(
     model: Model, attractors: Sequence[Attractor], state_a: ChainState, state_b: ChainState, time_limit: float
 ) -> np.ndarray:
     """Return which attractors are on the side of the first state, shape (attractors,)."""
@@ -213,7 +213,7 @@ def _settle(track: EdgeTrack, duration: float) -> PeriodicOrbit | None:
     """Follow the boundary until it leads to a saddle orbit; None if it does not within that time."""
 
     def accepted(orbit: PeriodicOrbit, first: float, last: float, _: float) -> bool:
-        return last <= max(CLOSER * FAR, first / CLOSER) and multipliers(orbit).unstable == 1
+        return last <= max(CLOSE_FACTOR * SEPARATED_DISTANCE, first / CLOSE_FACTOR) and multipliers(orbit).unstable == 1
 
     part = duration / FIRST_PART
     while part <= duration:
@@ -229,15 +229,15 @@ def _second_half(track: EdgeTrack) -> int:
     return track.piece_at(0.5 * track.duration)
 
 
-def _measured(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettings) -> EdgeState:
+def _measure(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettings) -> EdgeState:
     """Return what a trajectory has settled on, from its second half."""
     since, model = _second_half(track), track.model
     _, values = track.events(since)
     stops = values[values[:, 1] == 0]
     found = returns_of(model, track.duration, stops[:, 0], lambda chosen: stops[chosen, 2:])
     exponent, error = _exponents(track.growth(since))
-    displaced = _Displaced(track, since, settings)
-    reached = displaced.reached()
+    displaced = _DisplacedStates(track, since, settings)
+    reached = displaced.counts()
     kind = _kind(orbit, exponent, error, reached)
     if orbit is not None:
         lifetime = orbit.period / math.log(abs(multipliers(orbit).whole[0])), 0.0
@@ -291,22 +291,22 @@ def _symmetry(model: Model, found: Returns | None) -> Symmetry:
     return Symmetry.SYMMETRIC if is_near(found.mirror_returns, found.returns, reach) else Symmetry.ASYMMETRIC
 
 
-class _Displaced:
+class _DisplacedStates:
     """States displaced from a set on a boundary to either side, and the attractors that they reach."""
 
     def __init__(self, track: EdgeTrack, since: int, settings: EdgeSettings) -> None:
         self.track, self.since, self.samples = track, since, settings.samples
         self.generator = np.random.default_rng(settings.seed)
 
-    def reached(self) -> np.ndarray:
+    def counts(self) -> np.ndarray:
         """Return how many of them reach each attractor, shape (2, attractors).
 
         A uniform logarithm of the displacements shows all of the unstable manifold.
         """
-        low, high = np.log(DISPLACED)
+        low, high = np.log(DISPLACEMENTS)
         counts = []
         for side in (-1.0, 1.0):
-            labels, _ = self._labelled(side * np.exp(self.generator.uniform(low, high, self.samples)))
+            labels, _ = self._label(side * np.exp(self.generator.uniform(low, high, self.samples)))
             counts.append(np.bincount(labels[labels != UNDETERMINED], minlength=len(self.track.attractors)))
         return np.array(counts)
 
@@ -317,14 +317,14 @@ class _Displaced:
         """
         left = []
         for side in (-1.0, 1.0):
-            labels, times = self._labelled(side * DISPLACED[1] * self.generator.random(self.samples))
+            labels, times = self._label(side * DISPLACEMENTS[1] * self.generator.random(self.samples))
             late = np.sort(times[labels != UNDETERMINED])
             late = late[len(late) // 2 :]
             left.append(late[1:] - late[:1])
         tail = np.concatenate(left)
         return float(tail.mean()), float(tail.mean()) / math.sqrt(len(tail))
 
-    def _labelled(self, amount: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        states = self.track.displaced(self.since, amount, self.generator)
-        labels, times, _ = label_together(self.track.model, self.track.attractors, *states, self.track.time_limit)
+    def _label(self, amount: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        states = self.track.displace(self.since, amount, self.generator)
+        labels, times, _ = label_arrays(self.track.model, self.track.attractors, *states, self.track.time_limit)
         return labels, times

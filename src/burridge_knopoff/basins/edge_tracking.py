@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.attractors.labels import UNDETERMINED, label_together
+from burridge_knopoff.attractors.labels import UNDETERMINED, label_arrays
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, mean_distance
 from burridge_knopoff.running.runner import Runner
@@ -32,10 +32,10 @@ PARTS = 16
 
 #: Distances of the two states, for v = 0.1 in the chain's own units: down to which the segment between them is
 #: bisected, a thousand times rounding, and from which on it is bisected again.
-CLOSE, FAR = 1e-12, 1e-7
+BISECTED_DISTANCE, SEPARATED_DISTANCE = 1e-12, 1e-7
 
 # Distance from which on the direction between the two states is known to three digits and more.
-DIRECTED = 1e-9
+DIRECTION_DISTANCE = 1e-9
 
 # Time, in the chain's own unit, after which the distance is measured again. The fastest motion seen to leave a
 # boundary takes twice as long for a factor e.
@@ -43,10 +43,10 @@ STEP = 5.0
 
 # Where both states have come to the same side, as in strips of a fractal boundary thinner than rounding, the line
 # through them is searched at these distances from them, in units of their distance.
-BESIDE = np.geomspace(0.1, 100.0, 32)
+LINE_DISTANCES = np.geomspace(0.1, 100.0, 32)
 
 # Growth of a perturbation in a step below which it has vanished, as that of the velocity of a block that stops.
-VANISHED = 1e-12
+LEAST_GROWTH = 1e-12
 
 
 class LabelError(Exception):
@@ -84,7 +84,7 @@ class EdgeTrack:
 
     model: Model
     attractors: Sequence[Attractor]
-    own: np.ndarray
+    on_first_side: np.ndarray
     first: ChainState
     second: ChainState
     time_limit: float
@@ -140,7 +140,7 @@ class EdgeTrack:
         """Return the rates of growth of perturbations in each step from a piece on, shape (steps, vectors)."""
         return np.concatenate([piece.growth for piece in self.pieces[since:]]) / self.step
 
-    def displaced(
+    def displace(
         self, since: int, amount: np.ndarray, generator: np.random.Generator
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return states displaced from the boundary, as positions, velocities and stuck blocks, shape (n, blocks).
@@ -165,7 +165,7 @@ class EdgeTrack:
     def _bisect(self) -> None:
         """Bring the two states together; what lies between them and reaches nothing is passed over."""
         shares = np.arange(PARTS + 1) / PARTS
-        while (distance := self._distance(self.first, self.second)) > CLOSE:
+        while (distance := self._distance(self.first, self.second)) > BISECTED_DISTANCE:
             states, ours = self._sides(shares)
             if len(ours) < 2 or not ours[0] or ours[-1]:
                 self._find_change()
@@ -190,16 +190,16 @@ class EdgeTrack:
         velocity = (1.0 - share) * first.velocity + share * second.velocity
         # Beyond the two states a slip may not be reversed.
         velocity[velocity * np.sign(first.velocity + second.velocity) < 0.0] = 0.0
-        labels, _, _ = label_together(self.model, self.attractors, position, velocity, stuck, self.time_limit)
+        labels, _, _ = label_arrays(self.model, self.attractors, position, velocity, stuck, self.time_limit)
         known = np.flatnonzero(labels != UNDETERMINED)
-        return [ChainState(position[k], velocity[k], stuck[k]) for k in known], self.own[labels[known]]
+        return [ChainState(position[k], velocity[k], stuck[k]) for k in known], self.on_first_side[labels[known]]
 
     def _find_change(self) -> None:
         """Replace two states on the same side by the nearest two on the line through them that are not.
 
         Raises LabelError if there are none.
         """
-        states, ours = self._sides(np.concatenate([-BESIDE[::-1], [0.0, 1.0], 1.0 + BESIDE]))
+        states, ours = self._sides(np.concatenate([-LINE_DISTANCES[::-1], [0.0, 1.0], 1.0 + LINE_DISTANCES]))
         changes = np.flatnonzero(np.diff(ours))
         if not len(changes):
             raise LabelError
@@ -216,7 +216,7 @@ class EdgeTrack:
         other.begin(self.second, 0.0)
         growth, place, direction = [], [], []
         distance, blocks = 0.0, self.model.blocks
-        while distance < FAR:
+        while distance < SEPARATED_DISTANCE:
             clock += step
             if clock > self.time_limit:
                 # They reach the same attractor after all.
@@ -226,10 +226,10 @@ class EdgeTrack:
             self._basis, triangle = np.linalg.qr(runner.perturbations)
             runner.carry(self._basis)
             size = np.abs(np.diag(triangle))
-            growth.append(np.where(size > VANISHED, np.log(np.maximum(size, VANISHED)), -np.inf))
+            growth.append(np.where(size > LEAST_GROWTH, np.log(np.maximum(size, LEAST_GROWTH)), -np.inf))
             self.first, self.second = runner.state(), other.state()
             distance = self._distance(self.first, self.second)
-            if DIRECTED < distance < FAR and (self.first.stuck == self.second.stuck).all():
+            if DIRECTION_DISTANCE < distance < SEPARATED_DISTANCE and (self.first.stuck == self.second.stuck).all():
                 place.append(self.first.vector())
                 direction.append((self.second.vector() - self.first.vector()) / distance)
         events = runner.log.events

@@ -12,15 +12,15 @@ from functools import partial
 
 import numpy as np
 
-from burridge_knopoff.attractors.capture_radius import midst
-from burridge_knopoff.attractors.labels import UNDETERMINED, label_together
+from burridge_knopoff.attractors.capture_radius import embedded_orbits
+from burridge_knopoff.attractors.labels import UNDETERMINED, label_arrays
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.model.sampling import half_width, most_states, sample_states, seed_at
 from burridge_knopoff.running.processes import Shared
 
 #: States that one process labels at a time; no label depends on it.
-PART = 250
+LABELLED_AT_ONCE = 250
 
 # The patience with an attractor in whose midst orbits lie: this many times that of the last of a sample that reaches
 # one.
@@ -38,7 +38,7 @@ def fraction_labels(searches: Sequence[Search], start: str, each: Shared) -> tup
     The states are not those from which attractors are looked for; but where one reaches none that is known, it is
     looked for from there as well, and all are labelled once more.
     """
-    spared = each("patience spared", partial(_spared, start=start), searches)
+    spared = each("patience spared", partial(_reduce_patience, start=start), searches)
     searches = [one or search for one, search in zip(spared, searches, strict=True)]
     labels = [np.zeros(0, dtype=np.intc) for _ in searches]
     waiting = list(range(len(searches)))
@@ -48,22 +48,27 @@ def fraction_labels(searches: Sequence[Search], start: str, each: Shared) -> tup
         wide = [k for k in waiting if most_states(searches[k].settings.fraction_width)]
         while wide:
             those, firsts = [searches[k] for k in wide], [len(labels[k]) for k in wide]
-            found = each("labelled for basin fractions", partial(_labels, start=start), those, firsts)
+            found = each("labelled for basin fractions", partial(_label_next, start=start), those, firsts)
             for k, part in zip(wide, found, strict=True):
                 labels[k] = np.concatenate([labels[k], part])
-            enough = {k: enough_states(labels[k], searches[k].settings.fraction_width) for k in wide}
+            enough = {k: required_states(labels[k], searches[k].settings.fraction_width) for k in wide}
             labels = [one[: enough.get(k, len(one))] for k, one in enumerate(labels)]
             wide = [k for k in wide if enough[k] is None]
         lost = [k for k in waiting if (labels[k] == UNDETERMINED).any()]
         those = [searches[k] for k in lost]
-        looked = each("looked for from the others", partial(_more, start=start), those, [labels[k] for k in lost])
+        looked = each(
+            "looked for from the others",
+            partial(_search_from_undetermined, start=start),
+            those,
+            [labels[k] for k in lost],
+        )
         for k, (search, _) in zip(lost, looked, strict=True):
             searches[k] = search
         waiting = [k for k, (_, more) in zip(lost, looked, strict=True) if more]
     return searches, labels
 
 
-def enough_states(labels: np.ndarray, width: float) -> int | None:
+def required_states(labels: np.ndarray, width: float) -> int | None:
     """Return after how many states the interval of each fraction is as narrow as asked; None if more are needed.
 
     labels : of the states in their order, shape (n,), −1 where it is undetermined, which is a fraction as well
@@ -79,7 +84,7 @@ def enough_states(labels: np.ndarray, width: float) -> int | None:
     return most
 
 
-def _drawn(search: Search, start: str, first: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _draw_states(search: Search, start: str, first: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return some of the drawn states: x_i, U_i' and which blocks stick, each of shape (states, blocks)."""
     settings, model = search.settings, search.model
     seed = seed_at(settings.seed, model.a)
@@ -89,7 +94,7 @@ def _drawn(search: Search, start: str, first: int, count: int) -> tuple[np.ndarr
     return position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
 
 
-def _spared(search: Search, start: str) -> Search | None:
+def _reduce_patience(search: Search, start: str) -> Search | None:
     """Lessen the patience with attractors whose inner orbits a sample of states reaches much earlier.
 
     None where no attractor has inner orbits.
@@ -97,11 +102,11 @@ def _spared(search: Search, start: str) -> Search | None:
     Where chaos is a transient before the orbits, the last of the sample come late and nothing is spared.
     """
     attractors = search.attractors
-    inner = [midst(attractors, index, search.tolerance) for index in range(len(attractors))]
-    sample = _drawn(search, start, 0, min(search.settings.samples, most_states(search.settings.fraction_width)))
+    inner = [embedded_orbits(attractors, index, search.tolerance) for index in range(len(attractors))]
+    sample = _draw_states(search, start, 0, min(search.settings.samples, most_states(search.settings.fraction_width)))
     if not any(inner) or not len(sample[0]):
         return None
-    labels, times, _ = label_together(search.model, attractors, *sample, search.settings.time_limit)
+    labels, times, _ = label_arrays(search.model, attractors, *sample, search.settings.time_limit)
     for index, orbits in enumerate(inner):
         came = times[np.isin(labels, orbits)]
         if len(came):
@@ -110,17 +115,19 @@ def _spared(search: Search, start: str) -> Search | None:
     return search
 
 
-def _labels(search: Search, first: int, start: str) -> np.ndarray:
+def _label_next(search: Search, first: int, start: str) -> np.ndarray:
     """Label a part of the drawn states, from that number on."""
-    part = _drawn(search, start, first, min(PART, most_states(search.settings.fraction_width) - first))
+    part = _draw_states(
+        search, start, first, min(LABELLED_AT_ONCE, most_states(search.settings.fraction_width) - first)
+    )
     if not search.attractors:
         return np.full(len(part[0]), UNDETERMINED, dtype=np.intc)
-    labels, _, _ = label_together(search.model, search.attractors, *part, search.settings.label_limit)
+    labels, _, _ = label_arrays(search.model, search.attractors, *part, search.settings.label_limit)
     return labels
 
 
-def _more(search: Search, labels: np.ndarray, start: str) -> tuple[Search, bool]:
+def _search_from_undetermined(search: Search, labels: np.ndarray, start: str) -> tuple[Search, bool]:
     """Look for attractors from states that reach none; return the search, and whether it knows more than before."""
-    drawn = _drawn(search, start, 0, len(labels))
+    drawn = _draw_states(search, start, 0, len(labels))
     lost = np.flatnonzero(labels == UNDETERMINED)
     return search, search.discover([ChainState(*(values[k] for values in drawn)) for k in lost.tolist()])

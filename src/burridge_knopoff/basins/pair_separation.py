@@ -30,7 +30,7 @@ BATCHES = 20
 # they are from the boundary that was seen, and the less often another one lies hidden between their points. Of 0.5,
 # 0.7, 0.85, and a quarter for those that differ with equal shares for the rest, 0.85 gave the smallest errors for
 # Cantor strips.
-_KEPT_OF_OLDER = 0.85
+_AGE_FACTOR = 0.85
 
 #: Takes points of the plane, shape (n, 2), and returns their labels, shape (n,): below 0 where undetermined.
 Label = Callable[[np.ndarray], np.ndarray]
@@ -42,13 +42,13 @@ class PairCounts:
 
     different, known : weights of the pairs with two different labels, and of all with two labels, shape (batches,
         separations)
-    different_count, known_count : their numbers, shape (separations,)
+    different_count, labelled_count : their numbers, shape (separations,)
     """
 
-    different: np.ndarray
-    known: np.ndarray
+    different_weight: np.ndarray
+    labelled_weight: np.ndarray
     different_count: np.ndarray
-    known_count: np.ndarray
+    labelled_count: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,36 +70,36 @@ class _Pairs:
     never: int
 
     @property
-    def known(self) -> np.ndarray:
+    def is_labelled(self) -> np.ndarray:
         """Which have two labels."""
         return np.logical_and(*(self.labels >= 0))
 
     @property
-    def different(self) -> np.ndarray:
+    def is_different(self) -> np.ndarray:
         """Pairs with differing labels."""
-        return self.known & (self.labels[0] != self.labels[1])
+        return self.is_labelled & (self.labels[0] != self.labels[1])
 
     def weights(self, chosen: np.ndarray) -> np.ndarray:
         """Return the weights of the chosen pairs in each batch."""
         return np.bincount(self.batch, self.weight * chosen, BATCHES)
 
-    def kept(self, size: int, generator: np.random.Generator) -> _Pairs:
+    def select(self, size: int, generator: np.random.Generator) -> _Pairs:
         """Return about `size` pairs of each batch, the more of an age the younger it is, with the weight of all."""
-        age = np.where(self.different, 0, np.minimum(self.age + 1, self.never))
+        age = np.where(self.is_different, 0, np.minimum(self.age + 1, self.never))
         indices, weights = [], []
         for batch in range(BATCHES):
             ages = np.unique(age[self.batch == batch])
-            rooms = size * _KEPT_OF_OLDER**ages / np.sum(_KEPT_OF_OLDER**ages)
+            rooms = size * _AGE_FACTOR**ages / np.sum(_AGE_FACTOR**ages)
             for one, room in zip(ages, rooms, strict=True):
                 members = np.flatnonzero((self.batch == batch) & (age == one))
-                chosen, weight = _chosen(self.weight[members], max(1, int(room)), generator)
+                chosen, weight = _select(self.weight[members], max(1, int(room)), generator)
                 indices.append(members[chosen])
                 weights.append(weight)
         index = np.concatenate(indices)
         here = (self.start[index], self.direction[index], self.labels[:, index], self.batch[index])
         return _Pairs(*here, np.concatenate(weights), age[index], self.never)
 
-    def divided(self, separation: float, label: Label) -> _Pairs:
+    def divide(self, separation: float, label: Label) -> _Pairs:
         """Return all parts of the pairs, `separation` apart."""
         points = [self.start + part * separation * self.direction for part in range(PARTS)]
         between = label(np.concatenate(points[1:])).reshape(PARTS - 1, -1)
@@ -151,15 +151,15 @@ def follow_pairs(
     pairs = _Pairs(start, direction, ends, batch, np.ones(len(batch)), np.full(len(batch), never), never)
     found = []
     for separation in (*separations[1:], 0.0):
-        known, different = pairs.known, pairs.different
+        known, different = pairs.is_labelled, pairs.is_different
         found.append((pairs.weights(different), pairs.weights(known), different.sum(), known.sum()))
         if separation and len(batch):
-            pairs = pairs.kept(size, generator).divided(separation * width, labels_of)
+            pairs = pairs.select(size, generator).divide(separation * width, labels_of)
     weights, all_weights, counts, all_counts = (np.array(part) for part in zip(*found, strict=True))
     return PairCounts(weights.T, all_weights.T, counts, all_counts)
 
 
-def _chosen(weight: np.ndarray, count: int, generator: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+def _select(weight: np.ndarray, count: int, generator: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
     """Return which of some weights are chosen, and their new weights: of each, the mean of these is the old weight.
 
     All, unless there are more than `count`; then equally spaced steps through their sum choose.

@@ -66,10 +66,10 @@ def uncertainty_exponent(pairs: PairCounts) -> Exponent:
     y, without = (np.log(np.where(values > 0.0, values, np.nan)) for values in (share, shares))
     local, locals_ = (np.diff(values, axis=1) / np.diff(x) for values in (y, without))
     nothing = np.nan, np.nan
-    found = _with_error(share, shares), _with_error(local, locals_)
+    found = _jackknife(share, shares), _jackknife(local, locals_)
     # Without gaps: a separation at which by chance many pairs differ tells nothing among others.
     # If all of them are in one batch, nothing is known without it, and no error.
-    enough = (pairs.different_count >= _FEWEST_PAIRS) & (np.count_nonzero(pairs.different, axis=0) > 1)
+    enough = (pairs.different_count >= _FEWEST_PAIRS) & (np.count_nonzero(pairs.different_weight, axis=0) > 1)
     enough = enough[FITTED_FROM:]
     count = len(enough) if enough.all() else int(np.argmin(enough))
     if count < _FEWEST_SEPARATIONS:
@@ -78,8 +78,8 @@ def uncertainty_exponent(pairs: PairCounts) -> Exponent:
     line, lines = (_fit(x[fitted], values[:, fitted], 1) for values in (y, without))
     parabola, parabolas = (_fit(x[fitted], values[:, fitted], 2) for values in (y, without))
     span = 2.0 * (x[fitted][-1] - x[fitted][0])
-    (alpha,), (alpha_error,) = _with_error(line, lines)
-    (change,), (change_error,) = _with_error(span * parabola, span * parabolas)
+    (alpha,), (alpha_error,) = _jackknife(line, lines)
+    (change,), (change_error,) = _jackknife(span * parabola, span * parabolas)
     if abs(change) > max(_CHANGE, _STANDARD_ERRORS * change_error):
         return Exponent(ExponentKind.VARYING, *found, nothing, (change, change_error))
     return Exponent(ExponentKind.SINGLE, *found, (alpha, alpha_error), (change, change_error))
@@ -87,7 +87,7 @@ def uncertainty_exponent(pairs: PairCounts) -> Exponent:
 
 def _share(pairs: PairCounts, batches: np.ndarray) -> np.ndarray:
     """Return f from some batches of pairs, shape (n, BATCHES), as (n, separations); NaN where no pair is known."""
-    different, known = (weights[batches].sum(axis=1) for weights in (pairs.different, pairs.known))
+    different, known = (weights[batches].sum(axis=1) for weights in (pairs.different_weight, pairs.labelled_weight))
     return np.divide(different, known, out=np.full(known.shape, np.nan), where=known > 0.0)
 
 
@@ -96,7 +96,7 @@ def _fit(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
     return np.polyfit(x, y.T, degree)[0][:, None]
 
 
-def _with_error(value: np.ndarray, without: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _jackknife(value: np.ndarray, without: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return the only row of a value, and its error from the rows without one batch each; NaN with a NaN among them."""
     error = np.sqrt(len(without) - 1.0) * without.std(axis=0)
     # LAPACK's last bits depend on where in memory its arguments lie.

@@ -27,7 +27,7 @@ from burridge_knopoff.attractors.table import Row
 from burridge_knopoff.basins.fractions import fraction_labels
 from burridge_knopoff.continuation.branches import REMEMBERED, branches
 from burridge_knopoff.continuation.matching import Matcher, outlines
-from burridge_knopoff.continuation.refinement import refined
+from burridge_knopoff.continuation.refinement import refine_searches
 from burridge_knopoff.continuation.settings import REFINE, Refine
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
@@ -89,8 +89,8 @@ def continue_attractors(
     matcher = Matcher(models[0].scale, refine.longest_period)
     with shared_out(processes, folder) as each:
         searches = [Search(model, settings, motion) for model in models]
-        searches = each("searched from states", partial(_searched, starts=starts, start=start), searches)
-        searches = _hand_on(searches, each, matcher, [True] * len(searches))
+        searches = each("searched from states", partial(_search, starts=starts, start=start), searches)
+        searches = _seed_neighbours(searches, each, matcher, [True] * len(searches))
         samples = [np.zeros(0, dtype=np.intc) for _ in searches]
         gained = [True] * len(searches)
         while any(gained):
@@ -100,19 +100,19 @@ def continue_attractors(
             for k, search, labels in zip(those, *found, strict=True):
                 searches[k], samples[k] = search, labels
             # What only these states have led to is looked for at the neighbours as well.
-            handed = _hand_on(
+            handed = _seed_neighbours(
                 searches,
                 each,
                 matcher,
                 [len(one.attractors) > count for one, count in zip(searches, known, strict=True)],
             )
-            gained = [_knows_more(one, before) for one, before in zip(handed, searches, strict=True)]
+            gained = [_has_more_attractors(one, before) for one, before in zip(handed, searches, strict=True)]
             searches = [one if more else before for one, more, before in zip(handed, gained, searches, strict=True)]
         # The sets of attractors are complete now: what follows only reads them.
-        upward = each("carried upward", _carried, searches[:-1], searches[1:])
-        downward = each("carried downward", _carried, searches[1:], searches[:-1])
+        upward = each("carried upward", _attractors_at_neighbour, searches[:-1], searches[1:])
+        downward = each("carried downward", _attractors_at_neighbour, searches[1:], searches[:-1])
         whole = [searches[0]]
-        for inner, search in zip(refined(searches, refine, matcher, each), searches[1:], strict=True):
+        for inner, search in zip(refine_searches(searches, refine, matcher, each), searches[1:], strict=True):
             whole += [*inner, search]
         lived = each("lifetimes", _lifetimes, whole)
     attractors = [search.attractors for search in whole]
@@ -133,17 +133,17 @@ def continue_attractors(
     )
 
 
-def _searched(search: Search, starts: Sequence[InitialState], start: str) -> Search:
+def _search(search: Search, starts: Sequence[InitialState], start: str) -> Search:
     """Find attractors from initial states."""
     search.labels(search.starts(starts, start))
     return search
 
 
-def _knows_more(search: Search, before: Search) -> bool:
+def _has_more_attractors(search: Search, before: Search) -> bool:
     return len(search.attractors) > len(before.attractors)
 
 
-def _hand_on(searches: Sequence[Search], each: Shared, matcher: Matcher, new: Sequence[bool]) -> list[Search]:
+def _seed_neighbours(searches: Sequence[Search], each: Shared, matcher: Matcher, new: Sequence[bool]) -> list[Search]:
     """Follow attractors, down and up, to the neighbouring a at which they are not known, or not as they are.
 
     new : which of the searches may know what its neighbours have not been asked for
@@ -151,38 +151,38 @@ def _hand_on(searches: Sequence[Search], each: Shared, matcher: Matcher, new: Se
     searches, new = list(searches), list(new)
     for way in ("down", "up"):
         before, new = searches[::-1], new[::-1]
-        givers = [k for k in range(len(before) - 1) if new[k]]
+        sources = [k for k in range(len(before) - 1) if new[k]]
         handed = each(
             f"handed {way}",
-            partial(_handed_on, matcher=matcher),
-            [before[k] for k in givers],
-            [before[k + 1] for k in givers],
+            partial(_seeded_search, matcher=matcher),
+            [before[k] for k in sources],
+            [before[k + 1] for k in sources],
         )
-        given = dict(zip(givers, handed, strict=True))
+        given = dict(zip(sources, handed, strict=True))
         searches = [before[0]]
-        for k, (giver, taker) in enumerate(pairwise(before)):
-            # What has just come to the giver goes on as well.
-            more = _knows_more(searches[-1], giver)
-            searches.append((_handed_on(searches[-1], taker, matcher) if more else given.get(k)) or taker)
-        new = [known or _knows_more(*pair) for known, *pair in zip(new, searches, before, strict=True)]
+        for k, (source, target) in enumerate(pairwise(before)):
+            # What has just come to the source goes on as well.
+            more = _has_more_attractors(searches[-1], source)
+            searches.append((_seeded_search(searches[-1], target, matcher) if more else given.get(k)) or target)
+        new = [known or _has_more_attractors(*pair) for known, *pair in zip(new, searches, before, strict=True)]
     return searches
 
 
-def _handed_on(giver: Search, taker: Search, matcher: Matcher) -> Search | None:
+def _seeded_search(source: Search, target: Search, matcher: Matcher) -> Search | None:
     """Return a search that has followed what a neighbour knows; None if that is nothing new."""
-    known, shown = (outlines(search.attractors) for search in (giver, taker))
-    lacking, _ = matcher.differing(known, shown)
+    known, shown = (outlines(search.attractors) for search in (source, target))
+    lacking, _ = matcher.unmatched(known, shown)
     if not lacking:
         return None
     # Whatever states have led to nothing: what attracts next to it is worth looking for.
-    taker = replace(taker, attractors=list(taker.attractors), vain=())
-    taker.labels(taker.seeds(item.attractor for item in lacking.values()), check=False)
-    return taker
+    target = replace(target, attractors=list(target.attractors), unsuccessful_states=())
+    target.labels(target.seeds(item.attractor for item in lacking.values()), check=False)
+    return target
 
 
-def _carried(giver: Search, taker: Search) -> np.ndarray:
+def _attractors_at_neighbour(source: Search, target: Search) -> np.ndarray:
     """Return the index of the attractor at a neighbouring a that each attractor leads to."""
-    return taker.known_labels(taker.seeds(giver.attractors))
+    return target.known_labels(target.seeds(source.attractors))
 
 
 def _lifetimes(search: Search) -> list[Lifetime | None]:

@@ -76,7 +76,7 @@ def entries(one: xarray.Dataset, changes: Sequence[BranchChange], followed: Foll
         lifetime = _lifetime(one, change)
         own = change.change, change.from_branch, change.to_branch, float(a[low]), float(a[high]), motion, lifetime
         found += [Entry(*own, bifurcation.kind, bifurcation) for bifurcation in ends] or [
-            Entry(*own, _unlocated(change, kind), None)
+            Entry(*own, _kind_without_orbit(change, kind), None)
         ]
     for place, segment in zip(followed.places, followed.segments, strict=True):
         n, own_kind = int(branch[place]), int(kind[place])
@@ -104,7 +104,7 @@ def _lifetime(one: xarray.Dataset, change: BranchChange) -> tuple[float, float]:
     return min((interval for interval in known if np.isfinite(interval[0])), default=(np.nan, np.nan))
 
 
-def _unlocated(change: BranchChange, kind: np.ndarray) -> BifurcationKind:
+def _kind_without_orbit(change: BranchChange, kind: np.ndarray) -> BifurcationKind:
     """Return the kind of a bifurcation without a closed orbit beside it: a crisis if chaos begins, ends or dies out."""
     sides = (change.low, change.before), (change.high, change.after)
     ends = [kind[k, slot] for k, slot in sides if slot >= 0]

@@ -81,7 +81,7 @@ def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[
             if ((grid > low) & (grid < high)).any():
                 yield end(low)
                 yield beginning(high)
-            elif _differ(refined, (low, slots[low][branch]), (high, slots[high][branch])):
+            elif _has_changed(refined, (low, slots[low][branch]), (high, slots[high][branch])):
                 yield BranchChange(low, high, slots[low][branch], slots[high][branch], branch, branch, Change.CHANGE)
         if there[-1] < len(slots) - 1:
             yield end(there[-1])
@@ -101,7 +101,7 @@ def slots_of_branches(refined: xarray.Dataset) -> list[dict[int, int]]:
     return rows
 
 
-def _differ(refined: xarray.Dataset, *places: tuple[int, int]) -> bool:
+def _has_changed(refined: xarray.Dataset, *places: tuple[int, int]) -> bool:
     """Tell whether the motions at two values of a and slots are no longer the same."""
     before, after = (_features(refined, *place) for place in places)
     return before != after

@@ -23,7 +23,7 @@ from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 REMEMBERED = 2.0
 
 
-class Seen(NamedTuple):
+class KnownBranch(NamedTuple):
     """Where a branch was seen last: the value of a, the attractor there, and its side."""
 
     a: float
@@ -54,7 +54,7 @@ def branches(
     for place, (value, here, now) in enumerate(zip(a, attractors, shown, strict=True)):
         branch, side = numbering.numbered(value, here, now, numbering.known(value, now, held, place in grid))
         if place in following:
-            same = matcher.unchanged(now, shown[following[place]])
+            same = matcher.match_unchanged(now, shown[following[place]])
             held = {new: int(branch[old]) for new, old in same.items()}
         found.append((branch, side))
     return [branch for branch, _ in found], [side for _, side in found]
@@ -66,7 +66,7 @@ class _Numbering:
 
     matcher: Matcher
     reach: float
-    seen: dict[int, Seen] = field(default_factory=dict)
+    seen: dict[int, KnownBranch] = field(default_factory=dict)
     following: int = 1
 
     def known(self, a: float, now: Mapping[int, Outline], held: Mapping[int, int], on_grid: bool) -> dict[int, int]:
@@ -77,7 +77,7 @@ class _Numbering:
         if on_grid:
             found = dict(held)
         else:
-            found = self.matcher.unchanged({number: self.seen[number].outline for number in held.values()}, now)
+            found = self.matcher.match_unchanged({number: self.seen[number].outline for number in held.values()}, now)
         near = {
             number: item
             for number, item in self.seen.items()
@@ -88,7 +88,7 @@ class _Numbering:
             old = {
                 n: item.outline for n, item in near.items() if (item.a == last) == recent and n not in found.values()
             }
-            found |= self.matcher.matched(old, {i: item for i, item in now.items() if i not in found})
+            found |= self.matcher.match(old, {i: item for i, item in now.items() if i not in found})
         return found
 
     def numbered(
@@ -106,11 +106,11 @@ class _Numbering:
             if partner != i:
                 side[i] = _side(now[i], self.seen.get(number))
                 branch[partner], side[partner] = number, -side[i]
-            self.seen[number] = Seen(a, now[i], int(side[i]))
+            self.seen[number] = KnownBranch(a, now[i], int(side[i]))
         return branch, side
 
 
-def _side(outline: Outline, before: Seen | None) -> int:
+def _side(outline: Outline, before: KnownBranch | None) -> int:
     """Return the side of the first of a mirror pair: that of the nearer one of the pair before it, if there is one."""
     if before is None or before.side == 0:
         return _orientation(outline.attractor)

@@ -34,12 +34,12 @@ APPROACH = 100_000.0
 class Edge:
     """An edge state at one a.
 
-    reached : number of displaced states that reach each attractor of the table at this a, shape (2, slots)
+    reached_count : number of displaced states that reach each attractor of the table at this a, shape (2, slots)
     branch, side : of the attractor that most of them reach on either side of the boundary, shape (2,)
     """
 
     state: EdgeState
-    reached: np.ndarray
+    reached_count: np.ndarray
     branch: np.ndarray
     side: np.ndarray
 
@@ -97,15 +97,15 @@ def edges_at(known: KnownAttractors, settings: EdgeSettings, time_limit: float) 
             print(f"{known.model.law.name}, branches {branch[first]} and {branch[second]}: {error}")
             continue
         reached = np.zeros((2, len(known.attractors)), dtype=int)
-        reached[:, lasting] = state.reached
-        largest = state.reached.argmax(axis=1)
+        reached[:, lasting] = state.reached_count
+        largest = state.reached_count.argmax(axis=1)
         edge = Edge(state, reached, branch[largest], side[largest])
         if not any(edge.is_same(other) for other in found):
             found.append(edge)
     return found
 
 
-def followed_edges(edges: Sequence[Edge], largest: float) -> tuple[list[list[BranchOrbit]], list[int]]:
+def continue_edges(edges: Sequence[Edge], largest: float) -> tuple[list[list[BranchOrbit]], list[int]]:
     """Follow the saddle orbits in a, up to the largest a, for as long as they have exactly one unstable direction.
 
     Return the segments, each from one end to the other, and the number of the segment of each edge state, −1 for none.
@@ -118,7 +118,7 @@ def followed_edges(edges: Sequence[Edge], largest: float) -> tuple[list[list[Bra
         if orbit is None:
             numbers.append(-1)
             continue
-        number = next((k for k, segment in enumerate(segments) if _holds(segment, orbit)), len(segments))
+        number = next((k for k, segment in enumerate(segments) if _is_on_segment(segment, orbit)), len(segments))
         if number == len(segments):
             try:
                 segments.append(_segment(orbit, largest))
@@ -141,7 +141,7 @@ def _segment(orbit: PeriodicOrbit, largest: float) -> list[BranchOrbit]:
     return segment
 
 
-def _holds(segment: Sequence[BranchOrbit], orbit: PeriodicOrbit) -> bool:
+def _is_on_segment(segment: Sequence[BranchOrbit], orbit: PeriodicOrbit) -> bool:
     """Return whether an orbit lies on a segment, between two neighbours of which one has the same stops."""
     for one, other in pairwise(segment):
         low, high = sorted((one.orbit.a, other.orbit.a))
@@ -179,14 +179,14 @@ def approach(model: Model, state: ChainState, edges: Sequence[Edge], branch: int
         except OrbitError:
             continue
         distance = min(
-            (float(tree.query(one, p=np.inf)[0].min()) for one in _stops(orbit, found.block)), default=np.inf
+            (float(tree.query(one, p=np.inf)[0].min()) for one in _states_at_stops(orbit, found.block)), default=np.inf
         )
         if not distance >= nearest.distance:
             nearest = Approach(number, distance, size)
     return nearest
 
 
-def _stops(orbit: PeriodicOrbit, block: int) -> Iterator[np.ndarray]:
+def _states_at_stops(orbit: PeriodicOrbit, block: int) -> Iterator[np.ndarray]:
     """Yield the states of an orbit at the stops of a block, and those of its mirror image, each if there are any."""
     values = flow(orbit.model, orbit.reference, orbit.period)[0].log.events.values()
     blocks = orbit.model.blocks

@@ -25,16 +25,16 @@ from burridge_knopoff.running.processes import shared_out
 
 #: How closed orbits are followed, and how many unstable ones beyond a bifurcation, for the figure.
 FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
-BEYOND = 4
+UNSTABLE_ORBITS = 4
 
 #: Smallest a down to which orbits are followed; at a = 0 no periodic orbit is isolated, and sticks vanish.
 LEAST_A = 0.0
 
 # Orbits in a round, for each process: enough that none waits long for the others, and few that turn out to be followed.
-ROUND = 4
+ORBITS_PER_PROCESS = 4
 
 # Time after which a motion has come nearer to an orbit that attracts slowly than to any other beside it.
-LATER = 100_000.0
+LONG_SETTLING = 100_000.0
 
 # Share of its period within which a closed orbit is the one that has been followed.
 SAME_PERIOD = 1e-3
@@ -56,7 +56,7 @@ class FollowedOrbits:
     places: list[Place] = field(default_factory=list)
     of_place: dict[Place, int] = field(default_factory=dict)
 
-    def hold(self, place: Place, orbit: PeriodicOrbit, since: int = 0) -> bool:
+    def assign(self, place: Place, orbit: PeriodicOrbit, since: int = 0) -> bool:
         """Tell whether an orbit has been followed, on a segment from that number on, and remember on which."""
         numbers = range(since, len(self.segments))
         number = next((n for n in numbers if self.segments[n].holds(orbit, SAME_PERIOD)), None)
@@ -71,7 +71,7 @@ class FollowedOrbits:
         self.places.append(place)
 
 
-def followed(
+def follow_orbits(
     model: Model,
     one: xarray.Dataset,
     changes: Sequence[BranchChange],
@@ -90,14 +90,14 @@ def followed(
     states = ([one[name].values[place] for place in places] for name in ("position", "velocity"))
     found = FollowedOrbits()
     with shared_out(processes, folder) as each:
-        orbits = each("closed orbits", _closed, models, *states)
+        orbits = each("closed orbits", _periodic_orbit, models, *states)
         closed = [pair for pair in zip(places, orbits, strict=True) if not _is_lost(model, pair[1])]
-        for following in _rounds(_in_turn(closed), found, ROUND * processes):
+        for following in _rounds(_sort(closed), found, ORBITS_PER_PROCESS * processes):
             before = len(found.segments)
             twice, upward = [orbit for _, orbit in following for _ in range(2)], [False, True] * len(following)
             halves = each("followed", partial(_half, largest=largest), twice, upward)
             for (place, orbit), *both in zip(following, halves[::2], halves[1::2], strict=True):
-                if not found.hold(place, orbit, before) and not any(_is_lost(model, item) for item in both):
+                if not found.assign(place, orbit, before) and not any(_is_lost(model, item) for item in both):
                     found.add(place, BranchSegment(*both))
     return found
 
@@ -125,7 +125,7 @@ def _rounds(left: Sequence[Placed], found: FollowedOrbits, count: int) -> Iterat
     """Yield those next in turn that have not been followed: what one shows of the others is seen after its round."""
     following: list[Placed] = []
     for place, orbit in left:
-        if not found.hold(place, orbit):
+        if not found.assign(place, orbit):
             following.append((place, orbit))
         if len(following) == count:
             yield following
@@ -134,7 +134,7 @@ def _rounds(left: Sequence[Placed], found: FollowedOrbits, count: int) -> Iterat
         yield following
 
 
-def _in_turn(orbits: Sequence[Placed]) -> list[Placed]:
+def _sort(orbits: Sequence[Placed]) -> list[Placed]:
     """Return orbits, given with a ascending, in the order in which they are followed.
 
     The longest first, by octaves of their period: they take the most time, and in one round each waits for all. Then
@@ -145,7 +145,7 @@ def _in_turn(orbits: Sequence[Placed]) -> list[Placed]:
     return [orbits[k] for k in turns]
 
 
-def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> PeriodicOrbit | OrbitError:
+def _periodic_orbit(model: Model, position: np.ndarray, velocity: np.ndarray) -> PeriodicOrbit | OrbitError:
     """Return the closed orbit on which a motion through a state U_i, U_i' has settled, or why there is none."""
     state = state_of(np.concatenate([position - model.sliding_offset, velocity]))
     try:
@@ -153,7 +153,7 @@ def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> Periodi
             found = limit_cycle(model, state)
         except OrbitError:
             # One that attracts slowly is told later from others beside it.
-            found = limit_cycle(model, state, LATER)
+            found = limit_cycle(model, state, LONG_SETTLING)
         if multipliers(found).unstable:
             raise OrbitError(f"a = {model.a:.12g}: the closed orbit beside the motion is unstable")
     except OrbitError as error:
@@ -167,7 +167,7 @@ def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> Half | OrbitErr
     try:
         # From one end of a wide grid to the other as well.
         step = max(FOLLOWING.largest_step, largest / orbit.model.chain.own_units.slope / FOLLOWING.most_orbits)
-        found = half(orbit, upward, (LEAST_A, largest), BEYOND, replace(FOLLOWING, largest_step=step))
+        found = half(orbit, upward, (LEAST_A, largest), UNSTABLE_ORBITS, replace(FOLLOWING, largest_step=step))
         # Found here, these go with the orbits to the process that asks for them.
         _ = (
             [(bifurcation.stick_time, bifurcation.mean_distance) for bifurcation in found.bifurcations],

@@ -19,7 +19,7 @@ from burridge_knopoff.running.processes import shared_out
 
 #: Steps in which one friction law is turned into another, and values of a at which each branch is followed so.
 STEPS = 16
-TRIES = 3
+FOLLOWED_VALUES = 3
 
 #: {branch: the states on it, at stops}, with the models that they belong to by position: at each of them one state.
 States = Mapping[int, Mapping[int, ChainState]]
@@ -48,7 +48,7 @@ def follow_law(first: Model, second: Model, start: ChainState, settings: SearchS
     return before
 
 
-def joined(
+def match_branches(
     firsts: Sequence[Model],
     seconds: Sequence[Model],
     first: States,
@@ -72,7 +72,7 @@ def joined(
     tried = []
     for row, number in enumerate(numbers[0]):
         places = sorted(first[number])
-        chosen = np.linspace(0, len(places) - 1, min(TRIES, len(places))).round().astype(int)
+        chosen = np.linspace(0, len(places) - 1, min(FOLLOWED_VALUES, len(places))).round().astype(int)
         tried += [(row, places[i], first[number][places[i]], len(places) / len(chosen)) for i in chosen]
     models = ([law[k] for _, k, *_ in tried] for law in (firsts, seconds))
     starts = [start for *_, start, _ in tried]
@@ -81,7 +81,7 @@ def joined(
         followed = each("turned into the other law", follow, *models, starts)
     arrivals = np.zeros((len(numbers[0]), len(numbers[1])))
     for (row, k, _, weight), found in zip(tried, followed, strict=True):
-        near = {n: _nearest(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
+        near = {n: _distance(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
         best = min(near, key=lambda n: near[n], default=None)
         if best is not None and near[best] <= SAME_SET * firsts[k].scale:
             arrivals[row, numbers[1].index(best)] += weight
@@ -89,7 +89,7 @@ def joined(
     return {0: 0} | {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}
 
 
-def _nearest(found: Returns, state: ChainState) -> float:
+def _distance(found: Returns, state: ChainState) -> float:
     """Return how far the state at a stop is from the nearest return of a motion, or of its mirror image."""
     tree = cKDTree(np.concatenate([found.returns, found.mirror_returns]))
     return float(tree.query(state.vector(), p=np.inf)[0])

@@ -43,12 +43,12 @@ class Outline:
     @cached_property
     def own(self) -> np.ndarray:
         """Some returns, spread evenly over all."""
-        return _thinned(self.attractor.motion.returns)
+        return _thin(self.attractor.motion.returns)
 
     @cached_property
     def mirrored(self) -> np.ndarray:
         """The same of the mirror image."""
-        return _thinned(self.attractor.motion.mirror_returns)
+        return _thin(self.attractor.motion.mirror_returns)
 
     def distances(self, other: Outline, bound: float = np.inf) -> np.ndarray:
         """Return how far the set, and its mirror image, is from another: both directed distances, the lesser first.
@@ -63,7 +63,7 @@ class Outline:
         return np.sort(found, axis=1)
 
 
-def _thinned(returns: np.ndarray) -> np.ndarray:
+def _thin(returns: np.ndarray) -> np.ndarray:
     chosen = np.linspace(0, len(returns) - 1, min(COMPARED_RETURNS, len(returns))) if len(returns) else np.zeros(0)
     return returns[chosen.astype(int)]
 
@@ -84,7 +84,7 @@ class Matcher:
     scale: float
     longest_period: float = REFINE.longest_period
 
-    def matched(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
+    def match(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
         """Return {key in `after`: key in `before`} of the sets that are one: each has one at most.
 
         Synchronized sets match each other, the nearest if there are several, and nothing else: what synchrony turns
@@ -110,16 +110,16 @@ class Matcher:
         pairs = zip(*linear_sum_assignment(cost), strict=True)
         return {second[row]: first[column] for row, column in pairs if cost[row, column] < 2.0 * largest}
 
-    def unchanged(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
+    def match_unchanged(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
         """Return {key in `after`: key in `before`} of the sets that are one, and of one kind, symmetry and period."""
-        found = self.matched(before, after)
+        found = self.match(before, after)
         return {new: old for new, old in found.items() if self._features(before[old]) == self._features(after[new])}
 
-    def differing(
+    def unmatched(
         self, before: Mapping[int, Outline], after: Mapping[int, Outline]
     ) -> tuple[dict[int, Outline], dict[int, Outline]]:
         """Return those of both sets without a counterpart of the same kind, symmetry and period in the other."""
-        same = self.unchanged(before, after)
+        same = self.match_unchanged(before, after)
         return (
             {k: item for k, item in before.items() if k not in same.values()},
             {k: item for k, item in after.items() if k not in same},

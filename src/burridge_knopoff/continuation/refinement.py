@@ -8,7 +8,7 @@ from functools import partial
 from itertools import pairwise
 
 from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.attractors.capture_radius import PUSH_GROUP
+from burridge_knopoff.attractors.capture_radius import PERTURBATION_GROUP
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher, Outline, outlines
 from burridge_knopoff.continuation.settings import Refine
@@ -33,7 +33,7 @@ class Gap:
     last: Model
     before: Sequence[Attractor]
     after: Sequence[Attractor]
-    still: Sequence[Attractor]
+    unchanged: Sequence[Attractor]
 
     def is_open(self, refine: Refine) -> bool:
         """Tell whether something differs between values that are not near enough."""
@@ -41,7 +41,7 @@ class Gap:
         return bool(self.before or self.after) and not near
 
 
-def refined(searches: Sequence[Search], refine: Refine, matcher: Matcher, each: Shared) -> list[list[Search]]:
+def refine_searches(searches: Sequence[Search], refine: Refine, matcher: Matcher, each: Shared) -> list[list[Search]]:
     """Return searches at values of a between each two neighbours of the grid, ascending; none where nothing changes.
 
     refine : how near to each other the values have to be at which something differs
@@ -52,26 +52,26 @@ def refined(searches: Sequence[Search], refine: Refine, matcher: Matcher, each: 
     perturbations of sliding grow at a rate ∝ a, so that nothing would settle there.
     """
     found: list[list[Search]] = [[] for _ in searches[1:]]
-    differ = each("compared with the next", partial(_between, matcher=matcher), searches[:-1], searches[1:])
+    differ = each("compared with the next", partial(_compare, matcher=matcher), searches[:-1], searches[1:])
     gaps = [(k, _gap(*pair, *differ[k])) for k, pair in enumerate(pairwise(searches))]
 
     def halves(k: int, gap: Gap, halved: tuple[Search, Differing, Differing]) -> list[tuple[int, Gap]]:
         middle, low, high = halved
         found[k].append(middle)
         here = middle.attractors
-        lower = _chosen(gap.before, low[0]), _chosen(here, low[1])
-        upper = _chosen(here, high[0]), _chosen(gap.after, high[1])
+        lower = _select(gap.before, low[0]), _select(here, low[1])
+        upper = _select(here, high[0]), _select(gap.after, high[1])
         both = (
             replace(gap, last=middle.model, before=lower[0], after=lower[1]),
             replace(gap, first=middle.model, before=upper[0], after=upper[1]),
         )
         return [(k, half) for half in both if half.is_open(refine)]
 
-    each.and_on("refined", partial(_halved, matcher=matcher), [one for one in gaps if one[1].is_open(refine)], halves)
+    each.and_on("refined", partial(_bisect, matcher=matcher), [one for one in gaps if one[1].is_open(refine)], halves)
     return [sorted(inner, key=lambda search: search.model.a) for inner in found]
 
 
-def _between(left: Search, right: Search, matcher: Matcher) -> Differing:
+def _compare(left: Search, right: Search, matcher: Matcher) -> Differing:
     """Return which attractors of two neighbours of the grid differ."""
     if not left.attractors or not right.attractors:
         return [], []
@@ -83,41 +83,41 @@ def _gap(left: Search, right: Search, before: Sequence[int], after: Sequence[int
     """Return the gap between two neighbours of the grid, from what differs."""
     # What is known of the neighbours has settled nearby: less work tells what it has become. No states are labelled, so
     # that few perturbations, but small ones, show whether it attracts; and an ensemble shows whether chaos lasts.
-    settings = replace(left.settings, perturbations=min(left.settings.perturbations, PUSH_GROUP))
+    settings = replace(left.settings, perturbations=min(left.settings.perturbations, PERTURBATION_GROUP))
     capture = replace(left.capture, shrinking=16.0, largest=left.capture.largest / 16.0)
     search = replace(
         left,
         settings=settings,
         capture=capture,
-        patience=left.patience // 4,
+        longest_extension=left.longest_extension // 4,
         trials=1,
         attractors=[],
-        vain=(),
+        unsuccessful_states=(),
     )
-    still = [k for k in outlines(left.attractors) if k not in before]
-    ends = _chosen(left.attractors, before), _chosen(right.attractors, after)
-    return Gap(search, left.model, right.model, *ends, _chosen(left.attractors, still))
+    unchanged = [k for k in outlines(left.attractors) if k not in before]
+    ends = _select(left.attractors, before), _select(right.attractors, after)
+    return Gap(search, left.model, right.model, *ends, _select(left.attractors, unchanged))
 
 
-def _halved(gap: Gap, matcher: Matcher) -> tuple[Search, Differing, Differing]:
+def _bisect(gap: Gap, matcher: Matcher) -> tuple[Search, Differing, Differing]:
     """Follow what may differ at a value in the middle; return what is there, and what differs below and above it."""
     middle = replace(gap.search, model=gap.first.at(0.5 * (gap.first.a + gap.last.a)), attractors=[])
     middle.labels(middle.seeds([*gap.before, *gap.after]), check=False)
     known, before, after = (
         {k: Outline(item) for k, item in enumerate(attractors)}
-        for attractors in ([*gap.still, *gap.before], gap.before, gap.after)
+        for attractors in ([*gap.unchanged, *gap.before], gap.before, gap.after)
     )
     # What a seed has left for may be an attractor that does not change.
     here = outlines(middle.attractors)
-    origin = matcher.matched(known, here)
-    here = {k: item for k, item in here.items() if origin.get(k, len(gap.still)) >= len(gap.still)}
+    origin = matcher.match(known, here)
+    here = {k: item for k, item in here.items() if origin.get(k, len(gap.unchanged)) >= len(gap.unchanged)}
     return middle, _differing(before, here, matcher), _differing(here, after, matcher)
 
 
 def _differing(before: Mapping[int, Outline], after: Mapping[int, Outline], matcher: Matcher) -> Differing:
-    one, other = matcher.differing(before, after)
+    one, other = matcher.unmatched(before, after)
     return list(one), list(other)
 
 
-def _chosen(attractors: Sequence[Attractor], numbers: Sequence[int]) -> list[Attractor]:
+def _select(attractors: Sequence[Attractor], numbers: Sequence[int]) -> list[Attractor]:
     return [attractors[k] for k in numbers]

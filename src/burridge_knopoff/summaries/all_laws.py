@@ -17,7 +17,7 @@ from burridge_knopoff.attractors.labels import UNDETERMINED
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import NAMES, name_branches
-from burridge_knopoff.continuation.law_homotopy import joined
+from burridge_knopoff.continuation.law_homotopy import match_branches
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
@@ -88,7 +88,7 @@ def branch_numbers(
     for part, model in zip(parts[1:], models[1:], strict=True):
         grid = part["a"].values.tolist()
         firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
-        renamed = joined(firsts, seconds, first, _states(part, model), settings, processes=processes)
+        renamed = match_branches(firsts, seconds, first, _states(part, model), settings, processes=processes)
         numbers.append(_with_others(renamed, part, numbers))
     return numbers
 
