@@ -55,7 +55,7 @@ class Attractor:
         return f"<Attractor, {self.symmetry.name.lower()}: {self.motion.words}>"
 
 
-def close_returns(found: Returns, tolerance: float) -> int:
+def required_returns(found: Returns, tolerance: float) -> int:
     """Return the number of successive returns that capture requires: at least two periods of a periodic orbit."""
     if not found.closed(tolerance):
         return CLOSE_RETURNS

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from burridge_knopoff.attractors.attractor import CLOSE_RETURNS, Attractor, close_returns, perturb
+from burridge_knopoff.attractors.attractor import CLOSE_RETURNS, Attractor, perturb, required_returns
 from burridge_knopoff.attractors.capture_radius import SMALLEST_RADIUS, TINY_RADIUS, Capture, embedded_orbits
 from burridge_knopoff.attractors.convergence import Convergence
 from burridge_knopoff.attractors.labels import UNDETERMINED, label
@@ -262,7 +262,7 @@ class Search(Convergence):
         if mirror and not synchronized and motion.mean_distance < self.resolution:
             yield from self._slow_synchrony()
             return
-        enough = close_returns(found, self.tolerance)
+        enough = required_returns(found, self.tolerance)
         if synchronized:
             new = [Attractor(motion, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=enough)]
         else:

@@ -67,7 +67,7 @@ def uncertainty_exponent(pairs: PairCounts) -> Exponent:
     local, locals_ = (np.diff(values, axis=1) / np.diff(x) for values in (y, without))
     nothing = np.nan, np.nan
     found = _jackknife(share, shares), _jackknife(local, locals_)
-    # Fitted separations are consecutive; one with many different pairs by chance, among others with few, does not count.
+    # Fitted separations are consecutive: one with many different pairs by chance, among others with few, is left out.
     # Different pairs in a single batch leave no error estimate.
     enough = (pairs.different_count >= _FEWEST_PAIRS) & (np.count_nonzero(pairs.different_weight, axis=0) > 1)
     enough = enough[FITTED_FROM:]
