@@ -1,4 +1,4 @@
-"""How many states are drawn for basin fractions: as many as give each of them as narrow an interval as is asked."""
+"""The number of states for basin fractions: the smallest at which every interval is narrow enough."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def test_states_are_drawn_until_all_intervals_are_narrow_and_no_longer(share):
 
     assert widest(count) <= 0.02
     assert count == STEP or widest((count - 1) // STEP * STEP) > 0.02
-    # What comes later decides nothing, and fewer states are not enough.
+    # Later states do not matter, and one state fewer is not enough.
     assert required_states(labels[:count], 0.02) == count
     assert required_states(labels[: count - 1], 0.02) is None
 

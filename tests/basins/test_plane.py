@@ -1,4 +1,4 @@
-"""Basins: the same labels with any threads and tiles, and those of whole runs."""
+"""Basins: labels do not depend on threads and tiles, and agree with full runs."""
 
 from dataclasses import replace
 from itertools import product
@@ -65,7 +65,7 @@ def test_any_number_of_threads_and_tiles_gives_the_same_labels(table, known, fou
 
 
 def check_run(table, state, branch, **conventions):
-    """Hold the branch that a state is said to reach against the mean distance of a whole run."""
+    """Compare the branch that a state reaches with the mean distance of a full run."""
     options = {"transient": 6000.0, "window": 1000.0, "events": "none", "lyapunov_exponents": 0}
     run = simulate("linearized", 0.08, state, **options, **conventions)
     there = table.sel(law="linearized", a=0.08)
@@ -98,7 +98,7 @@ def test_a_plane_of_states():
 
 @pytest.mark.parametrize(("place", "pairs"), [(0, 0), (1, 1)])
 def test_attractors_are_read_as_they_were_found(searched, place, pairs):
-    """Returns, mirror images, and all that decides a label."""
+    """Returns, mirror images, and all values that decide a label."""
     table, returns, rows = searched
     model = MODEL.at((0.08, 0.1)[place])
     found, expected = known_attractors(table, returns, model), [row.attractor for row in rows[place]]

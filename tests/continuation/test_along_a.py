@@ -1,4 +1,4 @@
-"""Attractors along a: what is found at one value is looked for at the others, and no process more changes a number."""
+"""Attractors along a: those found at one value seed the others, and no result depends on the number of processes."""
 
 import logging
 from dataclasses import fields
@@ -26,7 +26,7 @@ def models(a_values=A_VALUES):
 
 @pytest.fixture
 def scripted(monkeypatch):
-    """States lead to one attractor, and at a = 0.2 to another one as well, which exists up to a = 0.3."""
+    """Initial states lead to one attractor, and at a = 0.2 also to another one, which exists up to a = 0.3."""
     followed = []
 
     class Scripted(Search):
@@ -52,8 +52,8 @@ def scripted(monkeypatch):
     return followed
 
 
-def test_what_one_value_has_is_looked_for_at_the_others(scripted):
-    """Downward and upward, as far as it goes; what both have is not followed again."""
+def test_attractors_at_one_value_seed_the_others(scripted):
+    """Downward and upward as far as they exist; attractors that both values have are not followed again."""
     found = continue_attractors(models(), refine=Refine(1.0))
     assert scripted == [(0.1, [OTHER]), (0.3, [OTHER]), (0.4, [OTHER])]
     assert [len(here) for here in found.attractors] == [2, 2, 2, 1]
@@ -64,8 +64,8 @@ def test_what_one_value_has_is_looked_for_at_the_others(scripted):
     assert found.grid == [0, 1, 2, 3]
 
 
-def test_a_number_is_remembered_for_two_of_the_widest_steps(scripted, tell):
-    """So that no branch ends where the grid is coarser."""
+def test_a_branch_is_remembered_for_two_of_the_widest_steps(scripted, tell):
+    """No branch then ends where the grid is coarser."""
     asked = tell(continuation, "branches", [([], [])])
     continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=Refine(1.0))
     ((_, _, _, reach, *_),) = asked
@@ -73,7 +73,7 @@ def test_a_number_is_remembered_for_two_of_the_widest_steps(scripted, tell):
 
 
 def same(one, other):
-    """Require everything that two results hold to be equal to the bit."""
+    """Require that two results are equal to the bit."""
     assert type(one) is type(other)
     if isinstance(one, np.ndarray):
         np.testing.assert_array_equal(one, other)
@@ -88,8 +88,8 @@ def same(one, other):
         assert one == other or (one != one and other != other)
 
 
-def test_what_only_the_counted_states_lead_to_is_looked_for_at_the_others():
-    """Synchrony loses its stability between these two; the antiphase orbit is there at both."""
+def test_attractors_found_by_counted_states_alone_seed_the_others():
+    """Synchrony loses stability between these two values; the antiphase orbit exists at both."""
     settings = SearchSettings(samples=6, fraction_width=0.2)
     found = continue_attractors(models((0.0862, 0.09)), settings, refine=Refine(1.0))
     means = [sorted(round(one.motion.mean_distance, 2) for one in here) for here in found.attractors]
@@ -97,8 +97,8 @@ def test_what_only_the_counted_states_lead_to_is_looked_for_at_the_others():
     assert 2 not in found.samples[0]
 
 
-def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkeypatch, caplog):
-    """Few values, then with one more: what is kept is taken, and all is as if nothing had been."""
+def test_results_do_not_depend_on_processes_or_the_cache(tmp_path, monkeypatch, caplog):
+    """With one more value cached results are used, and the results are those of a run without a cache."""
     monkeypatch.setattr(fractions, "LABELLED_AT_ONCE", 30)
     settings = SearchSettings(samples=10, fraction_width=0.13, transient=1000.0, window=800.0, perturbations=4)
 
@@ -118,5 +118,5 @@ def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkey
             same(getattr(one, item.name), getattr(two, item.name))
     told = [line for line in caplog.messages if line.startswith("searched")]
     assert [line.partition("; ")[2] for line in told] == ["", "", *(f"{n} kept from a run before" for n in (2, 3))]
-    # By its name the display knows how far a search has come: one for each gap of the grid.
+    # The cache has one file for each gap of the grid.
     assert len(list((tmp_path / "neighbours compared").iterdir())) == 2

@@ -1,4 +1,4 @@
-"""Edge states along a: between which branches they lie, how far their orbits go, and which of them a crisis meets."""
+"""Edge states along a: their branches, the range of their orbits, and those that take part in a crisis."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -30,7 +30,7 @@ LOST = 0.0869729047
 
 
 def known_at(a, branches, samples=40):
-    """Return the attractors at an a, in the order of ⟨J⟩; branches : the number of each, by that order."""
+    """Return the attractors at an a, in the order of ⟨J⟩; branches : their numbers in that order."""
     model = Model(Chain(3), law_of("linearized", a))
     found, _ = find_attractors(model, samples=samples, transient=1000, window=1000)
     order = sorted(range(len(found)), key=lambda k: (round(found[k].motion.mean_distance, 6), k))
@@ -85,7 +85,7 @@ def test_saddle_orbits_are_followed_to_where_their_stability_changes(known, foun
 
 @pytest.fixture(scope="module")
 def merging():
-    """Return edge states of branch 3 where its two chaotic mirror images are about to merge, and one of its states."""
+    """Return edge states of branch 3 just before its two chaotic mirror images merge, and one of its states."""
     known = known_at(0.175, [3, 3, 1], samples=20)
     return known, edges_at(known, SETTINGS, 20_000)
 
@@ -102,7 +102,7 @@ def test_mirror_images_merge_where_both_meet_the_synchronized_orbit(merging):
 
 
 def test_the_crisis_names_the_saddle(merging, tmp_path: Path):
-    """In bifurcations.nc and in words; edges of another law come first, so that numbers are shifted."""
+    """In bifurcations.nc and in words; edges of another law come first, so indices are shifted."""
     known, found = merging
     segments, numbers = continue_edges(found, 0.18)
     near = approach(known.model.at(0.1772), known.attractors[0].motion.state(), found, 3)

@@ -1,4 +1,4 @@
-"""Which closed orbits are followed, told of made-up ones."""
+"""Which periodic orbits are followed, with constructed ones."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch
     [(None, [1.0, 1.01, 0.99], {0: 0, 1: 0, 2: 1, 3: 2}), (1.0, [1.01, 1.0001, 0.99], {1: 1, 2: 0, 3: 2})],
 )
 def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, failing, expected, numbers):
-    """At one a and with the same stops: periods a ten-thousandth apart are one, a hundredth two."""
+    """At one a and with the same stops, periods that differ by 1e-4 are one orbit, by 1e-2 two orbits."""
     orbit = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05)))
     periods = [1.0, 1.0001, 1.01, 0.99]
 
@@ -62,9 +62,9 @@ def test_the_longest_orbits_are_followed_first_and_neighbours_late():
     [
         ([], [(0, 0), (4, 0)]),
         ([(1, 2, 0, 0)], [(0, 0), (1, 0), (2, 0), (4, 0)]),
-        # Where a branch begins there is nothing before.
+        # A branch has no attractor before its beginning.
         ([(1, 2, -1, 0)], [(0, 0), (2, 0), (4, 0)]),
-        # Chaos is no closed orbit, and of a mirror pair one is followed.
+        # Chaos is not a periodic orbit, and one orbit of a mirror pair is followed.
         ([(2, 3, 0, 0), (2, 3, 1, -1)], [(0, 0), (2, 0), (4, 0)]),
     ],
 )
@@ -78,6 +78,6 @@ def test_between_values_of_the_grid_orbits_are_followed_beside_changes(changes, 
     one = one.assign(in_grid=("value", [1, 0, 0, 0, 1]))
     told = [BranchChange(*change, 0, 0, Change.CHANGE) for change in changes]
     assert followed_orbits._places(one, told) == expected
-    # What is longer is not followed.
+    # Longer orbits are not followed.
     one["period"][0] = 501.0
     assert followed_orbits._places(one, told) == [place for place in expected if place[0] != 0]
