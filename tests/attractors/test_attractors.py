@@ -107,7 +107,7 @@ def test_a_motion_lies_on_its_own_attractor_only(search):
         assert not any(lies_on(again, other, 1e-3, 1e-6) for other in others)
 
 
-def test_a_closed_orbit_in_the_midst_of_chaos_is_told_from_it():
+def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
     """Nonlinear law, a = 0.2075: `minus` ends on an orbit of period 11 returns, most neighbours in chaos around it."""
     found = Search(model("nonlinear", 0.2075), dataclasses.replace(SETTINGS, transient=3000.0, window=3000.0))
     starts = [found.model.begin(state) for state in (*states(5), PAPER_STATES["minus"], PAPER_STATES["plus"])]
@@ -119,7 +119,7 @@ def test_a_closed_orbit_in_the_midst_of_chaos_is_told_from_it():
     assert labels[-2] != labels[-1]
 
 
-def test_chaos_of_many_dimensions_is_known_for_what_it_is():
+def test_chaos_of_high_dimension_is_an_attractor():
     """Its returns are so far apart that hardly any state is near one of them; its lifetime is 1.8 million."""
     chain = Chain(4, 1.657, [1.459, 0.817, 0.902, 0.501], [1.036, 1.205, 1.448, 1.439])
     found = Search(Model(chain, law_of("carlson_langer", 0.525, {"sigma": 0.1})), SearchSettings(samples=10))
@@ -168,29 +168,29 @@ def test_samples_and_intervals():
     assert np.isnan(fraction_interval(0, 0)).all()
 
 
-def test_weak_chaos_is_told_from_a_torus():
+def test_weak_chaos_is_distinguished_from_a_torus():
     """λ1 is 0.0019 at a = 0.1325: in the usual window its error hides it, and the motion looks like one on a torus."""
     weak = model(a=0.1325)
     begun = weak.begin(PAPER_STATES["minus"])
     run = simulate("linearized", 0.1325, "plus", transient=100_000, window=60_000, batches=12)
     assert run.lyapunov_exponent[0] > 4.0 * run.lyapunov_error[0]
     # About one run in thirty stays near a weakly repelling orbit for the whole window and is not recognised as chaos.
-    told = [
+    motions = [
         Classifier(weak, 20_000.0, 3000.0, MOTION).measure(
             ChainState(begun.position + shift * np.array([1.0, -0.3, 0.4]), begun.velocity, begun.stuck)
         )
         for shift in (2e-12, 3e-12, 4e-12)
     ]
-    chaotic = [motion for motion in told if motion.kind == MotionKind.CHAOTIC]
+    chaotic = [motion for motion in motions if motion.kind == MotionKind.CHAOTIC]
     assert len(chaotic) >= 2
-    assert not any(motion.kind == MotionKind.QUASIPERIODIC for motion in told)
+    assert not any(motion.kind == MotionKind.QUASIPERIODIC for motion in motions)
     for motion in chaotic:
         assert motion.exponent[0] == pytest.approx(run.lyapunov_exponent[0], abs=8e-4)
         assert abs(motion.mean_distance - run.mean_distance) < 2e-4
 
 
 @pytest.mark.parametrize(("law", "a", "closes"), [("linearized", 0.05, False), ("nonlinear", 0.07, True)])
-def test_a_weakly_attracting_orbit_is_told_from_a_torus(law, a, closes):
+def test_a_weakly_attracting_orbit_is_distinguished_from_a_torus(law, a, closes):
     """λ2 is -0.0004 at a = 0.07 (nonlinear), which no window of the usual length distinguishes from 0."""
     chosen = model(law, a)
     steady = Classifier(chosen, 3000.0, 12_000.0, MOTION).measure(chosen.begin(PAPER_STATES["plus"]))
@@ -224,7 +224,7 @@ def test_orbits_that_pushes_soon_fall_back_to_are_no_slow_set():
     ],
     ids=["stribeck", "formula", "asymmetric", "ring"],
 )
-def test_attractors_of_any_model_are_what_runs_end_in(found_model):
+def test_runs_of_any_model_end_on_its_attractors(found_model):
     settings = dataclasses.replace(SETTINGS, samples=12)
     given = InitialState("given", (-0.9,) * found_model.blocks, (0.1,) * found_model.blocks)
     reached, labels = find_attractors(found_model, settings, starts=[given])

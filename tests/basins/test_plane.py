@@ -11,7 +11,7 @@ from burridge_knopoff.attractors.stored_returns import known_attractors, returns
 from burridge_knopoff.basins.plane import pixel_centres, plane
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.continuation.along_a import continue_attractors
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS, STARTS
 from burridge_knopoff.motion.settings import MOTION
@@ -26,7 +26,7 @@ MODEL = Model(Chain(3), law_of("linearized", 0.08))
 @pytest.fixture(scope="module")
 def searched():
     states = list(PAPER_STATES.values())
-    found = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, Refine(1.0), starts=states)
+    found = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, RefinementSettings(1.0), starts=states)
     parts = [attractors.one_law(found, states, SEARCH, MOTION, "moving")]
     rows = [found.rows(place) for place in found.grid]
     whole = all_laws.merge(parts, all_laws.branch_numbers(parts, [MODEL], SEARCH))
@@ -73,7 +73,7 @@ def check_run(table, state, branch, **conventions):
     assert run.mean_distance == pytest.approx(mean, abs=2e-4), (state, conventions)
 
 
-def test_pixels_are_what_whole_runs_end_in(table, found):
+def test_runs_end_on_the_branches_of_their_pixels(table, found):
     """Every pixel of the diagonal, and the plane's axes: the first index is U_N(0)."""
     for k in range(0, 16, 3):
         for m in (k, (5 * k + 2) % 16):
@@ -82,7 +82,7 @@ def test_pixels_are_what_whole_runs_end_in(table, found):
             check_run(table, InitialState("pixel", position, (0.099, 0.1012, 0.1023)), one["branch"])
 
 
-def test_runs_of_the_paper_end_on_the_branch_that_is_told(table):
+def test_runs_of_the_paper_end_on_the_branch_in_the_table(table):
     for contact, start, initial in product(CONTACTS, STARTS, PAPER_STATES):
         branch = table["initial_branch"].sel(law="linearized", a=0.08, contact=contact, start=start, initial=initial)
         check_run(table, initial, branch, contact=contact, start=start)

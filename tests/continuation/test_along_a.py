@@ -11,7 +11,7 @@ from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.basins import fractions
 from burridge_knopoff.continuation import along_a as continuation
 from burridge_knopoff.continuation.along_a import continue_attractors
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MOTION
 from tests.motion.stand_in import at
@@ -54,7 +54,7 @@ def scripted(monkeypatch):
 
 def test_attractors_at_one_value_seed_the_others(scripted):
     """Downward and upward as far as they exist; attractors that both values have are not followed again."""
-    found = continue_attractors(models(), refine=Refine(1.0))
+    found = continue_attractors(models(), refine=RefinementSettings(1.0))
     assert scripted == [(0.1, [OTHER]), (0.3, [OTHER]), (0.4, [OTHER])]
     assert [len(here) for here in found.attractors] == [2, 2, 2, 1]
     assert [branch.tolist() for branch in found.branch] == [[1, 2], [1, 2], [1, 2], [1]]
@@ -67,7 +67,7 @@ def test_attractors_at_one_value_seed_the_others(scripted):
 def test_a_branch_is_remembered_for_two_of_the_widest_steps(scripted, tell):
     """No branch then ends where the grid is coarser."""
     asked = tell(continuation, "branches", [([], [])])
-    continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=Refine(1.0))
+    continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=RefinementSettings(1.0))
     ((_, _, _, reach, *_),) = asked
     assert reach == pytest.approx(0.6)
 
@@ -91,7 +91,7 @@ def same(one, other):
 def test_attractors_found_by_counted_states_alone_seed_the_others():
     """Synchrony loses stability between these two values; the antiphase orbit exists at both."""
     settings = SearchSettings(samples=6, fraction_width=0.2)
-    found = continue_attractors(models((0.0862, 0.09)), settings, refine=Refine(1.0))
+    found = continue_attractors(models((0.0862, 0.09)), settings, refine=RefinementSettings(1.0))
     means = [sorted(round(one.motion.mean_distance, 2) for one in here) for here in found.attractors]
     assert means == [[0.0, 0.14, 0.19], [0.02, 0.02, 0.14, 0.19]]
     assert 2 not in found.samples[0]
@@ -104,7 +104,7 @@ def test_results_do_not_depend_on_processes_or_the_cache(tmp_path, monkeypatch, 
 
     def found(a_values, **share):
         states = list(PAPER_STATES.values())
-        return continue_attractors(models(a_values), settings, MOTION, Refine(0.01), starts=states, **share)
+        return continue_attractors(models(a_values), settings, MOTION, RefinementSettings(0.01), starts=states, **share)
 
     found((0.06, 0.1), processes=2, folder=tmp_path)
     caplog.set_level(logging.INFO)

@@ -68,7 +68,7 @@ def test_the_longest_orbits_are_followed_first_and_neighbours_late():
         ([(2, 3, 0, 0), (2, 3, 1, -1)], [(0, 0), (2, 0), (4, 0)]),
     ],
 )
-def test_between_values_of_the_grid_orbits_are_followed_beside_changes(changes, expected):
+def test_between_values_of_the_grid_orbits_are_followed_next_to_changes(changes, expected):
     kind = np.full((5, 2), MotionKind.PERIODIC)
     kind[3] = MotionKind.CHAOTIC
     slots = {"branch": np.tile([0, 1], (5, 1)), "side": np.tile([0, -1], (5, 1)), "kind": kind}

@@ -113,7 +113,7 @@ def test_an_attractor_that_has_vanished_is_remembered_for_a_while():
     assert followed([[there], [], [there]], 0.2)[0] == [[1], [], [1]]
 
 
-def test_what_does_not_change_keeps_its_number_though_it_is_not_looked_at_in_between():
+def test_an_unchanged_branch_keeps_its_number_across_inserted_values():
     """At the inserted value 0.2 only the changing attractor is followed, and it lies close to the other one."""
     still, again = (at(place, partner=0, section_period=4) for place in (0.0, 0.002))
     new = at(0.004, partner=1, section_period=7)

@@ -5,7 +5,7 @@ import pytest
 
 from burridge_knopoff import MotionKind, SearchSettings
 from burridge_knopoff.continuation.along_a import continue_attractors
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from tests.maps import LOGISTIC, TWO_WELLS
 
 WELLS = SearchSettings(
@@ -28,7 +28,7 @@ def where(found, branch):
 
 def test_each_well_is_one_branch_that_ends_at_its_fold(maps):
     """The lower well exists only for μ < 2/√27, the upper one only for μ > −2/√27."""
-    fold, refine = 2.0 / np.sqrt(27.0), Refine(2e-3)
+    fold, refine = 2.0 / np.sqrt(27.0), RefinementSettings(2e-3)
     grid = np.linspace(-0.45, 0.45, 19).tolist()
     found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=refine)
     assert {*np.concatenate(found.branch).tolist()} == {1, 2}
@@ -49,7 +49,7 @@ def test_each_well_is_one_branch_that_ends_at_its_fold(maps):
 def test_fractions_are_those_of_the_basins(maps):
     """States are uniform, so the fraction of a well is the length of its side of the unstable fixed point."""
     grid = [-0.2, 0.0, 0.3]
-    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=Refine(1.0))
+    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=RefinementSettings(1.0))
     for mu, attractors, sample in zip(grid, found.attractors, found.samples, strict=True):
         middle = np.sort(np.roots([-1.0, 0.0, 1.0, mu]).real)[1]
         for index, item in enumerate(attractors):
@@ -61,7 +61,7 @@ def test_fractions_are_those_of_the_basins(maps):
 def test_sweeps_show_the_hysteresis_of_two_folds(maps):
     """Swept upward, motion leaves the lower well beyond its fold; swept downward, it leaves the upper one."""
     grid = [-0.45, -0.3, 0.0, 0.3, 0.45]
-    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=Refine(1.0))
+    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=RefinementSettings(1.0))
 
     def swept(steps, following):
         index, x = 0, []
@@ -79,7 +79,7 @@ def test_sweeps_show_the_hysteresis_of_two_folds(maps):
 )
 def test_a_doubling_lies_between_values_as_near_as_asked(maps, grid, at, periods):
     """The logistic map doubles the period at 3 and at 1 + √6; the doubled orbit continues under the same number."""
-    refine = Refine(0.01)
+    refine = RefinementSettings(0.01)
     found = continue_attractors([LOGISTIC.at(r) for r in grid], LINE, refine=refine)
     a, items = where(found, 1)
     period = np.array([item.motion.section_period for item in items])
@@ -92,10 +92,12 @@ def test_a_doubling_lies_between_values_as_near_as_asked(maps, grid, at, periods
     assert last - 0.01 <= at <= first + 0.01
 
 
-def test_no_result_depends_on_what_is_asked_of_other_values(maps):
+def test_results_do_not_depend_on_other_values(maps):
     """The attractors at a value of a do not depend on the other values."""
-    one = continue_attractors([TWO_WELLS.at(1.1)], WELLS, refine=Refine(1.0))
-    several = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in (0.0, 0.1, 0.2)], WELLS, refine=Refine(1.0))
+    one = continue_attractors([TWO_WELLS.at(1.1)], WELLS, refine=RefinementSettings(1.0))
+    several = continue_attractors(
+        [TWO_WELLS.at(1.0 + mu) for mu in (0.0, 0.1, 0.2)], WELLS, refine=RefinementSettings(1.0)
+    )
     both = one.attractors[0], several.attractors[1]
     states = [sorted(item.motion.state().position[0] for item in found) for found in both]
     assert states[0] == pytest.approx(states[1], abs=1e-9)

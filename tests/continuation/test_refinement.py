@@ -6,7 +6,7 @@ from burridge_knopoff import Chain, Model, MotionKind, law_of
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher
 from burridge_knopoff.continuation.refinement import refine_searches
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.running.processes import shared_out
 from tests.motion.stand_in import ASYMMETRIC, at
 
@@ -28,7 +28,7 @@ def values():
 
         ends = [Scripted(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
         with shared_out(1) as each:
-            (inner,) = refine_searches(ends, Refine(resolution), Matcher(1.0), each)
+            (inner,) = refine_searches(ends, RefinementSettings(resolution), Matcher(1.0), each)
         return [search.model.a for search in inner], asked
 
     return put_in
@@ -66,7 +66,7 @@ def test_windows_between_are_found_on_both_sides(values):
     assert values(window)[0] == [0.25, 0.375, 0.4375, 0.5, 0.5625, 0.625, 0.75]
 
 
-def test_only_what_changes_is_followed(values):
+def test_only_changing_attractors_are_followed(values):
     """Unchanged attractors are not followed, and a seed that has reached one does not count as a change."""
     found, asked = values(after(0.3, [at(STILL), at(OTHER, partner=1)], [at(STILL)]))
     assert found == BISECTED

@@ -28,7 +28,7 @@ from burridge_knopoff.basins.fractions import fraction_labels
 from burridge_knopoff.continuation.branches import REMEMBERED, branches
 from burridge_knopoff.continuation.matching import Matcher, outlines
 from burridge_knopoff.continuation.refinement import refine_searches
-from burridge_knopoff.continuation.settings import REFINE, Refine
+from burridge_knopoff.continuation.settings import REFINEMENT, RefinementSettings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
@@ -70,7 +70,7 @@ def continue_attractors(
     models: Sequence[Model],
     settings: SearchSettings = SEARCH,
     motion: MotionSettings = MOTION,
-    refine: Refine = REFINE,
+    refine: RefinementSettings = REFINEMENT,
     *,
     starts: Sequence[InitialState] = (),
     start: str = "moving",

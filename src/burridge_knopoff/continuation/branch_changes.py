@@ -53,7 +53,7 @@ def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[
     attractors, refined : those of one law at the values of the grid, and at all values
 
     A branch changes if the kind of motion, the mirror symmetry, or the number of section points of periodic motion
-    changes. A torus and the orbits longer than `Refine.longest_period` to which it is locked count as the same motion.
+    changes. A torus and the orbits longer than `refine.longest_period` to which it is locked count as the same motion.
     One motion of each mirror pair is examined. The first and the last value of a are not ends. Between values of the
     grid only changing branches are searched for, so a branch has ended only where it is absent from the grid.
     """

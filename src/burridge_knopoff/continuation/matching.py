@@ -15,7 +15,7 @@ from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
 from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.continuation.settings import REFINE
+from burridge_knopoff.continuation.settings import REFINEMENT
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
 from burridge_knopoff.motion.set_distance import distance
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
@@ -82,7 +82,7 @@ class Matcher:
     """
 
     scale: float
-    longest_period: float = REFINE.longest_period
+    longest_period: float = REFINEMENT.longest_period
 
     def match(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
         """Return {key in `after`: key in `before`} of the sets that match; each matches at most one.

@@ -11,7 +11,7 @@ from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.capture_radius import PERTURBATION_GROUP
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher, Outline, outlines
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.processes import Shared
 
@@ -35,13 +35,15 @@ class Gap:
     after: Sequence[Attractor]
     unchanged: Sequence[Attractor]
 
-    def is_open(self, refine: Refine) -> bool:
+    def is_open(self, refine: RefinementSettings) -> bool:
         """Return whether attractors differ and the values are farther apart than the resolution."""
         near = self.last.a - self.first.a <= refine.resolution * (1.0 + 1e-9)
         return bool(self.before or self.after) and not near
 
 
-def refine_searches(searches: Sequence[Search], refine: Refine, matcher: Matcher, each: Shared) -> list[list[Search]]:
+def refine_searches(
+    searches: Sequence[Search], refine: RefinementSettings, matcher: Matcher, each: Shared
+) -> list[list[Search]]:
     """Return the searches at values of a inserted between each two neighbours of the grid, ascending.
 
     refine : how closely changes are located

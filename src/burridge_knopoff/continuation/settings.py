@@ -12,7 +12,7 @@ from burridge_knopoff.running.settings import TIME
 
 @settings
 @dataclass(frozen=True)
-class Refine:
+class RefinementSettings:
     """How closely changes of attractors are located in a: the config's section `refine`.
 
     Raises ValueError, one line, for anything out of range.
@@ -35,4 +35,4 @@ class Refine:
 
 
 #: The defaults of a study.
-REFINE = Refine()
+REFINEMENT = RefinementSettings()
