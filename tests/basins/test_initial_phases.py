@@ -103,7 +103,7 @@ def test_end_blocks_that_a_spring_joins_have_no_frequency_of_their_own(chain):
     """Opposite and equal phases are then (nearly) normal modes with frequencies other than √K_11: they are refused."""
     assert not has_free_ends(chain)
     model = Model(chain, law_of("linearized", 0.08))
-    with pytest.raises(ValueError, match=rf"^chain: got {chain.blocks} blocks, \w+, expected three blocks or more"):
+    with pytest.raises(ValueError, match=rf"^chain: got {chain.blocks} blocks, \w+, expected a row of at least three blocks"):
         oscillating_states(model, *(np.array([x]) for x in (0.01, 180.0, 0.0)))
     if chain.blocks == 2:
         opposite, equal = (vector @ chain.stiffness @ vector / 2.0 for vector in (np.array([1.0, -1.0]), np.ones(2)))

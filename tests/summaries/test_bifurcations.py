@@ -183,7 +183,7 @@ def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled():
     model = MODEL.at(0.09)
     start = synchronized_orbit(model).reference
     error = _periodic_orbit(model, start.position + model.sliding_offset, start.velocity)
-    assert str(error) == "a = 0.09: the closed orbit beside the motion is unstable"
+    assert str(error) == "a = 0.09: the periodic orbit next to the motion is unstable"
 
 
 def test_the_values_beside_a_bifurcation_are_those_of_the_attractors(found, grid):
