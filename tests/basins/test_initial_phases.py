@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
 from burridge_knopoff.basins.initial_phases import (
-    block_frequencies,
     common_phases,
     has_free_ends,
     inner_phases,
     oscillating_states,
+    single_block_frequencies,
     slipping_amplitude,
 )
 from burridge_knopoff.running.runner import Runner
@@ -29,7 +29,7 @@ def test_amplitude_and_phases_can_be_read_off_the_state(model):
     assert not standing.any()
     offset, swing = position - model.sliding_offset, model.v - velocity
     for block, phase in ((0, common), (-1, common + difference)):
-        frequency = block_frequencies(model)[block]
+        frequency = single_block_frequencies(model)[block]
         assert np.hypot(offset[:, block], swing[:, block] / frequency) == pytest.approx(amplitude)
         found = np.degrees(np.arctan2(swing[:, block] / frequency, offset[:, block]))
         assert (found - phase + 180.0) % 360.0 == pytest.approx(180.0)
@@ -45,7 +45,7 @@ def test_inner_blocks_oscillate_with_a_share_of_the_amplitude(model):
     phase = inner_phases(0.05, (3, model.chain.blocks - 2), 1)
     position, velocity, standing = oscillating_states(model, amplitude, difference, common, share, phase)
     assert not standing.any()
-    swing = (model.v - velocity) / block_frequencies(model)
+    swing = (model.v - velocity) / single_block_frequencies(model)
     angle = np.radians(phase)
     assert (position - model.sliding_offset)[:, 1:-1] == pytest.approx(share * amplitude[:, None] * np.cos(angle))
     assert swing[:, 1:-1] == pytest.approx(share * amplitude[:, None] * np.sin(angle))
@@ -92,7 +92,7 @@ def test_an_inner_block_oscillates_at_its_frequency_while_its_neighbours_slide()
     # Only the second block is displaced, at its turning point.
     assert x == pytest.approx([0.0, 0.02, 0.0, 0.0], abs=1e-15)
     pull = -UNEQUAL.chain.stiffness @ x
-    assert pull[1] == pytest.approx(-(block_frequencies(UNEQUAL)[1] ** 2) * x[1])
+    assert pull[1] == pytest.approx(-(single_block_frequencies(UNEQUAL)[1] ** 2) * x[1])
 
 
 @pytest.mark.parametrize(
@@ -103,7 +103,9 @@ def test_end_blocks_that_a_spring_joins_have_no_frequency_of_their_own(chain):
     """Opposite and equal phases are then (nearly) normal modes with frequencies other than √K_11: they are refused."""
     assert not has_free_ends(chain)
     model = Model(chain, law_of("linearized", 0.08))
-    with pytest.raises(ValueError, match=rf"^chain: got {chain.blocks} blocks, \w+, expected a row of at least three blocks"):
+    with pytest.raises(
+        ValueError, match=rf"^chain: got {chain.blocks} blocks, \w+, expected a row of at least three blocks"
+    ):
         oscillating_states(model, *(np.array([x]) for x in (0.01, 180.0, 0.0)))
     if chain.blocks == 2:
         opposite, equal = (vector @ chain.stiffness @ vector / 2.0 for vector in (np.array([1.0, -1.0]), np.ones(2)))
@@ -111,13 +113,13 @@ def test_end_blocks_that_a_spring_joins_have_no_frequency_of_their_own(chain):
 
 
 def test_the_frequency_is_that_of_a_block_between_sliding_neighbours():
-    assert block_frequencies(MODEL) ** 2 == pytest.approx([2.0, 4.0, 2.0])
+    assert single_block_frequencies(MODEL) ** 2 == pytest.approx([2.0, 4.0, 2.0])
     assert slipping_amplitude(MODEL, 1.0) == pytest.approx(0.05)
     # If inner blocks oscillate little, the end blocks decide.
     assert slipping_amplitude(MODEL, 0.7) == slipping_amplitude(MODEL, 0.0)
     assert slipping_amplitude(MODEL) == pytest.approx(0.1 / np.sqrt(2.0))
     # Springs to the driver and to the only neighbour.
-    assert block_frequencies(UNEQUAL) ** 2 == pytest.approx([1.5, 3.5, 5.5, 3.5])
+    assert single_block_frequencies(UNEQUAL) ** 2 == pytest.approx([1.5, 3.5, 5.5, 3.5])
     assert slipping_amplitude(UNEQUAL) == pytest.approx(0.2 / np.sqrt(3.5))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
-from burridge_knopoff.continuation import law_homotopy as joining
+from burridge_knopoff.continuation import law_homotopy
 from burridge_knopoff.continuation.law_homotopy import STEPS, follow_law, match_branches
 from burridge_knopoff.continuation.matching import SAME_SET
 from burridge_knopoff.motion.set_distance import least_distance
@@ -66,7 +66,7 @@ def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monk
     models = [Model(Chain(3), law_of(law, A), v) for law in ("linearized", "nonlinear")]
     one, other = (part[1].motion.state() for part in found)
     near = other.vector()[None] + 1.5 * SAME_SET
-    monkeypatch.setattr(joining, "follow_law", lambda *_, **__: shown(near, near, 0.0, 0.0))
+    monkeypatch.setattr(law_homotopy, "follow_law", lambda *_, **__: shown(near, near, 0.0, 0.0))
     assert match_branches([models[0]], [models[1]], {1: {0: one}}, {3: {0: other}}, SETTINGS) == expected
 
 
@@ -76,7 +76,7 @@ def follow(tell):
 
     def found(places):
         sets = [None if place is None else np.full((10, 6), place) for place in places]
-        asked = tell(joining, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets])
+        asked = tell(law_homotopy, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets])
         pair = [Model(Chain(3), law_of(law, 0.5), 0.2, "symmetric") for law in ("linearized", "nonlinear")]
         start = shown(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).state()
         return follow_law(*pair, start, SETTINGS), asked
@@ -116,7 +116,7 @@ def test_of_two_branches_that_arrive_at_one_the_longer_is_matched(monkeypatch):
         return None if asked[-1] == (True, 0.0) else here
 
     on_it, there_on_it = here.state(), there.state()
-    monkeypatch.setattr(joining, "follow_law", follow)
+    monkeypatch.setattr(law_homotopy, "follow_law", follow)
     states = {1: dict.fromkeys(range(3), on_it), 2: dict.fromkeys(range(6), there_on_it)}
     assert match_branches(*models, states, {7: dict.fromkeys(range(6), on_it)}, SETTINGS) == {0: 0, 7: 2}
     expected = [(False, a) for a in (0.0, 0.1, 0.2)] + [(True, a) for a in (0.0, 0.2, 0.5)]

@@ -22,7 +22,7 @@ def has_free_ends(chain: Chain) -> bool:
     return chain.blocks > 2 and chain.ends == "open" and not chain.is_network
 
 
-def block_frequencies(model: Model) -> np.ndarray:
+def single_block_frequencies(model: Model) -> np.ndarray:
     """Return the angular frequency ω of each block while its neighbours slide uniformly, shape (blocks,).
 
     ω² = K_ii/m_i: in the paper's chain 2 for the end blocks and 4 for the inner one. Opposite phases of the end blocks
@@ -47,7 +47,7 @@ def slipping_amplitude(model: Model, inner_share: float = 0.0) -> float:
 
     The velocity of a block stays positive if its own amplitude is below v/ω.
     """
-    frequencies = block_frequencies(model)
+    frequencies = single_block_frequencies(model)
     frequencies[1:-1] *= inner_share
     return float(model.v / frequencies.max())
 
@@ -79,7 +79,7 @@ def oscillating_states(
     own = np.tile(amplitude[:, None], angle.shape[1])
     own[:, 1:-1] *= inner_share
     position = model.sliding_offset + own * np.cos(angle)
-    velocity = model.v - own * block_frequencies(model) * np.sin(angle)
+    velocity = model.v - own * single_block_frequencies(model) * np.sin(angle)
     standing: np.ndarray = np.any(velocity < 0.0, axis=1)
     return position, np.maximum(velocity, 0.0), standing
 
