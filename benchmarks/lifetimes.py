@@ -70,7 +70,7 @@ def main() -> None:
                     continue
                 before = words(*(one[f"lifetime{end}"].item() for end in ("", "_low", "_high")))
                 now = words(lifetime.mean, *lifetime.interval)
-                kinds = MotionKind(one["kind"].item()).words, CHAOTIC[not lifetime.lasts(least)].words
+                kinds = MotionKind(one["kind"].item()).words, CHAOTIC[not lifetime.is_longer_than(least)].words
                 rows.append([law, f"{one['a'].item():g}", f"{one['mean_distance'].item():.4f}", before, now, *kinds])
         print_table(["law", "a", "<J>", "lifetime in the file", "in ten times the time", "kind", "then"], rows)
         print(f"{len(bounds)} other chaotic sets, which none left: longer than {min(bounds, default=0.0):.3g}")

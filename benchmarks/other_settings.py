@@ -71,7 +71,7 @@ def local_exponents(results: Path, study: Study, attractors: xarray.Dataset, a: 
     without = [np.delete(np.arange(BATCHES), k) for k in range(BATCHES)]
 
     def slopes(batches: np.ndarray) -> np.ndarray:
-        fraction = found.different[batches].sum(axis=0) / found.known[batches].sum(axis=0)
+        fraction = found.different_weight[batches].sum(axis=0) / found.labelled_weight[batches].sum(axis=0)
         return np.array([np.log(fraction[k] / fraction[k + 3]) / np.log(27.0) for k in SMALLER])
 
     error = np.sqrt(BATCHES - 1.0) * np.std([slopes(one) for one in without], axis=0)

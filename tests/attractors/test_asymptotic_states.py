@@ -1,4 +1,4 @@
-"""What states end on, where a run of ten thousand time units shows something else."""
+"""Asymptotic states of initial states for which a run of ten thousand time units shows another motion."""
 
 import math
 from dataclasses import replace
@@ -9,8 +9,8 @@ import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, MotionKind, law_of, limit_cycle, simulate, synchronized_orbit
 from burridge_knopoff.attractors import asymptotic_states as module
-from burridge_knopoff.attractors.asymptotic_states import Ending, endings
-from burridge_knopoff.attractors.labels import UNDETERMINED, moved
+from burridge_knopoff.attractors.asymptotic_states import AsymptoticState, asymptotic_states
+from burridge_knopoff.attractors.labels import UNDETERMINED, advance
 from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.motion.chain_settings import Sample
@@ -28,9 +28,9 @@ def pair(law, a):
 
 @pytest.mark.parametrize(("law", "a"), [("linearized", 0.05), ("linearized", 0.0501), ("nonlinear", 0.05)])
 def test_slow_synchrony_is_synchrony(law, a):
-    """Next to where it is lost, which 40 digits tell, the blocks are apart for far longer than any run."""
+    """Near its loss of stability, located with 40 digits, the blocks stay apart for far longer than any run."""
     assert -1e-3 < two_block_exponent(law, a) < 0.0
-    (found,) = endings(pair(law, a), [APART])
+    (found,) = asymptotic_states(pair(law, a), [APART])
     assert (found.kind, found.section_period) == (MotionKind.SYNCHRONIZED, 1)
     assert found.mean_distance < 1e-7
     assert simulate(pair(law, a), initial=APART, transient=3000.0, window=7000.0).mean_distance > 5e-5
@@ -45,8 +45,8 @@ def test_slow_synchrony_is_synchrony(law, a):
         (0.2, 2.1e-3, MotionKind.UNDETERMINED),
     ],
 )
-def test_only_what_is_next_to_synchrony_is_on_its_way_there(v, apart, kind):
-    """Within the distance that tells attractors apart, which grows with the speed."""
+def test_only_states_close_to_synchrony_count_as_approaching_it(v, apart, kind):
+    """Within the resolution, which is proportional to v."""
     model = Model(Chain(3), law_of("linearized", 0.05), v)
     on_it = synchronized_orbit(model).reference
     end = replace(on_it, position=on_it.position + np.array([0.0, 0.0, apart]))
@@ -54,21 +54,21 @@ def test_only_what_is_next_to_synchrony_is_on_its_way_there(v, apart, kind):
     assert found.kind == kind
 
 
-def test_what_synchrony_repels_does_not_synchronize():
+def test_states_do_not_synchronize_where_synchrony_repels():
     assert two_block_exponent("linearized", 0.05013) > 0.0
-    (found,) = endings(pair("linearized", 0.05013), [APART])
+    (found,) = asymptotic_states(pair("linearized", 0.05013), [APART])
     assert found.kind != MotionKind.SYNCHRONIZED
 
 
 @pytest.mark.parametrize(("law", "a", "state"), [("linearized", 0.115, 0), ("nonlinear", 0.155, 3)])
-def test_chaos_that_ends_is_the_orbit_after_it(law, a, state):
-    """Newton's method finds the orbit from where the state is after 100 000 time units."""
+def test_transient_chaos_ends_on_an_orbit(law, a, state):
+    """Newton's method finds the orbit from the state after 100 000 time units."""
     model = pair(law, a)
     early = simulate(model, initial=STATES[state], transient=3000.0, window=7000.0)
     assert early.lyapunov_exponent[0] > 3.0 * early.lyapunov_error[0]
-    found = endings(model, STATES)[state]
+    found = asymptotic_states(model, STATES)[state]
     assert found.kind == MotionKind.PERIODIC
-    (later,) = moved(model, [model.begin(STATES[state])], 100_000.0)
+    (later,) = advance(model, [model.begin(STATES[state])], 100_000.0)
     orbit = limit_cycle(model, later)
     options = {"transient": 100_000.0, "window": 20.0 * orbit.period, "batches": 10, "lyapunov_exponents": 0}
     assert found.mean_distance == pytest.approx(
@@ -78,8 +78,8 @@ def test_chaos_that_ends_is_the_orbit_after_it(law, a, state):
 
 @pytest.mark.slow
 def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
-    """In runs of the usual length some of these look like a torus; a window of 400 000 tells them apart from one."""
-    found = endings(pair("linearized", 0.08), STATES)
+    """In runs of the usual length some of these look like a torus; a window of 400 000 distinguishes them from one."""
+    found = asymptotic_states(pair("linearized", 0.08), STATES)
     inner = [k for k in range(8) if found[k].mean_distance < 0.1]
     assert inner == [0, 2, 4, 5, 7]
     assert {found[k] for k in inner} == {found[0]}
@@ -91,14 +91,14 @@ def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
         assert long.lyapunov_exponent[0] > max(1e-3, 5.0 * long.lyapunov_error[0])
         error = math.hypot(long.mean_distance_error, found[0].mean_distance_error)
         assert found[0].mean_distance == pytest.approx(long.mean_distance, abs=4.0 * error)
-    # Half a percent, as a search's window leaves it, would be too much.
+    # In the window of the search the error would be half a percent.
     assert found[0].mean_distance_error < 2e-3 * found[0].mean_distance
 
 
-def test_chaos_that_does_not_last_is_followed_out_of(monkeypatch):
-    """At a = 0.18 under the linearized law it does last: nobody leaves it, and then nothing is known."""
+def test_states_are_followed_out_of_transient_chaos(monkeypatch):
+    """At a = 0.18 (linearized) chaos persists; declared transient, it leaves its states undetermined."""
     model = pair("linearized", 0.18)
-    chaotic = [k for k, found in enumerate(endings(model, STATES)) if found.kind == MotionKind.CHAOTIC]
+    chaotic = [k for k, found in enumerate(asymptotic_states(model, STATES)) if found.kind == MotionKind.CHAOTIC]
     assert chaotic == [0, 3, 7]
 
     def dying(model, attractors, settings):
@@ -106,17 +106,17 @@ def test_chaos_that_does_not_last_is_followed_out_of(monkeypatch):
         return [Lifetime(9, 900.0) if kind == MotionKind.CHAOTIC else None for kind in kinds]
 
     monkeypatch.setattr(module, "lifetimes", dying)
-    found = endings(model, STATES)
-    assert {k for k in range(8) if repr(found[k]) == repr(Ending())} == {*chaotic}
+    found = asymptotic_states(model, STATES)
+    assert {k for k in range(8) if repr(found[k]) == repr(AsymptoticState())} == {*chaotic}
     assert {found[k].kind for k in range(8) if k not in chaotic} == {MotionKind.PERIODIC}
     # Under the nonlinear law chaos at a = 0.2 ends, in a run of the fourth state within its window.
     monkeypatch.undo()
-    assert {found.kind for found in endings(pair("nonlinear", 0.2), STATES)} == {MotionKind.PERIODIC}
+    assert {found.kind for found in asymptotic_states(pair("nonlinear", 0.2), STATES)} == {MotionKind.PERIODIC}
 
 
-def test_an_average_over_chaos_that_ends_is_not_taken(monkeypatch):
+def test_the_average_over_chaos_that_ends_is_not_used(monkeypatch):
     model = pair("linearized", 0.18)
-    whole = endings(model, STATES[:1])[0]
+    whole = asymptotic_states(model, STATES[:1])[0]
     own = module.label
 
     def gone(model, attractors, starts, time_limit):
@@ -124,15 +124,15 @@ def test_an_average_over_chaos_that_ends_is_not_taken(monkeypatch):
         return (labels * 0 + UNDETERMINED if time_limit == SEARCH.time_limit else labels), times
 
     monkeypatch.setattr(module, "label", gone)
-    short = endings(model, STATES[:1])[0]
+    short = asymptotic_states(model, STATES[:1])[0]
     assert short.kind == whole.kind
     assert short.mean_distance_error > 2.0 * whole.mean_distance_error
     assert short.mean_distance == pytest.approx(whole.mean_distance, abs=4.0 * short.mean_distance_error)
 
 
 @pytest.mark.parametrize(("at", "whole"), [(0, True), (1, True), (2, False), (UNDETERMINED, False)])
-def test_an_average_over_chaos_and_its_mirror_image_is_taken(tell, at, whole):
-    """That over chaos and another motion is not, nor that over chaos and nothing that is known."""
+def test_the_average_over_chaos_and_its_mirror_image_is_used(tell, at, whole):
+    """The average over chaos and another or an undetermined motion is not."""
     chaos = [stand_in(kind=MotionKind.CHAOTIC, mean_distance=0.3, partner=partner) for partner in (1, 0)]
     states = np.zeros((1, 3))
     long = SimpleNamespace(
@@ -142,7 +142,7 @@ def test_an_average_over_chaos_and_its_mirror_image_is_taken(tell, at, whole):
     tell(module, "run", [long])
     tell(module, "label", [(np.array([at]), None)])
     model = Model(Chain(3), law_of("linearized", 0.08))
-    found = module._ending(model, [*chaos, stand_in(partner=2)], 0, SEARCH)
+    found = module._state_on(model, [*chaos, stand_in(partner=2)], 0, SEARCH)
     assert found.kind == MotionKind.CHAOTIC
     assert (found.mean_distance, found.mean_distance_error) == ((0.2, 0.01) if whole else (0.3, 0.0))
 
@@ -151,29 +151,29 @@ def test_mirror_images_have_the_same_numbers(monkeypatch):
     images = [stand_in(kind=MotionKind.CHAOTIC, partner=partner) for partner in (1, 0)]
     monkeypatch.setattr(module, "find_attractors", lambda *_, **__: (images, np.array([1, 0, 1])))
     monkeypatch.setattr(module, "lifetimes", lambda *_: [Lifetime(0, 1e9)] * 2)
-    monkeypatch.setattr(module, "_ending", lambda model, attractors, index, *_: index)
-    assert endings(pair("linearized", 0.18), [APART] * 3) == [0, 0, 0]
+    monkeypatch.setattr(module, "_state_on", lambda model, attractors, index, *_: index)
+    assert asymptotic_states(pair("linearized", 0.18), [APART] * 3) == [0, 0, 0]
 
 
 @pytest.mark.parametrize("start", ["moving", "tested"])
-def test_states_that_are_followed_on_begin_as_they_are_told_to(monkeypatch, tell, start):
-    """Tested, blocks with a spring force −(K U) of at most the threshold stick."""
+def test_states_that_are_followed_further_begin_as_the_start_says(monkeypatch, tell, start):
+    """With a tested start blocks stick if their spring force −(K U) is at most the threshold."""
     initial = Sample(samples=12).initial(2)
     position = np.array([state.position for state in initial])
     stuck = position @ np.array([[-2.0, 1.0], [1.0, -2.0]]) <= 1.0
     assert 0.2 < stuck.mean() < 0.9
     monkeypatch.setattr(module, "find_attractors", lambda *_, **__: ([], np.full(12, UNDETERMINED)))
     followed = tell(module, "label", [(np.full(12, UNDETERMINED), None)])
-    monkeypatch.setattr(module, "moved", lambda model, starts, time: starts)
+    monkeypatch.setattr(module, "advance", lambda model, starts, time: starts)
     monkeypatch.setattr(module, "_slow_synchrony", lambda model, end, *_: end.stuck.tolist())
-    assert endings(pair("linearized", 0.1), initial, start=start) == (stuck & (start == "tested")).tolist()
+    assert asymptotic_states(pair("linearized", 0.1), initial, start=start) == (stuck & (start == "tested")).tolist()
     assert [at.stuck.tolist() for at in followed[0][2]] == (stuck & (start == "tested")).tolist()
 
 
-def test_what_settles_on_nothing_is_undetermined():
-    """Without friction that weakens the last slip never ends."""
+def test_a_state_that_does_not_settle_is_undetermined():
+    """Without weakening of friction the last slip never ends."""
     settings = replace(SEARCH, transient=200.0, window=200.0, time_limit=500.0)
-    (found,) = endings(pair("linearized", 0.0), [APART], settings)
-    assert repr(found) == repr(Ending())
+    (found,) = asymptotic_states(pair("linearized", 0.0), [APART], settings)
+    assert repr(found) == repr(AsymptoticState())
     uneven = Model(Chain(2, threshold=(1.0, 0.9)), law_of("linearized", 0.0))
-    assert endings(uneven, [APART], settings)[0].kind == MotionKind.UNDETERMINED
+    assert asymptotic_states(uneven, [APART], settings)[0].kind == MotionKind.UNDETERMINED

@@ -1,4 +1,4 @@
-"""Attractors: labels hold for whole runs, unstable motions are none, mirror images go together, branches follow a."""
+"""Attractors: labels agree with full runs, unstable motions are rejected, and mirror images have mirrored labels."""
 
 import dataclasses
 
@@ -41,7 +41,7 @@ def search():
 
 
 def test_labels_hold_for_whole_runs(search):
-    """What is decided after some hundred time units is what a run of 8000 ends in."""
+    """A label after some hundred time units is that of the motion in which a run of 8000 ends."""
     chosen = states(60, seed=11)
     labels, times = label(search.model, search.attractors, [search.model.begin(state) for state in chosen], 20000.0)
     assert (labels >= 0).all()
@@ -69,7 +69,7 @@ def test_mirrored_states_reach_mirrored_attractors():
 
 
 def test_an_unstable_motion_is_no_attractor():
-    """A symmetric state stays symmetric for ever, though the synchronized motion is unstable at a = 0.1."""
+    """A symmetric state stays symmetric, although the synchronized motion is unstable at a = 0.1."""
     unstable, stable = (Search(model(a=a), SETTINGS) for a in (0.1, 0.08))
     symmetric = unstable.model.begin(InitialState("symmetric", (-0.9, -0.95, -0.9), (0.1, 0.1, 0.1)))
     assert Classifier(unstable.model, 2000.0, 1000.0, MOTION).measure(symmetric).mean_distance == 0.0
@@ -83,7 +83,7 @@ def test_an_unstable_motion_is_no_attractor():
 
 
 def test_pushes_from_within_the_radius_come_back(search):
-    """With other random numbers than those that the radius was set by."""
+    """With other random numbers than those that determined the radius."""
     generator = np.random.default_rng(99)
     for index, attractor in enumerate(search.attractors):
         narrow = [dataclasses.replace(item, radius=item.radius / 10) for item in search.attractors]
@@ -107,7 +107,7 @@ def test_a_motion_lies_on_its_own_attractor_only(search):
         assert not any(lies_on(again, other, 1e-3, 1e-6) for other in others)
 
 
-def test_a_closed_orbit_in_the_midst_of_chaos_is_told_from_it():
+def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
     """Nonlinear law, a = 0.2075: `minus` ends on an orbit of period 11 returns, most neighbours in chaos around it."""
     found = Search(model("nonlinear", 0.2075), dataclasses.replace(SETTINGS, transient=3000.0, window=3000.0))
     starts = [found.model.begin(state) for state in (*states(5), PAPER_STATES["minus"], PAPER_STATES["plus"])]
@@ -119,8 +119,8 @@ def test_a_closed_orbit_in_the_midst_of_chaos_is_told_from_it():
     assert labels[-2] != labels[-1]
 
 
-def test_chaos_of_many_dimensions_is_known_for_what_it_is():
-    """Its returns are so far apart that hardly a state is near one of them; it lasts for 1.8 million units."""
+def test_chaos_of_high_dimension_is_an_attractor():
+    """Its returns are so far apart that hardly any state is near one of them; its lifetime is 1.8 million."""
     chain = Chain(4, 1.657, [1.459, 0.817, 0.902, 0.501], [1.036, 1.205, 1.448, 1.439])
     found = Search(Model(chain, law_of("carlson_langer", 0.525, {"sigma": 0.1})), SearchSettings(samples=10))
     labels = found.labels(found.starts((), "moving"))
@@ -134,7 +134,7 @@ def test_chaos_of_many_dimensions_is_known_for_what_it_is():
 
 @pytest.mark.parametrize("v", [0.001, 5.0])
 def test_the_linearized_law_is_the_same_at_any_driver_velocity(v):
-    """All positions and velocities are in proportion to v."""
+    """All positions and velocities are proportional to v."""
     reference = Search(model(a=0.05), SETTINGS)
     motion = MotionSettings(synchronization_threshold=1e-6 * v / 0.1)
     scaled = Search(Model(Chain(3), law_of("linearized", 0.05), v), SETTINGS, motion)
@@ -168,30 +168,30 @@ def test_samples_and_intervals():
     assert np.isnan(fraction_interval(0, 0)).all()
 
 
-def test_weak_chaos_is_told_from_a_torus():
+def test_weak_chaos_is_distinguished_from_a_torus():
     """λ1 is 0.0019 at a = 0.1325: in the usual window its error hides it, and the motion looks like one on a torus."""
     weak = model(a=0.1325)
     begun = weak.begin(PAPER_STATES["minus"])
     run = simulate("linearized", 0.1325, "plus", transient=100_000, window=60_000, batches=12)
     assert run.lyapunov_exponent[0] > 4.0 * run.lyapunov_error[0]
-    # One run in thirty or so stays on an orbit that hardly repels for the whole window: that is not seen to be chaos.
-    told = [
+    # About one run in thirty stays near a weakly repelling orbit for the whole window and is not recognised as chaos.
+    motions = [
         Classifier(weak, 20_000.0, 3000.0, MOTION).measure(
             ChainState(begun.position + shift * np.array([1.0, -0.3, 0.4]), begun.velocity, begun.stuck)
         )
         for shift in (2e-12, 3e-12, 4e-12)
     ]
-    chaotic = [motion for motion in told if motion.kind == MotionKind.CHAOTIC]
+    chaotic = [motion for motion in motions if motion.kind == MotionKind.CHAOTIC]
     assert len(chaotic) >= 2
-    assert not any(motion.kind == MotionKind.QUASIPERIODIC for motion in told)
+    assert not any(motion.kind == MotionKind.QUASIPERIODIC for motion in motions)
     for motion in chaotic:
         assert motion.exponent[0] == pytest.approx(run.lyapunov_exponent[0], abs=8e-4)
         assert abs(motion.mean_distance - run.mean_distance) < 2e-4
 
 
 @pytest.mark.parametrize(("law", "a", "closes"), [("linearized", 0.05, False), ("nonlinear", 0.07, True)])
-def test_a_weakly_attracting_orbit_is_told_from_a_torus(law, a, closes):
-    """λ2 is -0.0004 at a = 0.07 (nonlinear), which no window of usual length tells from 0."""
+def test_a_weakly_attracting_orbit_is_distinguished_from_a_torus(law, a, closes):
+    """λ2 is -0.0004 at a = 0.07 (nonlinear), which no window of the usual length distinguishes from 0."""
     chosen = model(law, a)
     steady = Classifier(chosen, 3000.0, 12_000.0, MOTION).measure(chosen.begin(PAPER_STATES["plus"]))
     assert abs(steady.exponent[1]) < MOTION.zero_exponent
@@ -224,7 +224,7 @@ def test_orbits_that_pushes_soon_fall_back_to_are_no_slow_set():
     ],
     ids=["stribeck", "formula", "asymmetric", "ring"],
 )
-def test_attractors_of_any_model_are_what_runs_end_in(found_model):
+def test_runs_of_any_model_end_on_its_attractors(found_model):
     settings = dataclasses.replace(SETTINGS, samples=12)
     given = InitialState("given", (-0.9,) * found_model.blocks, (0.1,) * found_model.blocks)
     reached, labels = find_attractors(found_model, settings, starts=[given])

@@ -1,4 +1,4 @@
-"""When a trajectory counts as settled, and on what, told of made-up returns."""
+"""When a trajectory counts as settled, and on what motion, with constructed returns."""
 
 from dataclasses import replace
 
@@ -7,12 +7,12 @@ import pytest
 
 from burridge_knopoff import Chain, Model, SearchSettings, law_of
 from burridge_knopoff.attractors import convergence as settling
-from burridge_knopoff.attractors.convergence import LASTING, Convergence
+from burridge_knopoff.attractors.convergence import SYMMETRY_WINDOW, Convergence
 from burridge_knopoff.motion.section_returns import state_of
 from tests.motion.stand_in import shown
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
-#: So that times tell of how many transients, or windows, they are.
+#: Times are then numbers of transients or windows.
 SETTINGS = SearchSettings(transient=1.0, window=100.0)
 CLOSED, WIDE = 1e-7, 0.01
 ONE, OTHER = np.array([[1.0, 0.0, 0.0, 0.0, 0.1, 0.1]]), np.array([[2.0, 0.0, 0.0, 0.0, 0.1, 0.1]])
@@ -22,11 +22,11 @@ ONE, OTHER = np.array([[1.0, 0.0, 0.0, 0.0, 0.1, 0.1]]), np.array([[2.0, 0.0, 0.
     ("spacing", "symmetric", "drifts", "windows", "transients", "found"),
     [
         (CLOSED, False, [0.0], [1], [1], True),
-        # A set that is no closed orbit has to fill: its own mirror image soon, any other in the longest window.
+        # A set that is not periodic has to fill: soon if it is its own mirror image, else in the longest window.
         (WIDE, True, [0.0] * 3, [1, 2, 4], [1, 1, 1], True),
         (WIDE, False, [0.0] * 5, [1, 2, 4, 8, 16], [1] * 5, True),
         (WIDE, True, [1.0, 1.0, 0.0], [1, 2, 4], [1, 2, 4], True),
-        # What has not settled has twice the time, and is let go if it drifts by more than ten resolutions.
+        # A motion that has not settled gets twice the time, and is given up if it drifts by over ten resolutions.
         (CLOSED, False, [2e-5, 0.0], [1, 1], [1, 2], True),
         (CLOSED, False, [1.1e-2] * 5, [1] * 5, [1, 2, 4, 8, 16], False),
         (CLOSED, False, [1.0, None], [1, 1], [1, 2], False),
@@ -41,45 +41,45 @@ def test_a_motion_is_given_time_to_settle(tell, spacing, symmetric, drifts, wind
 
 
 def creeping(time, tau, size, window=100.0):
-    """Return what is seen of a closed orbit that is approached as size · exp(−τ / tau), from `time` on."""
+    """Return the returns of a periodic orbit that is approached as size · exp(−τ / tau), from `time` on."""
     drift = size * (np.exp(-time / tau) - np.exp(-(time + 0.5 * window) / tau))
     return shown(ONE, ONE, CLOSED, drift, window=window)
 
 
 @pytest.mark.parametrize("tau", [1e3, 1e5, 1e9])
-def test_how_far_a_motion_still_is_follows_from_how_its_drift_dies_out(tau):
+def test_the_remaining_distance_follows_from_the_decay_of_the_drift(tau):
     first, later = creeping(0.0, tau, 0.3), creeping(5100.0, tau, 0.3)
-    # After the half of the window between which and the one before it the drift was seen.
-    assert settling._left(first, later, 5000.0) == pytest.approx(0.3 * np.exp(-5150.0 / tau), rel=1e-4)
-    assert settling._left(first, first, 5000.0) == np.inf
+    # Measured from the middle of the window, since the drift compares its halves.
+    assert settling._remaining_distance(first, later, 5000.0) == pytest.approx(0.3 * np.exp(-5150.0 / tau), rel=1e-4)
+    assert settling._remaining_distance(first, first, 5000.0) == np.inf
 
 
 @pytest.mark.parametrize(("tau", "visits", "rests"), [(5.0, 1, True), (100.0, 3, True), (1e6, 5, False)])
-def test_a_motion_that_drifts_is_followed_until_it_is_there(tell, tau, visits, rests):
-    """For times that double, up to sixteen time limits; what drifts on then is undetermined."""
+def test_a_motion_that_drifts_is_followed_until_it_is_steady(tell, tau, visits, rests):
+    """Waits double up to sixteen time limits; a motion that still drifts then is undetermined."""
     own, time, seen = Convergence(MODEL, SETTINGS), 0.0, []
     waits = [SETTINGS.time_limit * 2.0**k for k in range(5)]
     for wait in waits:
         time += wait + 100.0
         seen.append(creeping(time, tau * SETTINGS.time_limit / 100.0, 0.005))
     asked = tell(settling, "visit", seen[:visits])
-    found = own.at_rest(creeping(0.0, tau * SETTINGS.time_limit / 100.0, 0.005))
+    found = own.follow_until_steady(creeping(0.0, tau * SETTINGS.time_limit / 100.0, 0.005))
     assert found is (seen[visits - 1] if rests else None)
     assert [arguments[2] for arguments in asked] == waits[:visits]
 
 
-def test_a_set_that_is_no_closed_orbit_has_to_stay_where_it_is(tell):
-    """Or it drifts: slowly along a torus, or to another motion."""
+def test_a_set_that_is_not_periodic_has_to_stay_in_place(tell):
+    """Otherwise it drifts along a torus, or to another motion."""
     own, moving = Convergence(MODEL, SETTINGS), shown(ONE, ONE, WIDE, 1.0)
     tell(settling, "visit", [moving])
-    assert own.at_rest(moving) is moving
+    assert own.follow_until_steady(moving) is moving
     elsewhere = [shown(ONE + k, ONE + k, WIDE, 1.0) for k in range(1, 6)]
     tell(settling, "visit", elsewhere)
-    assert own.at_rest(moving) is None
+    assert own.follow_until_steady(moving) is None
 
 
 def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
-    """In its window or, where it touches its mirror image, in a longer time."""
+    """In its window or, if it is close to its mirror image, in a longer time."""
     own, rows = Convergence(MODEL, replace(SETTINGS, transient=3)), np.linspace(0.0, 1.0, 40)[:, None] * np.ones(6)
     touching = rows - 0.9995
     for mirror, symmetric in ((rows + 0.01, True), (touching, False), (rows + 3.0, False)):
@@ -87,23 +87,23 @@ def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
     both = np.concatenate([rows, touching])
     for later, changes in ((both, True), (rows, False)):
         asked = tell(settling, "visit", [shown(later, later, WIDE, 0.0)])
-        assert own.changes_sides(shown(rows, touching, WIDE, 0.0)) == changes
-        assert asked[0][2:4] == (0.0, LASTING * 3)
+        assert own.is_eventually_symmetric(shown(rows, touching, WIDE, 0.0)) == changes
+        assert asked[0][2:4] == (0.0, SYMMETRY_WINDOW * 3)
     for apart in (shown(rows, rows - 1.002, WIDE, 0.0), shown(rows, touching, CLOSED, 0.0)):
-        assert not own.changes_sides(apart)
-    # Where only one block of a mirror pair stops again and again, the two show different sets.
+        assert not own.is_eventually_symmetric(apart)
+    # If only one block of a mirror pair stops regularly, the returns are at different blocks.
     assert not own.is_symmetric(replace(shown(rows, rows, WIDE, 0.0), mirror_block=3))
 
 
 def test_distances_grow_with_the_speed_of_the_driver():
-    """In slower motion also those within which a closed orbit repeats are smaller."""
+    """The tolerance within which a periodic orbit repeats scales with v as well."""
     for v, resolution, tolerance in ((0.2, 2e-3, 1e-6), (0.1, 1e-3, 1e-6), (0.05, 5e-4, 5e-7)):
         own = Convergence(Model(Chain(3), law_of("linearized", 0.08), v), SETTINGS)
         assert (own.resolution, own.tolerance) == pytest.approx((resolution, tolerance))
 
 
 def test_a_set_of_a_chain_without_a_mirror_image_has_to_fill_as_well(tell):
-    """But not for as long as one that may be half of a set: it has no other half."""
+    """But not for as long as a set that may be one of two mirror images."""
     uneven = Model(Chain(3, threshold=(1.0, 1.0, 0.9)), law_of("linearized", 0.08))
     asked = tell(settling, "visit", [shown(ONE, ONE[:0], WIDE, 0.0)] * 3)
     assert Convergence(uneven, SETTINGS).settle(state_of(ONE[0])) is not None
@@ -113,9 +113,9 @@ def test_a_set_of_a_chain_without_a_mirror_image_has_to_fill_as_well(tell):
 def test_a_motion_touches_its_mirror_image_within_the_resolution(tell):
     own = Convergence(MODEL, SETTINGS)
     for away, touches in ((0.9e-3, True), (1.1e-3, False)):
-        assert own.touches(shown(ONE, ONE + away, WIDE, 0.0)) == touches
-    assert not own.touches(shown(ONE, ONE[:0], WIDE, 0.0))
-    # What leaves for another block, or ends, in the longer time does not cover its mirror image.
+        assert own.is_close_to_mirror_image(shown(ONE, ONE + away, WIDE, 0.0)) == touches
+    assert not own.is_close_to_mirror_image(shown(ONE, ONE[:0], WIDE, 0.0))
+    # A motion with returns at another block, or without any, in the longer time does not cover its mirror image.
     found = shown(ONE, ONE + 0.9e-3, WIDE, 0.0)
     tell(settling, "visit", [found, replace(found, block=2), None])
-    assert [own.changes_sides(found) for _ in range(3)] == [True, False, False]
+    assert [own.is_eventually_symmetric(found) for _ in range(3)] == [True, False, False]

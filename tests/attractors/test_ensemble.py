@@ -1,4 +1,4 @@
-"""Labels of many states at once are those of one by one, on real attractors."""
+"""Labels of many states together are those of each alone, on real attractors."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def one_by_one(model, attractors, starts, end):
     ],
 )
 def test_labels_are_those_of_one_by_one(law, blocks, a, share, first, last):
-    """In chaos the two kernels part ways, so that a state near a boundary of basins may come to the other side."""
+    """In chaos the two kernels diverge, so a state near a basin boundary may end on the other side."""
     model = Model(Chain(blocks), law_of(law, a))
     search = Search(model, SETTINGS, MotionSettings())
     box = (-1.5, 1.5), (0.0, 0.2)
@@ -60,7 +60,7 @@ def test_labels_are_those_of_one_by_one(law, blocks, a, share, first, last):
 
 
 def test_near_a_cloud_to_the_last_bit():
-    """As all differences say, one by one, right at the radius too."""
+    """The result agrees with all differences one by one, also exactly at the radius."""
     generator = np.random.default_rng(2)
     orbit = np.repeat(generator.uniform(-1, 1, (5, 6)), 40, axis=0) + 1e-9 * generator.normal(size=(200, 6))
     clouds = [generator.uniform(-0.3, 0.3, (500, 6)), np.zeros((0, 6)), orbit, generator.uniform(-1, 1, (1, 6))]

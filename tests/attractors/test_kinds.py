@@ -1,4 +1,4 @@
-"""What attractors are: of one kind whatever window shows them, and none that still drifts."""
+"""Kinds of attractors do not depend on the window, and motion that still drifts is not an attractor."""
 
 import numpy as np
 import pytest
@@ -42,8 +42,8 @@ def test_motion_that_is_locked_with_a_period_that_no_run_shows_is_not_periodic(l
         pytest.param("nonlinear", 0.3, 1e-5, 3, None, marks=pytest.mark.slow),
     ],
 )
-def test_what_drifts_more_slowly_than_it_is_followed_is_no_attractor(law, a, coupling, blocks, mean):
-    """Blocks on weak springs come to antiphase in a time of about 1/coupling, or the search does not say to what."""
+def test_motion_that_still_drifts_is_no_attractor(law, a, coupling, blocks, mean):
+    """Blocks on weak springs reach antiphase in a time of about 1/coupling, or are undetermined."""
     weak = Model(Chain(blocks, coupling=coupling, pulling=1.0), law_of(law, a))
     found, labels = find_attractors(weak, SearchSettings(samples=6))
     listed = [item.motion.mean_distance for item in found]

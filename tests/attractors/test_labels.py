@@ -1,4 +1,4 @@
-"""Labels where a closed orbit lies in the midst of another attractor, which has patience."""
+"""Labels, above all if a periodic orbit is embedded in another attractor, which has a patience."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ END = 1000.0
 
 @pytest.fixture(scope="module")
 def found():
-    """Return synchrony, and how sampled states reach it alone."""
+    """Return synchrony, sampled states, and the labels and times with synchrony as the only attractor."""
     search = Search(MODEL, SearchSettings(transient=1000.0, window=500.0))
     search.reach(MODEL.begin(PAPER_STATES["minus"]))
     (orbit,) = search.attractors
@@ -32,7 +32,7 @@ def found():
 @pytest.mark.parametrize(
     ("patience", "least", "most"), [(0.0, 0.0, 0.0), (120.0, 0.1, 0.6), (200.0, 0.3, 0.95), (1e9, 0.5, 1.0)]
 )
-def test_what_comes_to_an_orbit_within_the_patience_is_labelled_so(found, patience, least, most):
+def test_a_state_that_reaches_an_orbit_within_the_patience_is_assigned_to_it(found, patience, least, most):
     orbit, states, (alone, reached_at) = found
     wide = replace(orbit, radius=1.0, close_returns=2, patience=patience)
     near, near_at = label_states(MODEL, [wide], *states, time_limit=END)
@@ -47,10 +47,10 @@ def test_what_comes_to_an_orbit_within_the_patience_is_labelled_so(found, patien
 
 
 @pytest.mark.parametrize(("came", "expected"), [([300.0, 100.0], 900.0), ([4000.0, 100.0], 10_000.0), ([], 10_000.0)])
-def test_patience_is_spared_where_a_sample_comes_early(tell, came, expected):
+def test_patience_is_reduced_if_a_sample_arrives_early(tell, came, expected):
     chaos = stand_in(ahead=0.05, kind=MotionKind.CHAOTIC, spacing=1.0, patience=10_000.0)
     labels, times = np.array([1] * len(came) + [0, -1]), np.array([*came, 5000.0, 20_000.0])
-    asked = tell(fractions, "label_together", [(labels, times, None), (np.zeros(50, dtype=int), None, None)])
+    asked = tell(fractions, "label_arrays", [(labels, times, None), (np.zeros(50, dtype=int), None, None)])
     known = [chaos, stand_in(partner=1, ahead=0.0)]
     search = Search(MODEL, SearchSettings(samples=20, fraction_width=0.134), attractors=known)
     with shared_out(1) as each:
@@ -64,9 +64,9 @@ def sticking(position):
     return position @ np.array([[-2.0, 1.0, 0.0], [1.0, -4.0, 1.0], [0.0, 1.0, -2.0]]) <= 1.0
 
 
-def test_states_of_the_basin_fractions_begin_as_they_are_told_to(tell):
-    """Tested, blocks whose springs do not pull hard enough stick; each a has states of its own."""
-    asked = tell(fractions, "label_together", [(np.zeros(50, dtype=int), None, None)] * 3)
+def test_states_of_the_basin_fractions_begin_as_the_start_says(tell):
+    """With a tested start blocks stick if the spring force is too small; the states at each a are independent."""
+    asked = tell(fractions, "label_arrays", [(np.zeros(50, dtype=int), None, None)] * 3)
     settings = SearchSettings(samples=0, fraction_width=0.134)
     for a, start in ((0.08, "tested"), (0.08, "moving"), (0.09, "tested")):
         with shared_out(1) as each:
@@ -81,8 +81,8 @@ def test_states_of_the_basin_fractions_begin_as_they_are_told_to(tell):
     assert abs(np.corrcoef(positions[0].ravel(), positions[2].ravel())[0, 1]) < 0.3
 
 
-def test_states_begin_as_they_are_told_to(found):
-    """Tested, those blocks begin at rest."""
+def test_states_begin_as_the_start_says(found):
+    """With a tested start such blocks begin at rest."""
     orbit, (position, velocity), (_, moving) = found
     labels, times = label_states(MODEL, [orbit], position, velocity, start="tested", time_limit=END)
     expected = label_states(MODEL, [orbit], position, np.where(sticking(position), 0.0, velocity), time_limit=END)
@@ -98,7 +98,7 @@ def test_blocks_may_slip_backward_under_a_symmetric_contact():
 
 
 @pytest.mark.parametrize("threads", [1, 2, 3, 7, 101])
-def test_labels_do_not_depend_on_the_threads_that_share_them_out(found, threads):
+def test_labels_do_not_depend_on_the_number_of_threads(found, threads):
     orbit, states, (labels, times) = found
     shared = label_states(MODEL, [orbit], *states, time_limit=END, threads=threads)
     assert shared[0].tolist() == labels.tolist()
@@ -107,7 +107,7 @@ def test_labels_do_not_depend_on_the_threads_that_share_them_out(found, threads)
 
 
 def test_an_attractor_is_reached_at_the_stops_of_its_own_block(found):
-    """Returns of the middle block, at whose stops those of the first one are never met."""
+    """Returns of the middle block never agree with states at stops of the first one."""
     orbit, states, (labels, _) = found
     inner = returns_at(MODEL, orbit.motion.state(), 2)
     few = [part[:20] for part in states]

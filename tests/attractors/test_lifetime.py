@@ -1,4 +1,4 @@
-"""Lifetimes of chaos: what an ensemble of known rate gives, and chaos of the paper's chain that dies."""
+"""Lifetimes of chaos: of ensembles with a known rate, and of transient chaos of the paper's chain."""
 
 import math
 from dataclasses import replace
@@ -9,20 +9,20 @@ from scipy.stats import poisson
 
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, find_attractors, law_of
 from burridge_knopoff.attractors import lifetime
-from burridge_knopoff.attractors.capture_radius import PATIENT_TIME
-from burridge_knopoff.attractors.lifetime import EXPOSURE, FOLLOWED, UNDECIDED, Lifetime, lifetimes
+from burridge_knopoff.attractors.capture_radius import LONGEST_PATIENCE
+from burridge_knopoff.attractors.lifetime import EXPOSURE, EXTENSION, TRAJECTORIES, Lifetime, lifetimes
 from burridge_knopoff.motion.set_distance import SPACINGS
 from tests.motion.stand_in import stand_in
 
 MODEL = Model(Chain(3), law_of("linearized", 0.2))
 SETTINGS = SearchSettings(lifetime=800.0, time_limit=50.0, seed=5, window=10.0)
-#: Of each trajectory.
-TIME = EXPOSURE * SETTINGS.lifetime / FOLLOWED
+#: Observation time of each trajectory.
+TIME = EXPOSURE * SETTINGS.lifetime / TRAJECTORIES
 
 
 @pytest.mark.parametrize("ends", [0, 1, 5, 40])
 def test_the_interval_is_that_of_a_poisson_count(ends):
-    """At either end of the interval so few, or so many, ends have a probability of 2.5 %."""
+    """At the ends of the interval this number of escapes or fewer, or more, has a probability of 2.5 %."""
     low, high = Lifetime(ends, 1e6).interval
     assert poisson.cdf(ends, 1e6 / low) == pytest.approx(0.025)
     if ends:
@@ -30,8 +30,8 @@ def test_the_interval_is_that_of_a_poisson_count(ends):
         assert Lifetime(ends, 1e6).mean == 1e6 / ends
     else:
         assert (high, Lifetime(0, 1e6).mean) == (math.inf, math.inf)
-    assert Lifetime(ends, 1e6).lasts(0.99 * low)
-    assert not Lifetime(ends, 1e6).lasts(low)
+    assert Lifetime(ends, 1e6).is_longer_than(0.99 * low)
+    assert not Lifetime(ends, 1e6).is_longer_than(low)
 
 
 def test_the_interval_holds_the_lifetime_as_often_as_it_says():
@@ -46,29 +46,29 @@ def test_the_interval_holds_the_lifetime_as_often_as_it_says():
 
 
 def test_an_ensemble_that_nothing_leaves_shows_that_chaos_lasts():
-    """The time of all trajectories is just enough for that."""
-    assert Lifetime(0, EXPOSURE * 1e5).lasts(1e5)
-    assert not Lifetime(1, EXPOSURE * 1e5).lasts(1e5)
+    """The total time is just long enough for that."""
+    assert Lifetime(0, EXPOSURE * 1e5).is_longer_than(1e5)
+    assert not Lifetime(1, EXPOSURE * 1e5).is_longer_than(1e5)
 
 
 @pytest.mark.parametrize(("share", "least", "most"), [(1.0, 0.025, 0.04), (0.8, 0.0, 0.012)])
-def test_chaos_that_is_too_short_passes_for_lasting_no_more_often_than_settings_say(monkeypatch, share, least, most):
-    """Both looks together, by lifetimes drawn at random: of just that mean, and of a shorter one."""
+def test_short_chaos_counts_as_lasting_no_more_often_than_the_settings_say(monkeypatch, share, least, most):
+    """Both tests together, with random lifetimes of exactly the limit in the mean, and of a shorter mean."""
 
     def drawn(model, attractors, index, settings, exposure, random, count):
         lives = random.exponential(share * settings.lifetime, count)
-        time = exposure * settings.lifetime / FOLLOWED
+        time = exposure * settings.lifetime / TRAJECTORIES
         return Lifetime(int((lives < time).sum()), float(np.minimum(lives, time).sum()))
 
-    monkeypatch.setattr(lifetime, "_followed", drawn)
+    monkeypatch.setattr(lifetime, "_follow", drawn)
     passed = 0
     for seed in range(6000):
         settings = replace(SETTINGS, seed=seed)
-        passed += lifetime._lifetime(MODEL, [], 0, settings, EXPOSURE).lasts(settings.lifetime)
+        passed += lifetime._lifetime(MODEL, [], 0, settings, EXPOSURE).is_longer_than(settings.lifetime)
     assert least <= passed / 6000 <= most
 
 
-#: Exponent, radius, close returns and stops of the other attractor, for the time in which it captures a trajectory.
+#: Exponent, radius, close returns and stops of the other attractor, which give its capture time.
 CAUGHT = {
     "exponent": np.array([0.0, -1.0, -2.0]),
     "radius": 0.2 / math.e,
@@ -76,32 +76,33 @@ CAUGHT = {
     "stop_rate": np.array([0.1, 0.2, 0.3]),
     "block": 2,
 }
-#: Twice 1 / 1.0 for the way and 4 returns, at the stops of its block.
+#: Twice the sum of 1 / 1.0 for the approach and 4 returns, at the stops of its block.
 LATE = 2.0 * (1.0 + 4 / 0.2)
 
 
 @pytest.fixture
 def find(monkeypatch, tell):
-    """Return how lifetimes are found of trajectories whose captures, and where the others end, are told for each round.
+    """Return a function that computes lifetimes with scripted captures and ends of the trajectories in each round.
 
-    when : nan for who is not captured; nowhere : how many of them end nowhere; early : which of these had by LATE
+    when : capture times, NaN for none; nowhere : number of the others that reach no attractor; early : their labels at
+        LATE
     """
 
     def found(attractors, *rounds):
         runs = []
 
-        def moved(model, starts, time):
+        def advance(model, starts, time):
             runs.append((len(starts), time))
             return starts
 
-        monkeypatch.setattr(lifetime, "moved", moved)
+        monkeypatch.setattr(lifetime, "advance", advance)
         first, later = [], []
         for when, nowhere, early in rounds:
             first.append((np.where(np.isnan(when), -1, 0), np.nan_to_num(when), np.zeros((len(when), 6))))
             ends = np.zeros(int(np.isnan(when).sum()), int)
             ends[:nowhere] = -1
             later += [(ends, None), (np.array(early, int), None)]
-        followed, asked = tell(lifetime, "label_together", first), tell(lifetime, "label", later)
+        followed, asked = tell(lifetime, "label_arrays", first), tell(lifetime, "label", later)
         lives = lifetimes(MODEL, attractors, SETTINGS)
         calls = [(len(position), time_limit, len(known)) for _, known, position, *_, time_limit in followed]
         return lives, runs + calls + [(len(starts), time_limit, len(known)) for _, known, starts, time_limit in asked]
@@ -113,17 +114,17 @@ def chaos(partner=0):
     return stand_in(partner=partner, kind=MotionKind.CHAOTIC)
 
 
-MANY = 32 * UNDECIDED
+MANY = 32 * EXTENSION
 NEVER = math.nan
-#: More than enough to show that chaos lasts: none of so many trajectories leaves.
+#: Enough to show that chaos lasts: no trajectory leaves.
 ALL_STAY = ([NEVER] * MANY, 0, [])
 
 
 def test_trajectories_that_have_left_are_counted_with_their_times(find):
-    """Six are captured by the other attractor, two of them too soon to tell; where seven went, and when, is unknown."""
+    """Six are captured by the other attractor, two of them too early to count; seven leave to an unknown set."""
     when = [LATE + 20.0] * 4 + [LATE, 0.5 * LATE] + [NEVER] * 26
     found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (when, 7, [-1, 0, 0, -1, 0, 0, 0]), ALL_STAY)
-    # Nine are few: more are followed.
+    # Nine escapes are too few: more trajectories are followed.
     assert found == [Lifetime(9, (19 + MANY) * TIME + 4 * 20.0 + 5 * 0.5 * TIME), None]
     asked = [call for call in asked if 0 < call[0] <= 32]
     assert asked == [(7, LATE), (32, LATE + TIME, 1), (26, 50.0, 2), (7, 50.0, 2)]
@@ -133,16 +134,16 @@ def test_of_chaos_that_is_over_soon_all_captures_count(find):
     when = [10.0] * 28 + [NEVER] * 4
     found, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], (when, 2, [0, -1]))
     assert found == [Lifetime(30, 28 * 10.0 + 2 * (LATE + TIME) + 2 * 0.5 * LATE), None]
-    # As where less than eight are left, with those that had come to nothing by then.
+    # All captures also count if fewer than eight trajectories are left, lost ones excluded.
     found, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], ([10.0] * 21 + [NEVER] * 11, 9, [-1] * 4 + [0] * 5))
     assert found == [Lifetime(30, 21 * 10.0 + 2 * (LATE + TIME) + 9 * 0.5 * LATE), None]
 
 
-def test_where_some_leave_so_many_more_are_followed_that_they_decide(find):
+def test_if_some_leave_more_are_followed_to_decide(find):
     first = [LATE + 20.0] + [NEVER] * 31
     found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (first, 0, []), ALL_STAY)
     assert found == [Lifetime(1, (31 + MANY) * TIME + 20.0), None]
-    assert found[0].lasts(SETTINGS.lifetime)
+    assert found[0].is_longer_than(SETTINGS.lifetime)
     assert asked[:2] == [(32, LATE + TIME, 1), (MANY, LATE + TIME, 1)]
 
 
@@ -160,17 +161,17 @@ def test_motion_that_is_not_chaotic_has_no_lifetime(find):
     ("rate", "radius", "way"),
     [
         # A torus, chaos or a locked torus.
-        (0.0, 0.2 / math.e, 0.5 * PATIENT_TIME - 20.0),
-        (0.99e-4, 0.005, 0.5 * PATIENT_TIME - 20.0),
-        (-1e-4, 0.2, 0.5 * PATIENT_TIME - 20.0),
+        (0.0, 0.2 / math.e, 0.5 * LONGEST_PATIENCE - 20.0),
+        (0.99e-4, 0.005, 0.5 * LONGEST_PATIENCE - 20.0),
+        (-1e-4, 0.2, 0.5 * LONGEST_PATIENCE - 20.0),
         (1.01e-4, 0.2 / math.e, 1.0 / 1.01e-4),
         (5e-4, 0.2 / math.e, 2000.0),
         (5e-4, 0.4, 0.0),
-        # A tiny orbit in the midst of chaos: what begins in its own basin takes long to show it.
+        # A tiny orbit embedded in chaos: trajectories in its own basin take long to be captured.
         (5e-4, 0.2 * math.exp(-12.0), 24_000.0),
     ],
 )
-def test_what_attracts_slowly_is_waited_for(find, rate, radius, way):
+def test_counting_starts_after_the_capture_time_of_a_slow_attractor(find, rate, radius, way):
     slow = stand_in(partner=1, **{**CAUGHT, "exponent": np.array([0.0, -rate, -1.0]), "radius": radius})
     _, asked = find([chaos(), slow], ([NEVER] * 32, 0, []))
     assert asked[0] == (32, pytest.approx(2.0 * (way + 20.0) + TIME), 1)
@@ -178,8 +179,10 @@ def test_what_attracts_slowly_is_waited_for(find, rate, radius, way):
 
 @pytest.mark.slow
 def test_lifetimes_do_not_depend_on_how_slowly_a_trajectory_is_captured():
-    """At a = 0.243828 an orbit takes some 3000 time units to capture what leaves chaos, whose mean lifetime is 109 000
-    (97 100 to 122 700): 289 ends of trajectories of another solver, each seen by J."""
+    """At a = 0.243828 an orbit takes about 3000 time units to capture trajectories that leave chaos.
+
+    Its mean lifetime is 109 000 (97 100 to 122 700), from 289 escapes with another solver, each detected by J.
+    """
     model = Model(Chain(3), law_of("linearized", 0.243828125))
     settings = SearchSettings()
     attractors, _ = find_attractors(model, settings)
@@ -192,10 +195,10 @@ def test_lifetimes_do_not_depend_on_how_slowly_a_trajectory_is_captured():
 
 
 def test_trajectories_begin_apart_by_the_seed_and_the_speed(tell):
-    """At twice the speed of the paper they are pushed by up to twice a tenth of the resolution."""
+    """At twice the v of the paper the perturbations are up to twice a tenth of the resolution."""
     fast, away = Model(Chain(3), MODEL.law, 0.2), []
     for seed in (3, 3, 4):
-        asked = tell(lifetime, "label_together", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
+        asked = tell(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
         tell(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
         wide = stand_in(kind=MotionKind.CHAOTIC, radius=0.021)
         lifetimes(fast, [wide], replace(SETTINGS, seed=seed, lifetime=100.0))
@@ -205,10 +208,10 @@ def test_trajectories_begin_apart_by_the_seed_and_the_speed(tell):
     assert away[0] == away[1] != away[2]
 
 
-def test_thin_chaos_is_begun_on_and_known_however_small_its_radius(tell):
-    """Pushes are far smaller than the radius; what is as near to the set as its returns are to each other is on it."""
+def test_trajectories_begin_on_thin_chaos_and_are_recognised_there(tell):
+    """Perturbations are far smaller than the radius; states within a few spacings of the returns are on the set."""
     thin = stand_in(kind=MotionKind.CHAOTIC, radius=1e-6, spacing=0.01)
-    followed = tell(lifetime, "label_together", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
+    followed = tell(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
     asked = tell(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
     (found,) = lifetimes(MODEL, [thin], SETTINGS)
     assert found.ends == 0

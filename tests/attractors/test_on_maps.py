@@ -1,4 +1,4 @@
-"""The search for attractors as a contract, on maps whose attractors and basins are known in closed form."""
+"""The search for attractors on maps whose attractors and basins are known in closed form."""
 
 import numpy as np
 import pytest
@@ -44,7 +44,7 @@ def test_chaos_is_one_attractor_that_lasts(maps):
     assert (labels == 0).all()
     assert found.motion.exponent[0] == pytest.approx(np.log(2.0), abs=0.02)
     (life,) = lifetimes(search.model, search.attractors, SEARCH)
-    assert life.lasts(SEARCH.lifetime)
+    assert life.is_longer_than(SEARCH.lifetime)
 
 
 def test_motion_that_never_returns_is_quasiperiodic(maps):
@@ -56,7 +56,7 @@ def test_motion_that_never_returns_is_quasiperiodic(maps):
 
 @pytest.mark.parametrize("mu", [0.0, 0.2, -0.3])
 def test_states_are_labelled_by_the_well_that_they_fall_into(maps, mu):
-    """The unstable fixed point between the wells parts their basins."""
+    """The unstable fixed point between the wells separates their basins."""
     model = TWO_WELLS.at(1.0 + mu)
     settings = SearchSettings(samples=60, position=(-1.2, 1.2), transient=100.0, window=100.0, time_limit=400.0)
     search, x, labels = searched(model, settings)
@@ -64,7 +64,7 @@ def test_states_are_labelled_by_the_well_that_they_fall_into(maps, mu):
     wells = np.array([item.motion.state().position[0] for item in search.attractors])
     assert np.sort(wells) == pytest.approx(roots[[0, 2]], abs=1e-9)
     assert (wells[labels] == np.where(x < roots[1], wells.min(), wells.max())).all()
-    # No radius reaches over the point that parts the basins.
+    # No radius extends beyond the point that separates the basins.
     for item, well in zip(search.attractors, wells, strict=True):
         assert 0.0 < item.radius < abs(well - roots[1])
 

@@ -28,7 +28,7 @@ FIELDS = [(kind, name) for kind in CLASSES for name in fields_of(kind)]
 
 
 def values(kind, name):
-    """Return values that a field takes, and values that it refuses."""
+    """Return values that a field accepts, and values that it refuses."""
     allowed = fields_of(kind)[name].range
     if isinstance(allowed, Interval):
         low, high = allowed.ends.least, allowed.ends.most

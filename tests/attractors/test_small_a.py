@@ -1,6 +1,6 @@
-"""As a falls to 0 the attractors become normal modes of the sliding chain, at the edge U' ≥ 0: against closed forms.
+"""As a falls to 0 the attractors become normal modes of the sliding chain with min U' = 0: compared with closed forms.
 
-Which of them attract, averaged amplitude equations decide: see docs/attractors.md.
+Averaged amplitude equations decide which of them attract: see docs/attractors.md.
 """
 
 from itertools import combinations
@@ -22,7 +22,7 @@ FAST = 1.0 + np.sqrt(3.0)
 
 
 def mean_modulus(first: float, second: float) -> float:
-    """Return the mean of sqrt(first² sin² + second² cos²) over a turn, by equidistant points."""
+    """Return the mean of sqrt(first² sin² + second² cos²) over a period, by equidistant points."""
     phase = np.linspace(0.0, 2.0 * np.pi, 100_000, endpoint=False)
     return float(np.hypot(first * np.sin(phase), second * np.cos(phase)).mean())
 
@@ -37,7 +37,7 @@ def modes(ends: float, fast: float) -> ChainState:
     return ChainState(position, np.full(3, V), np.zeros(3, dtype=bool))
 
 
-# The amplitudes at which the blocks just touch U' = 0: the end blocks alone; the middle block and the end blocks.
+# The amplitudes at which the minimum of U' is 0: for the end blocks alone; for the middle block and the end blocks.
 MODES = {"branch 2": (V, 0.0), "branch 1": (V - V / FAST, V / FAST)}
 
 
@@ -61,7 +61,7 @@ def test_the_mean_distance_tends_to_that_of_the_modes(branch: str, limit: float,
             transient=10.0 / a, window=20.0 / a, sampling=1.0 / a, trajectory=0.0, events="none", lyapunov_exponents=0
         )
         found.append(run(model, modes(ends, fast), settings).mean_distance)
-    # Blocks that grow by less from touch to touch stick for less time: ⟨J⟩ comes down to that of the modes.
+    # The less modes grow between two sticks, the shorter the sticks are: ⟨J⟩ approaches that of the modes.
     first, second, third = found
     extrapolated = 2.0 * first - second
     assert closed_form < first < second < third < 1.05 * closed_form

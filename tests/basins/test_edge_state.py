@@ -29,7 +29,7 @@ FEW = EdgeSettings(samples=100)
 
 
 def coexisting(law, a, samples=24, starts=()):
-    """Return a model and its attractors, as far as sampled and given states reach them."""
+    """Return a model and the attractors that sampled and given states reach."""
     model = Model(Chain(3), law_of(law, a))
     return model, find_attractors(model, samples=samples, transient=1000, window=1000, starts=starts)[0]
 
@@ -39,14 +39,14 @@ def is_periodic(attractor):
 
 
 def stops_of_first(orbit):
-    """Return the states at the stops of the first block in a period, shape (stops, 6), in an order of their own."""
+    """Return the states at the stops of the first block in a period, shape (stops, 6), sorted by the first position."""
     values = flow(orbit.model, orbit.reference, orbit.period)[0].log.events.values()
     states = values[(values[:, 0] == 1) & (values[:, 1] == 0), 2:]
     return states[np.argsort(states[:, 0])]
 
 
 def check_same(orbit, other):
-    """Require two forms of one orbit, whatever their reference states."""
+    """Require that two orbits are the same, whatever their reference states."""
     assert orbit.stop_counts == other.stop_counts
     assert orbit.period == pytest.approx(other.period, rel=0, abs=1e-9)
     assert stops_of_first(orbit) == pytest.approx(stops_of_first(other), rel=0, abs=1e-9)
@@ -54,7 +54,7 @@ def check_same(orbit, other):
 
 @pytest.fixture(scope="module")
 def between_mirror_images():
-    """Return the edge state between the two sides of a mirror pair, next to the loss of synchrony, and the pair."""
+    """Return the edge state between the two sides of a mirror pair, near the loss of synchrony, and the pair."""
     model, attractors = coexisting("nonlinear", 0.1)
     first, second = (item for item in attractors if item.symmetry == Symmetry.ASYMMETRIC)
     states = first.motion.state(), second.motion.state()
@@ -75,7 +75,7 @@ def test_attractors_are_searched_for_if_none_are_given(between_mirror_images):
 
 
 def test_its_multipliers_are_those_of_another_integrator(between_mirror_images):
-    """The others are 0: perturbations that a stop takes away, and 1, that of the flow."""
+    """The others are 0, for perturbations that vanish at a stop, and 1, for that along the flow."""
     found, _ = between_mirror_images
     orbit, step = found.orbit, 1e-5
     start = orbit.reference
@@ -109,12 +109,12 @@ def test_each_side_leads_to_one_of_the_two(between_mirror_images):
     assert sorted(map(len, found.sides)) == [1, 1]
     (first,), (second,) = found.sides
     assert attractors[first].partner == second
-    assert found.reached.sum(axis=1).tolist() == [100, 100]
+    assert found.reached_count.sum(axis=1).tolist() == [100, 100]
     assert not found.has_crossing
 
 
 def test_states_exactly_between_mirror_images_reach_neither(between_mirror_images):
-    """The mean of a state and its mirror image stays symmetric, and reaches nothing: it is passed over."""
+    """The mean of a state and its mirror image stays symmetric and reaches no attractor, so it is ignored."""
     found, attractors = between_mirror_images
     state = next(item for item in attractors if item.symmetry == Symmetry.ASYMMETRIC).motion.state()
     other = edge_state(found.model, state, state.mirrored(), attractors, FEW, time_limit=5000)
@@ -130,7 +130,7 @@ def test_states_exactly_between_mirror_images_reach_neither(between_mirror_image
     ],
 )
 def test_the_saddle_is_the_orbit_with_which_the_attractor_is_born(a, start, stops, saddle_stops, crosses):
-    """Continued downward, the stable orbit turns back and is a saddle from there on."""
+    """Continued downward, the stable orbit becomes the saddle beyond a turning point."""
     model, attractors = coexisting("linearized", a, 60, [start] if start else [])
     orbits = {k: limit_cycle(model, item.motion.state()) for k, item in enumerate(attractors) if is_periodic(item)}
     index = next(k for k, orbit in orbits.items() if orbit.stop_counts == stops)
@@ -173,12 +173,12 @@ def test_a_chaotic_saddle(chaotic):
     assert across > 10.0 * within
     assert within > 4.0 * found.exponent_error[1]
     assert flow == pytest.approx(0.0, abs=1e-3)
-    # Much faster motion across the boundary than within it: the boundary is smooth.
+    # Trajectories leave the boundary much faster than they separate within it: the boundary is smooth.
     assert not found.has_crossing
 
 
 def test_its_lifetime_is_that_of_states_around_it(chaotic):
-    """Uniformly in all directions within 1e-4: in proportion to exp(−τ/lifetime) they are left after τ."""
+    """Of states displaced uniformly in all directions, within 1e-4, a fraction exp(−τ/lifetime) is left after τ."""
     found, attractors = chaotic
     generator = np.random.default_rng(3)
     returns = found.returns[generator.integers(len(found.returns), size=3000)]
@@ -193,7 +193,7 @@ def test_its_lifetime_is_that_of_states_around_it(chaotic):
     assert found.lifetime == pytest.approx(1.0 / found.exponent[0], rel=0.15)
 
 
-def test_labels_that_a_later_one_contradicts_are_made_with_smaller_radii():
+def test_smaller_radii_are_used_if_labels_contradict_each_other():
     model, attractors = coexisting("linearized", 0.08)
     states = [item.motion.state() for item in attractors[:2]]
     exact = edge_state(model, *states, attractors, FEW)

@@ -1,9 +1,9 @@
-"""How many states are drawn for basin fractions: as many as give each of them as narrow an interval as is asked."""
+"""The number of states for basin fractions: the smallest at which every interval is narrow enough."""
 
 import numpy as np
 import pytest
 
-from burridge_knopoff.basins.fractions import STEP, enough_states
+from burridge_knopoff.basins.fractions import STEP, required_states
 from burridge_knopoff.model.sampling import fraction_interval, half_width, most_states
 
 
@@ -18,7 +18,7 @@ def test_a_fraction_of_one_half_needs_the_most_states(width):
 @pytest.mark.parametrize("share", [0.0, 0.03, 0.2, 0.5])
 def test_states_are_drawn_until_all_intervals_are_narrow_and_no_longer(share):
     labels = np.where(np.random.default_rng(5).random(3000) < share, 1, -1)
-    count = enough_states(labels, 0.02)
+    count = required_states(labels, 0.02)
 
     def widest(n):
         hits = {0, *np.unique(labels[:n], return_counts=True)[1].tolist()}
@@ -26,12 +26,12 @@ def test_states_are_drawn_until_all_intervals_are_narrow_and_no_longer(share):
 
     assert widest(count) <= 0.02
     assert count == STEP or widest((count - 1) // STEP * STEP) > 0.02
-    # What comes later decides nothing, and fewer states are not enough.
-    assert enough_states(labels[:count], 0.02) == count
-    assert enough_states(labels[: count - 1], 0.02) is None
+    # Later states do not matter, and one state fewer is not enough.
+    assert required_states(labels[:count], 0.02) == count
+    assert required_states(labels[: count - 1], 0.02) is None
 
 
 def test_a_small_fraction_needs_fewer_states_than_a_large_one():
-    counts = [enough_states(np.arange(3000) % 100 < 100 * share, 0.02) for share in (0.05, 0.2, 0.5)]
+    counts = [required_states(np.arange(3000) % 100 < 100 * share, 0.02) for share in (0.05, 0.2, 0.5)]
     assert counts == sorted(counts)
     assert counts[0] < counts[-1] / 3

@@ -1,4 +1,4 @@
-"""Initial states by their phases: what they say of themselves, and the normal mode that opposite phases are."""
+"""Initial states given by phases: their positions and velocities, and the normal mode of opposite phases."""
 
 import numpy as np
 import pytest
@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
 from burridge_knopoff.basins.initial_phases import (
-    block_frequencies,
     common_phases,
     has_free_ends,
     inner_phases,
     oscillating_states,
+    single_block_frequencies,
     slipping_amplitude,
 )
 from burridge_knopoff.running.runner import Runner
@@ -29,7 +29,7 @@ def test_amplitude_and_phases_can_be_read_off_the_state(model):
     assert not standing.any()
     offset, swing = position - model.sliding_offset, model.v - velocity
     for block, phase in ((0, common), (-1, common + difference)):
-        frequency = block_frequencies(model)[block]
+        frequency = single_block_frequencies(model)[block]
         assert np.hypot(offset[:, block], swing[:, block] / frequency) == pytest.approx(amplitude)
         found = np.degrees(np.arctan2(swing[:, block] / frequency, offset[:, block]))
         assert (found - phase + 180.0) % 360.0 == pytest.approx(180.0)
@@ -39,13 +39,13 @@ def test_amplitude_and_phases_can_be_read_off_the_state(model):
 
 @pytest.mark.parametrize("model", [MODEL, UNEQUAL])
 def test_inner_blocks_oscillate_with_a_share_of_the_amplitude(model):
-    """(x, −(U' − v)/ω) is the point share · A (cos θ_i, sin θ_i) of each; the end blocks are as they are without."""
+    """(x, −(U' − v)/ω) is the point share · A (cos θ_i, sin θ_i) of each; the end blocks are unchanged."""
     share, amplitude = 0.6, np.array([0.01, 0.02, slipping_amplitude(model, 0.6)])
     difference, common = np.array([0.0, 50.0, 180.0]), np.array([10.0, 200.0, 300.0])
     phase = inner_phases(0.05, (3, model.chain.blocks - 2), 1)
     position, velocity, standing = oscillating_states(model, amplitude, difference, common, share, phase)
     assert not standing.any()
-    swing = (model.v - velocity) / block_frequencies(model)
+    swing = (model.v - velocity) / single_block_frequencies(model)
     angle = np.radians(phase)
     assert (position - model.sliding_offset)[:, 1:-1] == pytest.approx(share * amplitude[:, None] * np.cos(angle))
     assert swing[:, 1:-1] == pytest.approx(share * amplitude[:, None] * np.sin(angle))
@@ -74,7 +74,7 @@ def test_with_no_share_inner_phases_change_no_bit():
     st.integers(0, 99),
 )
 def test_up_to_the_slipping_amplitude_no_block_stands(model, share, size, difference, seed):
-    """And beyond it one does at some phases."""
+    """Beyond it a block does at some phases."""
     common, of_inner = common_phases(0.05, (500,), seed), inner_phases(0.05, (500, model.chain.blocks - 2), seed)
     amplitude = np.full(500, size * slipping_amplitude(model, share))
     _, velocity, standing = oscillating_states(model, amplitude, np.full(500, difference), common, share, of_inner)
@@ -89,10 +89,10 @@ def test_an_inner_block_oscillates_at_its_frequency_while_its_neighbours_slide()
         UNEQUAL, *(np.array([x]) for x in (0.02, 0.0, 90.0)), 1.0, np.array([[0.0, 90.0]])
     )
     x = (position - UNEQUAL.sliding_offset)[0]
-    # Alone off its place is the second block, at its turning point.
+    # Only the second block is displaced, at its turning point.
     assert x == pytest.approx([0.0, 0.02, 0.0, 0.0], abs=1e-15)
     pull = -UNEQUAL.chain.stiffness @ x
-    assert pull[1] == pytest.approx(-(block_frequencies(UNEQUAL)[1] ** 2) * x[1])
+    assert pull[1] == pytest.approx(-(single_block_frequencies(UNEQUAL)[1] ** 2) * x[1])
 
 
 @pytest.mark.parametrize(
@@ -100,10 +100,12 @@ def test_an_inner_block_oscillates_at_its_frequency_while_its_neighbours_slide()
     [Chain(2), Chain(2, coupling=0.5), Chain(3, ends="ring"), Chain(5, ends="ring"), Chain(grid=(2, 1), coupling=0.5)],
 )
 def test_end_blocks_that_a_spring_joins_have_no_frequency_of_their_own(chain):
-    """Opposite and equal phases are normal modes, or nearly, whose frequencies are not K_11: they are refused."""
+    """Opposite and equal phases are then (nearly) normal modes with frequencies other than √K_11: they are refused."""
     assert not has_free_ends(chain)
     model = Model(chain, law_of("linearized", 0.08))
-    with pytest.raises(ValueError, match=rf"^chain: got {chain.blocks} blocks, \w+, expected three blocks or more"):
+    with pytest.raises(
+        ValueError, match=rf"^chain: got {chain.blocks} blocks, \w+, expected a row of at least three blocks"
+    ):
         oscillating_states(model, *(np.array([x]) for x in (0.01, 180.0, 0.0)))
     if chain.blocks == 2:
         opposite, equal = (vector @ chain.stiffness @ vector / 2.0 for vector in (np.array([1.0, -1.0]), np.ones(2)))
@@ -111,18 +113,18 @@ def test_end_blocks_that_a_spring_joins_have_no_frequency_of_their_own(chain):
 
 
 def test_the_frequency_is_that_of_a_block_between_sliding_neighbours():
-    assert block_frequencies(MODEL) ** 2 == pytest.approx([2.0, 4.0, 2.0])
+    assert single_block_frequencies(MODEL) ** 2 == pytest.approx([2.0, 4.0, 2.0])
     assert slipping_amplitude(MODEL, 1.0) == pytest.approx(0.05)
-    # Inner blocks that oscillate little leave it to the end blocks.
+    # If inner blocks oscillate little, the end blocks decide.
     assert slipping_amplitude(MODEL, 0.7) == slipping_amplitude(MODEL, 0.0)
     assert slipping_amplitude(MODEL) == pytest.approx(0.1 / np.sqrt(2.0))
     # Springs to the driver and to the only neighbour.
-    assert block_frequencies(UNEQUAL) ** 2 == pytest.approx([1.5, 3.5, 5.5, 3.5])
+    assert single_block_frequencies(UNEQUAL) ** 2 == pytest.approx([1.5, 3.5, 5.5, 3.5])
     assert slipping_amplitude(UNEQUAL) == pytest.approx(0.2 / np.sqrt(3.5))
 
 
 def test_opposite_phases_are_a_normal_mode():
-    """x_1 = −x_3 and x_2 = 0 for ever, an oscillation that grows as exp(aτ/2), until a block stops."""
+    """x_1 = −x_3 and x_2 = 0: an oscillation that grows as exp(aτ/2) until a block stops."""
     a, amplitude, phase = 0.08, 0.02, 40.0
     position, velocity, _ = oscillating_states(MODEL, *(np.array([x]) for x in (amplitude, 180.0, phase)))
     start = ChainState(position[0] - MODEL.sliding_offset, velocity[0], np.zeros(3, dtype=bool))
@@ -137,7 +139,7 @@ def test_opposite_phases_are_a_normal_mode():
 
 
 def test_no_block_slips_backward():
-    """Beyond v/ω a block stands where the oscillation would take it back."""
+    """Above v/ω a block is at rest where its oscillation would take it backward."""
     common = np.arange(0.0, 360.0, 5.0)
     amplitude = np.full(len(common), 0.2)
     position, velocity, standing = oscillating_states(MODEL, amplitude, np.full(len(common), 180.0), common)
@@ -145,7 +147,7 @@ def test_no_block_slips_backward():
     assert velocity[:, [0, 2]] == pytest.approx(np.maximum(wanted, 0.0))
     assert standing.tolist() == (wanted < 0.0).any(axis=1).tolist()
     assert 0.5 < standing.mean() < 1.0
-    # Whether it stands or not, it is where its phase says.
+    # At rest or not, its position is given by its phase.
     assert position[:, 0] - MODEL.sliding_offset[0] == pytest.approx(0.2 * np.cos(np.radians(common)))
 
 

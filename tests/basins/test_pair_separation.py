@@ -1,16 +1,16 @@
-"""Pairs that are divided: they count what plain sampling counts, whatever is kept of them."""
+"""Divided pairs: their weighted fractions are those of plain sampling, whichever pairs are selected."""
 
 import numpy as np
 import pytest
 
-from burridge_knopoff.basins.pair_separation import BATCHES, PARTS, SEPARATIONS, _chosen, follow_pairs
+from burridge_knopoff.basins.pair_separation import BATCHES, PARTS, SEPARATIONS, _select, follow_pairs
 from tests.basins.boundaries import cantor, half_plane
 
 UNIT = (0.0, 1.0)
 
 
 def plain(label, separation, count, first=UNIT, last=UNIT, seed=5):
-    """Return the fraction of pairs of a plane that differ, and its standard error, from points that are just drawn."""
+    """Return the fraction of pairs of a plane that differ, and its standard error, from uniformly drawn points."""
     generator = np.random.default_rng(seed)
     low, high = np.array([first, last]).T
     start = low - separation + (high - low + 2 * separation) * generator.random((count, 2))
@@ -24,9 +24,9 @@ def plain(label, separation, count, first=UNIT, last=UNIT, seed=5):
 
 
 def check_fractions(label, ranges, count, seeds, drawn, separations):
-    """Hold the fractions of pairs, by their mean and its error over seeds, against those of so many pairs drawn."""
+    """Compare the fractions of pairs, by their mean and its error over seeds, with those of pairs drawn uniformly."""
     pairs = [follow_pairs(label, *ranges, count, seed) for seed in range(seeds)]
-    found = [one.different.sum(axis=0) / one.known.sum(axis=0) for one in pairs]
+    found = [one.different_weight.sum(axis=0) / one.labelled_weight.sum(axis=0) for one in pairs]
     mean, error = np.mean(found, axis=0), np.std(found, axis=0, ddof=1) / np.sqrt(seeds)
     for k in separations:
         expected, own = plain(label, SEPARATIONS[k], drawn, *ranges)
@@ -47,7 +47,7 @@ def test_undetermined_points_are_left_out():
 
 
 def test_weights_are_those_of_pairs_of_the_plane():
-    """Of pairs that begin up to a tenth of the width outside, all that are short and lie in the plane."""
+    """The total weight is the fraction of short pairs in the plane among those that begin up to 0.1 outside."""
     seen = []
 
     def label(points):
@@ -58,24 +58,24 @@ def test_weights_are_those_of_pairs_of_the_plane():
     points = np.concatenate(seen)
     assert (points >= [-1.0, 0.0]).all()
     assert (points <= [3.0, 2.0]).all()
-    assert not pairs.different.any()
+    assert not pairs.different_weight.any()
     assert not pairs.different_count.any()
-    assert pairs.known.shape == (BATCHES, len(SEPARATIONS))
+    assert pairs.labelled_weight.shape == (BATCHES, len(SEPARATIONS))
     area = 4.0 * 2.0 / (4.8 * 2.8)
-    assert pairs.known[:, -1].sum() / 2000 == pytest.approx(area, abs=4 * np.sqrt(area * (1 - area) / 2000))
-    # Two points for each pair that is kept, as far as they lie in the plane.
+    assert pairs.labelled_weight[:, -1].sum() / 2000 == pytest.approx(area, abs=4 * np.sqrt(area * (1 - area) / 2000))
+    # At most two points are labelled for each selected pair.
     assert len(points) < 2 * 2000 * len(SEPARATIONS)
 
 
 def test_pairs_are_divided_into_thirds():
-    """What is labelled after the ends of the pairs lies a third of the way from one to the other."""
+    """The points that are labelled after the ends of the pairs divide the pairs into thirds."""
     seen = []
 
     def label(points):
         seen.append(points)
         return half_plane(points)
 
-    # So far from the edges that hardly a pair reaches out of the plane.
+    # The edges are so far away that hardly any pair extends beyond the plane.
     follow_pairs(label, (0.0, 1.0), (0.0, 1e6), BATCHES, 2)
     assert PARTS == 3
     ends = np.concatenate(seen[:2])
@@ -86,22 +86,22 @@ def test_pairs_are_divided_into_thirds():
 
 def test_the_same_seed_gives_the_same_pairs():
     one, same, other = (follow_pairs(half_plane, UNIT, UNIT, 100, seed) for seed in (3, 3, 4))
-    assert (one.different == same.different).all()
-    assert (one.different != other.different).any()
-    # A batch has one pair at least, unless there are none.
-    assert (follow_pairs(half_plane, UNIT, UNIT, 1, 3).known.sum(axis=1) > 0.0).mean() > 0.5
+    assert (one.different_weight == same.different_weight).all()
+    assert (one.different_weight != other.different_weight).any()
+    # A batch has at least one pair, unless there are none.
+    assert (follow_pairs(half_plane, UNIT, UNIT, 1, 3).labelled_weight.sum(axis=1) > 0.0).mean() > 0.5
     none = follow_pairs(half_plane, UNIT, UNIT, 0, 3)
-    assert not none.known.any()
-    assert none.known_count.tolist() == [0] * len(SEPARATIONS)
+    assert not none.labelled_weight.any()
+    assert none.labelled_count.tolist() == [0] * len(SEPARATIONS)
 
 
-def test_what_is_chosen_keeps_its_weight_in_the_mean():
+def test_selection_keeps_weights_in_the_mean():
     weight = np.array([0.1, 3.0, 0.5, 0.4, 1.0])
     generator = np.random.default_rng(1)
     mean = np.zeros(5)
     for _ in range(4000):
-        chosen, new = _chosen(weight, 3, generator)
+        chosen, new = _select(weight, 3, generator)
         assert len(chosen) == len(new) == 3
         np.add.at(mean, chosen, new / 4000)
     assert mean == pytest.approx(weight, rel=0.1)
-    assert _chosen(weight, 5, generator)[1].tolist() == weight.tolist()
+    assert _select(weight, 5, generator)[1].tolist() == weight.tolist()

@@ -1,4 +1,4 @@
-"""Basins: the same labels with any threads and tiles, and those of whole runs."""
+"""Basins: labels do not depend on threads and tiles, and agree with full runs."""
 
 from dataclasses import replace
 from itertools import product
@@ -11,7 +11,7 @@ from burridge_knopoff.attractors.stored_returns import known_attractors, returns
 from burridge_knopoff.basins.plane import pixel_centres, plane
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.continuation.along_a import continue_attractors
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS, STARTS
 from burridge_knopoff.motion.settings import MOTION
@@ -26,7 +26,7 @@ MODEL = Model(Chain(3), law_of("linearized", 0.08))
 @pytest.fixture(scope="module")
 def searched():
     states = list(PAPER_STATES.values())
-    found = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, Refine(1.0), starts=states)
+    found = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, RefinementSettings(1.0), starts=states)
     parts = [attractors.one_law(found, states, SEARCH, MOTION, "moving")]
     rows = [found.rows(place) for place in found.grid]
     whole = all_laws.merge(parts, all_laws.branch_numbers(parts, [MODEL], SEARCH))
@@ -65,7 +65,7 @@ def test_any_number_of_threads_and_tiles_gives_the_same_labels(table, known, fou
 
 
 def check_run(table, state, branch, **conventions):
-    """Hold the branch that a state is said to reach against the mean distance of a whole run."""
+    """Compare the branch that a state reaches with the mean distance of a full run."""
     options = {"transient": 6000.0, "window": 1000.0, "events": "none", "lyapunov_exponents": 0}
     run = simulate("linearized", 0.08, state, **options, **conventions)
     there = table.sel(law="linearized", a=0.08)
@@ -73,7 +73,7 @@ def check_run(table, state, branch, **conventions):
     assert run.mean_distance == pytest.approx(mean, abs=2e-4), (state, conventions)
 
 
-def test_pixels_are_what_whole_runs_end_in(table, found):
+def test_runs_end_on_the_branches_of_their_pixels(table, found):
     """Every pixel of the diagonal, and the plane's axes: the first index is U_N(0)."""
     for k in range(0, 16, 3):
         for m in (k, (5 * k + 2) % 16):
@@ -82,7 +82,7 @@ def test_pixels_are_what_whole_runs_end_in(table, found):
             check_run(table, InitialState("pixel", position, (0.099, 0.1012, 0.1023)), one["branch"])
 
 
-def test_runs_of_the_paper_end_on_the_branch_that_is_told(table):
+def test_runs_of_the_paper_end_on_the_branch_in_the_table(table):
     for contact, start, initial in product(CONTACTS, STARTS, PAPER_STATES):
         branch = table["initial_branch"].sel(law="linearized", a=0.08, contact=contact, start=start, initial=initial)
         check_run(table, initial, branch, contact=contact, start=start)
@@ -98,7 +98,7 @@ def test_a_plane_of_states():
 
 @pytest.mark.parametrize(("place", "pairs"), [(0, 0), (1, 1)])
 def test_attractors_are_read_as_they_were_found(searched, place, pairs):
-    """Returns, mirror images, and all that decides a label."""
+    """Returns, mirror images, and all values that decide a label."""
     table, returns, rows = searched
     model = MODEL.at((0.08, 0.1)[place])
     found, expected = known_attractors(table, returns, model), [row.attractor for row in rows[place]]

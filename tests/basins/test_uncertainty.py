@@ -17,7 +17,7 @@ def exponent_of(label, count, seed=4):
 
 
 def counted(fraction, noise=0.01, counts=None):
-    """Return pairs with these fractions, but for a scatter of the batches."""
+    """Return pairs with these fractions, up to a scatter of the batches."""
     scatter = np.exp(noise * np.random.default_rng(1).standard_normal((BATCHES, len(fraction))))
     number = np.full(len(fraction), 500) if counts is None else np.array(counts)
     return PairCounts(fraction * scatter, np.ones_like(scatter), number, number)
@@ -64,7 +64,7 @@ def test_no_exponent_where_too_few_pairs_differ():
 
 
 def test_exponent_of_counts():
-    """f = 3 ε^0.4; four separations with eight pairs are enough, and what comes after a gap does not count."""
+    """f = 3 ε^0.4; four separations with eight pairs are enough, and separations after a gap do not count."""
     fraction = 3.0 * np.array(SEPARATIONS) ** 0.4
     assert uncertainty_exponent(counted(fraction, 0.0)).alpha == pytest.approx((0.4, 0.0), abs=1e-9)
     found = uncertainty_exponent(counted(fraction))
@@ -75,11 +75,11 @@ def test_exponent_of_counts():
     bent = np.where(np.arange(len(SEPARATIONS)) > FITTED_FROM + 3, 1e-3 * fraction, fraction)
     assert uncertainty_exponent(counted(bent, 0.0, few)).alpha[0] == pytest.approx(0.4, abs=1e-9)
     pairs = counted(fraction)
-    pairs.different[2:, -1] = 0.0
+    pairs.different_weight[2:, -1] = 0.0
     two = uncertainty_exponent(pairs)
-    pairs.different[1:, -1] = 0.0
+    pairs.different_weight[1:, -1] = 0.0
     alone = uncertainty_exponent(pairs)
-    # Those of two batches count, which makes f fall more steeply towards the least separation.
+    # Those of two batches count, which makes f fall more steeply towards the smallest separation.
     assert two.alpha[0] > 0.5
     pairs.different_count[-1] = 7
     assert alone.alpha == uncertainty_exponent(pairs).alpha

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff.attractors.lookup import reached
+from burridge_knopoff.attractors.lookup import reached_values
 from burridge_knopoff.claims.conventions import by_readings, shares_by_readings, under_conventions
 from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.claims.verdict import (
@@ -100,7 +100,7 @@ def test_the_attractor_that_is_reached_is_known_by_branch_and_side() -> None:
         },
         {"law": ["linearized"], "initial": ["plus"]},
     )
-    known, values = reached(found, "plus", "linearized", "value")
+    known, values = reached_values(found, "plus", "linearized", "value")
     assert known.tolist() == [True, True, False, False]
     assert values[known].tolist() == [2.0, 3.0]
     assert judge_shares({}, 0.9) == ("", "")

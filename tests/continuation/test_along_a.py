@@ -1,4 +1,4 @@
-"""Attractors along a: what is found at one value is looked for at the others, and no process more changes a number."""
+"""Attractors along a: those found at one value seed the others, and no result depends on the number of processes."""
 
 import logging
 from dataclasses import fields
@@ -11,7 +11,7 @@ from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.basins import fractions
 from burridge_knopoff.continuation import along_a as continuation
 from burridge_knopoff.continuation.along_a import continue_attractors
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MOTION
 from tests.motion.stand_in import at
@@ -26,16 +26,16 @@ def models(a_values=A_VALUES):
 
 @pytest.fixture
 def scripted(monkeypatch):
-    """States lead to one attractor, and at a = 0.2 to another one as well, which exists up to a = 0.3."""
+    """Initial states lead to one attractor, and at a = 0.2 also to another one, which exists up to a = 0.3."""
     followed = []
 
     class Scripted(Search):
         def labels(self, starts, check=True):
             if check:
                 self.attractors = [at(STILL)]
-                self.vain = (b"a state",)
+                self.unsuccessful_states = (b"a state",)
             else:
-                assert not self.vain
+                assert not self.unsuccessful_states
                 followed.append((self.model.a, [round(start.position[1]) for start in starts]))
             if self.model.a == 0.2 or (not check and self.model.a <= 0.3):
                 self.attractors = [at(STILL), at(OTHER, partner=1)]
@@ -52,9 +52,9 @@ def scripted(monkeypatch):
     return followed
 
 
-def test_what_one_value_has_is_looked_for_at_the_others(scripted):
-    """Downward and upward, as far as it goes; what both have is not followed again."""
-    found = continue_attractors(models(), refine=Refine(1.0))
+def test_attractors_at_one_value_seed_the_others(scripted):
+    """Downward and upward as far as they exist; attractors that both values have are not followed again."""
+    found = continue_attractors(models(), refine=RefinementSettings(1.0))
     assert scripted == [(0.1, [OTHER]), (0.3, [OTHER]), (0.4, [OTHER])]
     assert [len(here) for here in found.attractors] == [2, 2, 2, 1]
     assert [branch.tolist() for branch in found.branch] == [[1, 2], [1, 2], [1, 2], [1]]
@@ -64,16 +64,16 @@ def test_what_one_value_has_is_looked_for_at_the_others(scripted):
     assert found.grid == [0, 1, 2, 3]
 
 
-def test_a_number_is_remembered_for_two_of_the_widest_steps(scripted, tell):
-    """So that no branch ends where the grid is coarser."""
+def test_a_branch_is_remembered_for_two_of_the_widest_steps(scripted, tell):
+    """No branch then ends where the grid is coarser."""
     asked = tell(continuation, "branches", [([], [])])
-    continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=Refine(1.0))
+    continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=RefinementSettings(1.0))
     ((_, _, _, reach, *_),) = asked
     assert reach == pytest.approx(0.6)
 
 
 def same(one, other):
-    """Require everything that two results hold to be equal to the bit."""
+    """Require that two results are equal to the bit."""
     assert type(one) is type(other)
     if isinstance(one, np.ndarray):
         np.testing.assert_array_equal(one, other)
@@ -88,23 +88,23 @@ def same(one, other):
         assert one == other or (one != one and other != other)
 
 
-def test_what_only_the_counted_states_lead_to_is_looked_for_at_the_others():
-    """Synchrony loses its stability between these two; the antiphase orbit is there at both."""
+def test_attractors_found_by_counted_states_alone_seed_the_others():
+    """Synchrony loses stability between these two values; the antiphase orbit exists at both."""
     settings = SearchSettings(samples=6, fraction_width=0.2)
-    found = continue_attractors(models((0.0862, 0.09)), settings, refine=Refine(1.0))
+    found = continue_attractors(models((0.0862, 0.09)), settings, refine=RefinementSettings(1.0))
     means = [sorted(round(one.motion.mean_distance, 2) for one in here) for here in found.attractors]
     assert means == [[0.0, 0.14, 0.19], [0.02, 0.02, 0.14, 0.19]]
     assert 2 not in found.samples[0]
 
 
-def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkeypatch, caplog):
-    """Few values, then with one more: what is kept is taken, and all is as if nothing had been."""
-    monkeypatch.setattr(fractions, "PART", 30)
+def test_results_do_not_depend_on_processes_or_the_cache(tmp_path, monkeypatch, caplog):
+    """With one more value cached results are used, and the results are those of a run without a cache."""
+    monkeypatch.setattr(fractions, "LABELLED_AT_ONCE", 30)
     settings = SearchSettings(samples=10, fraction_width=0.13, transient=1000.0, window=800.0, perturbations=4)
 
     def found(a_values, **share):
         states = list(PAPER_STATES.values())
-        return continue_attractors(models(a_values), settings, MOTION, Refine(0.01), starts=states, **share)
+        return continue_attractors(models(a_values), settings, MOTION, RefinementSettings(0.01), starts=states, **share)
 
     found((0.06, 0.1), processes=2, folder=tmp_path)
     caplog.set_level(logging.INFO)
@@ -116,7 +116,7 @@ def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkey
     for two in others:
         for item in fields(one):
             same(getattr(one, item.name), getattr(two, item.name))
-    told = [line for line in caplog.messages if line.startswith("searched")]
+    told = [line for line in caplog.messages if line.startswith("searched from initial states")]
     assert [line.partition("; ")[2] for line in told] == ["", "", *(f"{n} kept from a run before" for n in (2, 3))]
-    # By its name the display knows how far a search has come: one for each gap of the grid.
-    assert len(list((tmp_path / "compared with the next").iterdir())) == 2
+    # The cache has one file for each gap of the grid.
+    assert len(list((tmp_path / "neighbours compared").iterdir())) == 2

@@ -1,4 +1,4 @@
-"""The entries of bifurcations, told of orbits and branches made by hand."""
+"""The entries of bifurcations, for constructed orbits and branches."""
 
 from types import SimpleNamespace
 
@@ -15,7 +15,7 @@ A = [0.1, 0.11]
 
 
 def ends(a):
-    """Return an orbit that is followed to a bifurcation at a, and no further, both ways."""
+    """Return an orbit that is followed in both directions to a bifurcation at a, and no further."""
     way = SimpleNamespace(
         end=SimpleNamespace(a=a, kind=BifurcationKind.FOLD) if a is not None else None, bifurcations=[]
     )
@@ -28,12 +28,12 @@ def ends(a):
         (0.104, 0.106, [0.104, 0.106]),
         (0.104, 0.104 + 0.5 * LEAST_ERROR, [0.104]),
         (0.104, 0.104 + 2.0 * LEAST_ERROR, [0.104, 0.104 + 2.0 * LEAST_ERROR]),
-        # Beyond a step of the grid the change is not that of this orbit.
+        # More than a step of the grid away the change is not due to this orbit.
         (0.104, 0.1201, [0.104]),
         (0.0899, 0.106, [0.106]),
         (0.0901, 0.1199, [0.0901, 0.1199]),
         (None, 0.106, [0.106]),
-        # Not located: in the middle.
+        # Not located: the middle of the range.
         (None, None, [0.105]),
     ],
 )

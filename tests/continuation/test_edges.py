@@ -1,4 +1,4 @@
-"""Edge states along a: between which branches they lie, how far their orbits go, and which of them a crisis meets."""
+"""Edge states along a: their branches, the range of their orbits, and those that take part in a crisis."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -18,7 +18,7 @@ from burridge_knopoff import (
     law_of,
 )
 from burridge_knopoff.attractors.stored_returns import KnownAttractors
-from burridge_knopoff.continuation.edges import approach, edges_at, followed_edges
+from burridge_knopoff.continuation.edges import approach, continue_edges, edges_at
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
@@ -30,7 +30,7 @@ LOST = 0.0869729047
 
 
 def known_at(a, branches, samples=40):
-    """Return the attractors at an a, in the order of ⟨J⟩; branches : the number of each, by that order."""
+    """Return the attractors at an a, in the order of ⟨J⟩; branches : their numbers in that order."""
     model = Model(Chain(3), law_of("linearized", a))
     found, _ = find_attractors(model, samples=samples, transient=1000, window=1000)
     order = sorted(range(len(found)), key=lambda k: (round(found[k].motion.mean_distance, 6), k))
@@ -59,7 +59,7 @@ def test_an_edge_state_between_each_two_branches(found):
     # The same set is found from several pairs of attractors, and listed once.
     assert len({(edge.state.kind, round(edge.state.mean_distance, 3)) for edge in found}) == len(found)
     for edge in found:
-        assert (edge.reached.sum(axis=1) == 40).all()
+        assert (edge.reached_count.sum(axis=1) == 40).all()
 
 
 def test_chaos_that_ends_is_no_attractor(known):
@@ -69,7 +69,7 @@ def test_chaos_that_ends_is_no_attractor(known):
 
 
 def test_saddle_orbits_are_followed_to_where_their_stability_changes(known, found):
-    segments, numbers = followed_edges(found, 0.12)
+    segments, numbers = continue_edges(found, 0.12)
     at = next(k for k, edge in enumerate(found) if edge.state.symmetry == Symmetry.SYNCHRONIZED)
     segment = segments[numbers[at]]
     a = [point.orbit.a for point in segment]
@@ -78,14 +78,14 @@ def test_saddle_orbits_are_followed_to_where_their_stability_changes(known, foun
     assert a[-1] >= 0.12
     # An orbit of the same branch is not followed again; the torus has none.
     other = replace(found[at], state=replace(found[at].state, orbit=KnownOrbits(found[at].state.orbit).at(0.11)))
-    again, same = followed_edges([found[at], other], 0.12)
+    again, same = continue_edges([found[at], other], 0.12)
     assert (len(again), same) == (1, [0, 0])
     assert [number < 0 for number in numbers] == [edge.state.orbit is None for edge in found]
 
 
 @pytest.fixture(scope="module")
 def merging():
-    """Return edge states of branch 3 where its two chaotic mirror images are about to merge, and one of its states."""
+    """Return edge states of branch 3 just before its two chaotic mirror images merge, and one of its states."""
     known = known_at(0.175, [3, 3, 1], samples=20)
     return known, edges_at(known, SETTINGS, 20_000)
 
@@ -102,9 +102,9 @@ def test_mirror_images_merge_where_both_meet_the_synchronized_orbit(merging):
 
 
 def test_the_crisis_names_the_saddle(merging, tmp_path: Path):
-    """In bifurcations.nc and in words; edges of another law come first, so that numbers are shifted."""
+    """In bifurcations.nc and in words; edges of another law come first, so indices are shifted."""
     known, found = merging
-    segments, numbers = followed_edges(found, 0.18)
+    segments, numbers = continue_edges(found, 0.18)
     near = approach(known.model.at(0.1772), known.attractors[0].motion.state(), found, 3)
     one = edges._of_law(known.model, found, numbers, segments, [(0.1773, 3, near)], 3)
     other = Model(Chain(3), law_of("nonlinear", 0.175))

@@ -1,4 +1,4 @@
-"""Which closed orbits are followed, told of made-up ones."""
+"""Which periodic orbits are followed, with constructed ones."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch
     [(None, [1.0, 1.01, 0.99], {0: 0, 1: 0, 2: 1, 3: 2}), (1.0, [1.01, 1.0001, 0.99], {1: 1, 2: 0, 3: 2})],
 )
 def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, failing, expected, numbers):
-    """At one a and with the same stops: periods a ten-thousandth apart are one, a hundredth two."""
+    """At one a and with the same stops, periods that differ by 1e-4 are one orbit, by 1e-2 two orbits."""
     orbit = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05)))
     periods = [1.0, 1.0001, 1.01, 0.99]
 
@@ -43,7 +43,7 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, fail
     position[0, :, 0] = range(4)
     one = one.assign(a=("value", [0.05]), in_grid=("value", [1]), position=(names, position))
     one["velocity"] = names, np.zeros((1, 4, 3))
-    found = followed_orbits.followed(orbit.model, one, [], processes)
+    found = followed_orbits.follow_orbits(orbit.model, one, [], processes)
     assert found.of_place == {(0, slot): number for slot, number in numbers.items()}
     assert [found.of_place[place] for place in found.places] == list(range(len(expected)))
     followed = [item.upward.orbits[0].orbit.period / orbit.period for item in found.segments]
@@ -54,7 +54,7 @@ def test_the_longest_orbits_are_followed_first_and_neighbours_late():
     periods = [6.0] * 8 + [100.0, 6.3, 90.0]
     placed = [((k, 0), type("Orbit", (), {"period": period})) for k, period in enumerate(periods)]
     # Their places within an octave are those of the van der Corput sequence.
-    assert [k for (k, _), _ in followed_orbits._in_turn(placed)] == [8, 10, 0, 4, 2, 6, 1, 9, 5, 3, 7]
+    assert [k for (k, _), _ in followed_orbits._sort(placed)] == [8, 10, 0, 4, 2, 6, 1, 9, 5, 3, 7]
 
 
 @pytest.mark.parametrize(
@@ -62,13 +62,13 @@ def test_the_longest_orbits_are_followed_first_and_neighbours_late():
     [
         ([], [(0, 0), (4, 0)]),
         ([(1, 2, 0, 0)], [(0, 0), (1, 0), (2, 0), (4, 0)]),
-        # Where a branch begins there is nothing before.
+        # A branch has no attractor before its beginning.
         ([(1, 2, -1, 0)], [(0, 0), (2, 0), (4, 0)]),
-        # Chaos is no closed orbit, and of a mirror pair one is followed.
+        # Chaos is not a periodic orbit, and one orbit of a mirror pair is followed.
         ([(2, 3, 0, 0), (2, 3, 1, -1)], [(0, 0), (2, 0), (4, 0)]),
     ],
 )
-def test_between_values_of_the_grid_orbits_are_followed_beside_changes(changes, expected):
+def test_between_values_of_the_grid_orbits_are_followed_next_to_changes(changes, expected):
     kind = np.full((5, 2), MotionKind.PERIODIC)
     kind[3] = MotionKind.CHAOTIC
     slots = {"branch": np.tile([0, 1], (5, 1)), "side": np.tile([0, -1], (5, 1)), "kind": kind}
@@ -78,6 +78,6 @@ def test_between_values_of_the_grid_orbits_are_followed_beside_changes(changes, 
     one = one.assign(in_grid=("value", [1, 0, 0, 0, 1]))
     told = [BranchChange(*change, 0, 0, Change.CHANGE) for change in changes]
     assert followed_orbits._places(one, told) == expected
-    # What is longer is not followed.
+    # Longer orbits are not followed.
     one["period"][0] = 501.0
     assert followed_orbits._places(one, told) == [place for place in expected if place[0] != 0]

@@ -1,11 +1,11 @@
-"""Branches of two laws that are one: attractors of the paper's chain, followed from one law to the other."""
+"""Matching branches of two laws: attractors of the paper's chain, followed from one law to the other."""
 
 import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
-from burridge_knopoff.continuation import law_homotopy as joining
-from burridge_knopoff.continuation.law_homotopy import STEPS, follow_law, joined
+from burridge_knopoff.continuation import law_homotopy
+from burridge_knopoff.continuation.law_homotopy import STEPS, follow_law, match_branches
 from burridge_knopoff.continuation.matching import SAME_SET
 from burridge_knopoff.motion.set_distance import least_distance
 from tests.motion.stand_in import shown
@@ -43,22 +43,22 @@ def test_branches_are_joined_whatever_their_numbers(models, found):
     others = {0: {0: second[0]}, 1: {0: second[2]}, 4: {0: second[1]}}
     for there, expected in (
         (others, {0: 0, 1: 2, 4: 1}),
-        # What is not there at that a, or somewhere else, is not joined.
+        # A branch that does not exist at that a, or lies elsewhere, is not matched.
         ({0: others[0], 4: others[4]}, {0: 0, 4: 1}),
         ({0: others[0], 1: others[1]}, {0: 0, 1: 2}),
         ({0: others[0]}, {0: 0}),
     ):
-        assert joined([models[0]], [models[1]], states, there, SETTINGS) == expected
+        assert match_branches([models[0]], [models[1]], states, there, SETTINGS) == expected
 
 
 def test_mirror_images_are_one_branch():
-    """Each of them, as it stands in a file: at a stop of block 1."""
+    """Each of them as in a file: a state at a stop of block 1."""
     model = Model(Chain(3), law_of("linearized", 0.1))
     attractors, _ = find_attractors(model, SETTINGS)
     one, other = (item.motion.state() for index, item in enumerate(attractors) if item.partner != index)
     assert np.abs(one.vector() - other.vector()).max() > 0.01
     for there in (one, other):
-        assert joined([model], [model], {1: {0: one}}, {4: {0: there}}, SETTINGS) == {0: 0, 4: 1}
+        assert match_branches([model], [model], {1: {0: one}}, {4: {0: there}}, SETTINGS) == {0: 0, 4: 1}
 
 
 @pytest.mark.parametrize(("v", "expected"), [(0.1, {0: 0}), (0.2, {0: 0, 3: 1})])
@@ -66,17 +66,17 @@ def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monk
     models = [Model(Chain(3), law_of(law, A), v) for law in ("linearized", "nonlinear")]
     one, other = (part[1].motion.state() for part in found)
     near = other.vector()[None] + 1.5 * SAME_SET
-    monkeypatch.setattr(joining, "follow_law", lambda *_, **__: shown(near, near, 0.0, 0.0))
-    assert joined([models[0]], [models[1]], {1: {0: one}}, {3: {0: other}}, SETTINGS) == expected
+    monkeypatch.setattr(law_homotopy, "follow_law", lambda *_, **__: shown(near, near, 0.0, 0.0))
+    assert match_branches([models[0]], [models[1]], {1: {0: one}}, {3: {0: other}}, SETTINGS) == expected
 
 
 @pytest.fixture
 def follow(tell):
-    """Return what `follow_law` finds where the set at each step is told by its place; None where nothing settles."""
+    """Return a function that calls `follow_law` with scripted sets at each step; None where no motion settles."""
 
     def found(places):
         sets = [None if place is None else np.full((10, 6), place) for place in places]
-        asked = tell(joining, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets])
+        asked = tell(law_homotopy, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets])
         pair = [Model(Chain(3), law_of(law, 0.5), 0.2, "symmetric") for law in ("linearized", "nonlinear")]
         start = shown(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).state()
         return follow_law(*pair, start, SETTINGS), asked
@@ -91,21 +91,21 @@ def test_a_law_is_changed_in_even_steps(follow):
     models, starts, transients, *_ = zip(*asked, strict=True)
     assert [float(model.law(1.0)) for model in models] == pytest.approx(np.linspace(0.5, 1 / 1.5, len(places)).tolist())
     assert models[-1].law.name == "nonlinear"
-    # Each goes on from where the last one was.
+    # Each step continues from the state of the one before.
     assert [float(start.position[0]) for start in starts] == pytest.approx([7.0, *places[:-1]])
     assert set(transients) == {1500.0}
-    # Nothing else of the model is.
+    # Nothing else of the model changes.
     assert {(model.v, model.contact) for model in models} == {(0.2, "symmetric")}
 
 
 def test_a_torus_may_be_locked_on_the_way(follow):
-    """The orbit lies on it, before and after, although most of it is far from the orbit."""
+    """The orbit lies on the torus, although most of the torus is far from the orbit."""
     torus = np.linspace(0.0, 0.9, 10)[:, None]
     assert follow([torus, 0.3, *[torus] * 15])[0] is not None
 
 
-def test_of_two_branches_that_come_to_one_the_longer_one_is_it(monkeypatch):
-    """Each is followed from three values of a of those at which it exists; the longer one arrives from two of them."""
+def test_of_two_branches_that_arrive_at_one_the_longer_is_matched(monkeypatch):
+    """Each is followed at three of the values of a at which it exists; the longer one arrives from two of them."""
     models = [[Model(Chain(3), law_of(law, 0.1 * k)) for k in range(6)] for law in ("linearized", "nonlinear")]
     here, there = (shown(np.full((1, 6), place), np.zeros((0, 6)), 0.0, 0.0) for place in (0.0, 9.0))
     asked = []
@@ -116,16 +116,16 @@ def test_of_two_branches_that_come_to_one_the_longer_one_is_it(monkeypatch):
         return None if asked[-1] == (True, 0.0) else here
 
     on_it, there_on_it = here.state(), there.state()
-    monkeypatch.setattr(joining, "follow_law", follow)
+    monkeypatch.setattr(law_homotopy, "follow_law", follow)
     states = {1: dict.fromkeys(range(3), on_it), 2: dict.fromkeys(range(6), there_on_it)}
-    assert joined(*models, states, {7: dict.fromkeys(range(6), on_it)}, SETTINGS) == {0: 0, 7: 2}
+    assert match_branches(*models, states, {7: dict.fromkeys(range(6), on_it)}, SETTINGS) == {0: 0, 7: 2}
     expected = [(False, a) for a in (0.0, 0.1, 0.2)] + [(True, a) for a in (0.0, 0.2, 0.5)]
     assert [long for long, _ in asked] == [long for long, _ in expected]
     assert [a for _, a in asked] == pytest.approx([a for _, a in expected])
 
 
-def test_what_does_not_go_on_smoothly_is_given_up(follow):
-    """A set may move by the distance of one branch, twice the paper's for twice the velocity, and not by more."""
+def test_motion_that_does_not_continue_smoothly_is_given_up(follow):
+    """A set may move by SAME_SET in a step, which scales with v, and not by more."""
     limit = 2.0 * SAME_SET
     assert follow([0.0, 0.99 * limit, *[0.99 * limit] * 20])[0] is not None
     for places in ([0.0, 1.01 * limit], [0.0, 0.0, None]):

@@ -11,7 +11,7 @@ from tests.motion.stand_in import ASYMMETRIC, SYNCHRONIZED, at
 
 
 def pair(place, ahead, mean=0.1):
-    """Return a mirror pair; of the first one block 1 is ahead by that."""
+    """Return a mirror pair; in the first motion block 1 is ahead by this distance."""
     first = at(place, symmetry=ASYMMETRIC, mean_distance=mean, partner=1, ahead=ahead)
     return [first, replace(first, motion=first.motion.mirrored(), partner=0)]
 
@@ -23,27 +23,27 @@ def followed(found, memory):
 
 
 def test_a_set_is_as_near_as_two_directions_tell():
-    """An orbit on a torus is near it, although most of the torus is not near the orbit."""
+    """An orbit on a torus is close to it, although most of the torus is far from the orbit."""
     torus, orbit = at(*np.linspace(0.0, 1.0, 101)), at(0.5)
     one, other = (Outline(item) for item in (torus, orbit))
-    # Within which 95 % of the returns lie.
+    # The distance within which 95 % of the returns lie.
     assert one.distances(other) == pytest.approx(np.array([[0.0, 0.48]] * 2))
     assert other.distances(one) == pytest.approx(np.array([[0.0, 0.48]] * 2))
     assert Outline(at(0.5, 0.8)).distances(other)[0] == pytest.approx([0.0, 0.285])
-    # Block 1 of one and block 3 of the other are ahead: mirror images.
+    # Mirror images: block 1 of one and block 3 of the other are ahead.
     left, right = (Outline(item) for item in pair(0.0, 0.2))
     assert left.distances(right) == pytest.approx(np.array([[0.2, 0.2], [0.0, 0.0]]))
 
 
 def test_an_orbit_and_the_chaos_around_it_go_on_as_they_are():
-    """From each chaotic set to the next it is farther than from an orbit to any of them."""
+    """The chaotic sets are farther from each other than an orbit is from any of them."""
     here, there = np.linspace(0.0, 0.1, 6), np.linspace(0.008, 0.108, 6)
     before = outlines([at(*here, partner=0), at(0.041, partner=1)])
     after = outlines([at(0.042, partner=0), at(*there, partner=1)])
-    assert Matcher(1.0).matched(before, after) == {0: 1, 1: 0}
-    # Alone each may follow the other.
-    assert Matcher(1.0).matched({0: before[0]}, {0: after[0]}) == {0: 0}
-    assert Matcher(1.0).matched({1: before[1]}, {1: after[1]}) == {1: 1}
+    assert Matcher(1.0).match(before, after) == {0: 1, 1: 0}
+    # Alone, each may match the other.
+    assert Matcher(1.0).match({0: before[0]}, {0: after[0]}) == {0: 0}
+    assert Matcher(1.0).match({1: before[1]}, {1: after[1]}) == {1: 1}
 
 
 def test_returns_are_thinned_out_evenly():
@@ -53,24 +53,24 @@ def test_returns_are_thinned_out_evenly():
 
 
 def test_pairs_are_chosen_together():
-    """Of two that are near one set the nearer one has it, if the other finds another; none reaches beyond the limit."""
+    """Of two sets close to one the closer is matched, if the other has another match; none matches beyond the limit."""
     before = outlines([at(0.0, partner=0), at(0.02, partner=1)])
     after = outlines([at(0.015, partner=0), at(0.035, partner=1)])
-    assert Matcher(1.0).matched(before, after) == {0: 0, 1: 1}
-    assert Matcher(1.0).matched(before, outlines([at(0.015, partner=0)])) == {0: 1}
+    assert Matcher(1.0).match(before, after) == {0: 0, 1: 1}
+    assert Matcher(1.0).match(before, outlines([at(0.015, partner=0)])) == {0: 1}
     limit = SAME_SET
     for place, found in ((0.99 * limit, {0: 0}), (1.01 * limit, {})):
         one = {0: Outline(at(0.0))}
-        assert Matcher(1.0).matched(one, {0: Outline(at(place))}) == found
-    assert Matcher(1.1).matched(one, {0: Outline(at(1.01 * limit))}) == {0: 0}
-    assert Matcher(1.0).matched({}, after) == {}
+        assert Matcher(1.0).match(one, {0: Outline(at(place))}) == found
+    assert Matcher(1.1).match(one, {0: Outline(at(1.01 * limit))}) == {0: 0}
+    assert Matcher(1.0).match({}, after) == {}
 
 
 def test_synchrony_is_followed_by_synchrony_alone():
     """However far it has moved."""
     still, far = (at(place, symmetry=SYNCHRONIZED) for place in (0.0, 9.0))
     for before, after, found in ((still, at(0.0), {}), (at(0.0), still, {}), (still, far, {0: 0})):
-        assert Matcher(1.0).matched(outlines([before]), outlines([after])) == found
+        assert Matcher(1.0).match(outlines([before]), outlines([after])) == found
 
 
 def test_several_synchronized_attractors_are_several_branches():
@@ -84,13 +84,13 @@ def test_several_synchronized_attractors_are_several_branches():
 
 
 def test_branches_at_a_pitchfork():
-    """The synchronized branch ends, its mirror pair begins, and another attractor goes on unharmed."""
+    """The synchronized branch ends, its mirror pair begins, and another branch continues unchanged."""
     before = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0), at(1.0, partner=1, mean_distance=0.14)]
     after = [*pair(0.0, -0.005, mean=0.01), at(1.001, partner=2, mean_distance=0.15)]
     later = [*pair(0.0, 0.006, mean=0.01), at(1.002, partner=2, mean_distance=0.15)]
     branch, side = followed([before, after, later], 0.2)
     assert branch == [[0, 1], [2, 2, 1], [2, 2, 1]]
-    # The one of the pair that is nearer to the first one of the pair before has its side.
+    # The one that is closer to the first of the previous pair has its side.
     assert side == [[0, 0], [-1, 1, 0], [1, -1, 0]]
 
 
@@ -107,20 +107,20 @@ def test_an_attractor_that_has_vanished_is_remembered_for_a_while():
     found = [[there], [else_where], [there], [else_where], [else_where]]
     assert followed(found, 0.2)[0] == [[1], [2], [1], [2], [2]]
     assert followed(found, 0.1)[0] == [[1], [2], [3], [4], [4]]
-    # What was there just before comes first.
+    # Branches at the previous value are matched first.
     assert followed([[there], [at(0.015)], [at(0.012)]], 0.2)[0] == [[1], [1], [1]]
-    # Where nothing is nothing is remembered wrongly.
+    # A value without attractors does not end a branch.
     assert followed([[there], [], [there]], 0.2)[0] == [[1], [], [1]]
 
 
-def test_what_does_not_change_keeps_its_number_though_it_is_not_looked_at_in_between():
-    """At 0.2 lies a value put in between: only what changes is followed there, and it lies near what does not."""
+def test_an_unchanged_branch_keeps_its_number_across_inserted_values():
+    """At the inserted value 0.2 only the changing attractor is followed, and it lies close to the other one."""
     still, again = (at(place, partner=0, section_period=4) for place in (0.0, 0.002))
     new = at(0.004, partner=1, section_period=7)
     alone = replace(new, partner=0)
     for between, expected in (
         ([alone], [[1], [2], [1, 2]]),
-        # What a trajectory has left for is known by its features.
+        # An attractor to which a trajectory has left is recognised by its kind, symmetry and period.
         ([again], [[1], [1], [1, 2]]),
         ([again, new], [[1], [1, 2], [1, 2]]),
     ):
@@ -129,10 +129,10 @@ def test_what_does_not_change_keeps_its_number_though_it_is_not_looked_at_in_bet
 
 
 def test_branches_are_numbered_by_their_mean_distance():
-    """Of one a in that order; what comes from synchrony is not synchrony."""
+    """At one a in the order of ⟨J⟩; the motion that replaces synchrony is another branch."""
     first = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.3, 0.1, 0.2))]
     assert followed([first], 1.0) == ([[3, 1, 2]], [[0, 0, 0]])
-    # Where it differs by rounding they keep the order in which they were found.
+    # If ⟨J⟩ differs by rounding only, attractors keep the order in which they were found.
     for apart, numbers in ((1e-9, [1, 2, 3]), (2e-6, [2, 1, 3])):
         alike = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.1 + apart, 0.1, 0.2))]
         assert followed([alike], 1.0)[0] == [numbers]

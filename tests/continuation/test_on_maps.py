@@ -1,11 +1,11 @@
-"""Continuation and matching as contracts, on maps whose bifurcations are known in closed form."""
+"""Continuation and matching on maps whose bifurcations are known in closed form."""
 
 import numpy as np
 import pytest
 
 from burridge_knopoff import MotionKind, SearchSettings
 from burridge_knopoff.continuation.along_a import continue_attractors
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from tests.maps import LOGISTIC, TWO_WELLS
 
 WELLS = SearchSettings(
@@ -27,8 +27,8 @@ def where(found, branch):
 
 
 def test_each_well_is_one_branch_that_ends_at_its_fold(maps):
-    """The lower well exists for μ < 2/√27 only, the upper one for μ > −2/√27 only."""
-    fold, refine = 2.0 / np.sqrt(27.0), Refine(2e-3)
+    """The lower well exists only for μ < 2/√27, the upper one only for μ > −2/√27."""
+    fold, refine = 2.0 / np.sqrt(27.0), RefinementSettings(2e-3)
     grid = np.linspace(-0.45, 0.45, 19).tolist()
     found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=refine)
     assert {*np.concatenate(found.branch).tolist()} == {1, 2}
@@ -39,7 +39,7 @@ def test_each_well_is_one_branch_that_ends_at_its_fold(maps):
         side = np.sign([item.motion.state().position[0] for item in items])
         assert np.ptp(side) == 0
         ranges[int(side[0])] = (a.min(), a.max())
-    # Next to a fold motion converges too slowly to be told: the branch may end that much before it.
+    # Near a fold motion converges too slowly, so the branch may end slightly before it.
     assert fold - 2.0 * refine.resolution < ranges[-1][1] <= fold
     assert ranges[-1][0] == pytest.approx(-0.45)
     assert -fold <= ranges[1][0] < -fold + 2.0 * refine.resolution
@@ -47,9 +47,9 @@ def test_each_well_is_one_branch_that_ends_at_its_fold(maps):
 
 
 def test_fractions_are_those_of_the_basins(maps):
-    """States are uniform: the fraction of a well is the share of its side of the unstable fixed point."""
+    """States are uniform, so the fraction of a well is the length of its side of the unstable fixed point."""
     grid = [-0.2, 0.0, 0.3]
-    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=Refine(1.0))
+    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=RefinementSettings(1.0))
     for mu, attractors, sample in zip(grid, found.attractors, found.samples, strict=True):
         middle = np.sort(np.roots([-1.0, 0.0, 1.0, mu]).real)[1]
         for index, item in enumerate(attractors):
@@ -59,9 +59,9 @@ def test_fractions_are_those_of_the_basins(maps):
 
 
 def test_sweeps_show_the_hysteresis_of_two_folds(maps):
-    """Carried upward, motion leaves the lower well beyond its fold; downward it leaves the upper one."""
+    """Swept upward, motion leaves the lower well beyond its fold; swept downward, it leaves the upper one."""
     grid = [-0.45, -0.3, 0.0, 0.3, 0.45]
-    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=Refine(1.0))
+    found = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in grid], WELLS, refine=RefinementSettings(1.0))
 
     def swept(steps, following):
         index, x = 0, []
@@ -78,8 +78,8 @@ def test_sweeps_show_the_hysteresis_of_two_folds(maps):
     ("grid", "at", "periods"), [((2.8, 2.9, 3.1, 3.2), 3.0, (1, 2)), ((3.35, 3.4, 3.5), 1.0 + np.sqrt(6.0), (2, 4))]
 )
 def test_a_doubling_lies_between_values_as_near_as_asked(maps, grid, at, periods):
-    """The logistic map doubles the period at 3 and at 1 + √6; what branches off goes on under the same number."""
-    refine = Refine(0.01)
+    """The logistic map doubles the period at 3 and at 1 + √6; the doubled orbit continues under the same number."""
+    refine = RefinementSettings(0.01)
     found = continue_attractors([LOGISTIC.at(r) for r in grid], LINE, refine=refine)
     a, items = where(found, 1)
     period = np.array([item.motion.section_period for item in items])
@@ -88,14 +88,16 @@ def test_a_doubling_lies_between_values_as_near_as_asked(maps, grid, at, periods
     assert (np.diff(period) >= 0).all()
     last, first = a[period == periods[0]].max(), a[period == periods[1]].min()
     assert first - last <= 2.0 * refine.resolution
-    # Next to a doubling orbits converge slowly, so that the period is told a little late.
+    # Near a doubling orbits converge slowly, so the change of period is seen slightly late.
     assert last - 0.01 <= at <= first + 0.01
 
 
-def test_no_result_depends_on_what_is_asked_of_other_values(maps):
-    """The attractors at a value of a are the same whatever other values there are."""
-    one = continue_attractors([TWO_WELLS.at(1.1)], WELLS, refine=Refine(1.0))
-    several = continue_attractors([TWO_WELLS.at(1.0 + mu) for mu in (0.0, 0.1, 0.2)], WELLS, refine=Refine(1.0))
+def test_results_do_not_depend_on_other_values(maps):
+    """The attractors at a value of a do not depend on the other values."""
+    one = continue_attractors([TWO_WELLS.at(1.1)], WELLS, refine=RefinementSettings(1.0))
+    several = continue_attractors(
+        [TWO_WELLS.at(1.0 + mu) for mu in (0.0, 0.1, 0.2)], WELLS, refine=RefinementSettings(1.0)
+    )
     both = one.attractors[0], several.attractors[1]
     states = [sorted(item.motion.state().position[0] for item in found) for found in both]
     assert states[0] == pytest.approx(states[1], abs=1e-9)

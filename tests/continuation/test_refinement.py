@@ -1,12 +1,12 @@
-"""Values of a put in between: where they are put, against changes at known places."""
+"""Inserted values of a, compared with changes at known places."""
 
 import pytest
 
 from burridge_knopoff import Chain, Model, MotionKind, law_of
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher
-from burridge_knopoff.continuation.refinement import refined
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.refinement import refine_searches
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.running.processes import shared_out
 from tests.motion.stand_in import ASYMMETRIC, at
 
@@ -16,7 +16,7 @@ BISECTED = [0.25, 0.3125, 0.375, 0.5]
 
 @pytest.fixture
 def values():
-    """Return the values of a put in between two, where the attractors at each a are told by a function."""
+    """Return a function that returns the values of a inserted between two, with scripted attractors at each a."""
 
     def put_in(attractors, low=0.0, high=1.0, resolution=0.1):
         asked = []
@@ -28,7 +28,7 @@ def values():
 
         ends = [Scripted(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
         with shared_out(1) as each:
-            (inner,) = refined(ends, Refine(resolution), Matcher(1.0), each)
+            (inner,) = refine_searches(ends, RefinementSettings(resolution), Matcher(1.0), each)
         return [search.model.a for search in inner], asked
 
     return put_in
@@ -44,14 +44,14 @@ def test_bisection_ends_at_the_resolution(values):
     found, asked = values(change)
     assert found == BISECTED
     assert {told[2:] for told in asked} == {(1, False)}
-    # A step of the grid that is near enough is left alone, to rounding.
+    # No value is inserted into a step of the grid that is small enough, up to rounding.
     assert values(change, resolution=1.0)[0] == []
     assert values(change, low=0.2, high=0.2 + 0.1 * (1 + 1e-12))[0] == []
     assert values(change, low=0.29, high=0.2901, resolution=0.2)[0] == []
 
 
-def test_nothing_is_put_in_where_nothing_changes(values):
-    """Nor where nothing attracts, as at a = 0."""
+def test_no_value_is_inserted_where_nothing_changes(values):
+    """Nor next to a value without attractors, as a = 0."""
     for before, later in (([at(STILL)], [at(STILL)]), ([], [at(STILL)]), ([at(STILL)], [])):
         assert values(after(0.5, before, later)) == ([], [])
 
@@ -66,8 +66,8 @@ def test_windows_between_are_found_on_both_sides(values):
     assert values(window)[0] == [0.25, 0.375, 0.4375, 0.5, 0.5625, 0.625, 0.75]
 
 
-def test_only_what_changes_is_followed(values):
-    """What does not change is not looked for, and no reason to go on where a seed has come to it."""
+def test_only_changing_attractors_are_followed(values):
+    """Unchanged attractors are not followed, and a seed that has reached one does not count as a change."""
     found, asked = values(after(0.3, [at(STILL), at(OTHER, partner=1)], [at(STILL)]))
     assert found == BISECTED
     for _, seeds, *_ in asked:
@@ -81,7 +81,7 @@ def test_only_what_changes_is_followed(values):
         (at(STILL, section_period=2), BISECTED),
         (at(STILL, symmetry=ASYMMETRIC), BISECTED),
         (at(OTHER), BISECTED),
-        # ⟨J⟩ may differ, and where the set lies as well, as far as it is the same branch.
+        # ⟨J⟩ and the place of the set may differ, as long as it is the same branch.
         (at(STILL + 0.01, mean_distance_error=0.5), []),
     ],
 )

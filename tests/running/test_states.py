@@ -20,7 +20,7 @@ from burridge_knopoff import (
     simulate,
     transverse_exponent,
 )
-from burridge_knopoff.attractors.attractor import perturbed
+from burridge_knopoff.attractors.attractor import perturb
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.running.runner import ROUNDING, Runner
 from burridge_knopoff.running.status import Status
@@ -111,6 +111,6 @@ def test_runs_continue_from_their_events(solver, v):
         runner = Runner(model, solver)
         runner.begin(state)
         assert runner.run(1.0) == Status.COMPLETED
-        pushed = perturbed(state, 1e-3, generator)
+        pushed = perturb(state, 1e-3, generator)
         assert (pushed.velocity >= 0.0).all()
         runner.begin(pushed)

@@ -40,7 +40,7 @@ def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law)
     models = [Model(Chain(3), law_of(part.attrs["law"], 0.0), 0.2) for part in parts]
     answers = [{0: 0, 1: 1}, {0: 0}]
 
-    def joined(firsts, seconds, first, second, settings, **_):
+    def match_branches(firsts, seconds, first, second, settings, **_):
         assert [model.a for model in firsts] == [model.a for model in seconds] == [0.05, 0.1, 0.2]
         assert {model.law.name for model in firsts} == {"linearized"}
         assert sorted(first) == sorted(second) == [0, 1]
@@ -51,7 +51,7 @@ def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law)
         assert settings is SETTINGS
         return answers.pop(0)
 
-    monkeypatch.setattr(all_laws, "joined", joined)
+    monkeypatch.setattr(all_laws, "match_branches", match_branches)
     assert all_laws.branch_numbers(parts, models, SETTINGS) == [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
 
 

@@ -9,7 +9,7 @@ from burridge_knopoff import Chain, InitialState, Model, MotionKind, SearchSetti
 from burridge_knopoff.attractors.lifetime import Lifetime
 from burridge_knopoff.attractors.table import name_branches, slot_values
 from burridge_knopoff.continuation.along_a import continue_attractors
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.settings import MOTION
@@ -108,7 +108,7 @@ def test_plus_lies_next_to_a_boundary_at_0_05_and_not_at_0_08():
     search = SearchSettings(samples=12, fraction_width=0.5, transient=1000, window=1000, seed=3)
     models = [Model(Chain(3), law_of("linearized", a)) for a in (0.05, 0.08)]
     states = [PAPER_STATES["minus"], PAPER_STATES["plus"]]
-    found = continue_attractors(models, search, refine=Refine(1.0), starts=states)
+    found = continue_attractors(models, search, refine=RefinementSettings(1.0), starts=states)
     one = attractors.one_law(found, states, search, MOTION, "moving")
     own = one["initial_branch"].sel(contact="one_sided", start="moving").values
     rounded = one["rounded_branch"].values
@@ -127,7 +127,7 @@ def test_chaos_that_is_shown_to_last_is_chaos():
 
 
 def test_the_values_put_in_between_have_a_file_of_their_own():
-    told = (SETTINGS, MOTION, Refine(1e-3), "tested")
+    told = (SETTINGS, MOTION, RefinementSettings(1e-3), "tested")
     parts = [refined.one_law(continuation(law), *told) for law in ("linearized", "nonlinear")]
     parts[1] = parts[1].isel(value=slice(0, 2))
     found = all_laws.merge(parts, [{0: 0, 1: 1}, {0: 0, 1: 5}], refined.VARIABLES, "Refined")

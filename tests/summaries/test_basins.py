@@ -65,7 +65,7 @@ def test_pairs_are_those_of_the_plane(ruled):
     counts = follow_pairs(label, (-1.0, 3.0), (0.0, 2.0), 50, SEARCH.seed)
     expected = uncertainty_exponent(counts)
     assert found["uncertain_count"].values.tolist() == counts.different_count.tolist()
-    assert found["pair_count"].values.tolist() == counts.known_count.tolist()
+    assert found["pair_count"].values.tolist() == counts.labelled_count.tolist()
     parts = (expected.fraction, expected.local, expected.alpha, expected.change)
     names = ("uncertain_fraction", "local_exponent", "uncertainty_exponent", "exponent_change")
     for name, part in zip(names, parts, strict=True):

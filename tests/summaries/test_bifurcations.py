@@ -20,7 +20,7 @@ from burridge_knopoff import (
 )
 from burridge_knopoff.continuation.bifurcations import entries
 from burridge_knopoff.continuation.branch_changes import Change, branch_changes
-from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, _closed
+from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, _periodic_orbit
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
@@ -173,7 +173,7 @@ def test_a_motion_that_attracts_lies_on_an_orbit_that_attracts():
     position = start.position + np.array([1e-5, 0.0, -1e-5])
     with pytest.raises(OrbitError, match="no periodic orbit found"):
         limit_cycle(model, ChainState(position, start.velocity, start.stuck))
-    orbit = _closed(model, position + model.sliding_offset, start.velocity)
+    orbit = _periodic_orbit(model, position + model.sliding_offset, start.velocity)
     assert multipliers(orbit).unstable_count == 0
     assert orbit.mean_distance == pytest.approx(0.0154, abs=1e-4)
 
@@ -182,8 +182,8 @@ def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled():
     """Exact synchrony persists, however long the settling time."""
     model = MODEL.at(0.09)
     start = synchronized_orbit(model).reference
-    error = _closed(model, start.position + model.sliding_offset, start.velocity)
-    assert str(error) == "a = 0.09: the closed orbit beside the motion is unstable"
+    error = _periodic_orbit(model, start.position + model.sliding_offset, start.velocity)
+    assert str(error) == "a = 0.09: the periodic orbit next to the motion is unstable"
 
 
 def test_the_values_next_to_a_bifurcation_are_those_of_the_attractors(found, grid):

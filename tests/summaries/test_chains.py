@@ -8,7 +8,7 @@ import pytest
 import xarray
 
 from burridge_knopoff import Chain, Model, law_of, simulate
-from burridge_knopoff.attractors.asymptotic_states import endings
+from burridge_knopoff.attractors.asymptotic_states import asymptotic_states
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.figures.chains import draw
@@ -124,7 +124,7 @@ def test_two_blocks_are_what_their_states_end_on(compared):
         both = [chain(model).at(a) for model in models(2, LAWS)]
         for i, model in enumerate(both):
             told = {name: compared[name].values[c, i, j, k] for name in two_blocks.MOTION_VARIABLES}
-            assert told == asdict(endings(model, STATES, SEARCH)[j])
+            assert told == asdict(asymptotic_states(model, STATES, SEARCH)[j])
         runs = [simulate(model, initial=state, settings=SETTINGS) for model in both]
         first, *others = [(run.event_time, run.event_block, run.event_kind) for run in runs]
         for i, other in enumerate(others):

@@ -1,8 +1,8 @@
-"""What given states end on: an attractor, however long chaos lasts before, or synchrony that is approached slowly.
+"""The motion in which given states end, after chaotic transients and slow approaches to synchrony.
 
-A run of some thousand time units shows what a state does by then. Next to the loss of synchrony perturbations take
-longer than that to die out, chaos may be a transient, and motion of a small exponent looks now like a torus, now like
-chaos. So states are given the attractors that a search from them finds, and all that end on one have its numbers.
+A run of a few thousand time units does not always show this motion. Near the loss of synchrony perturbations decay more
+slowly than that, chaos may be a transient, and motion with a small exponent may look like a torus or like chaos.
+Therefore the attractors are searched for from the given states, and all states that reach one attractor get its values.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.attractors.labels import UNDETERMINED, label, moved
+from burridge_knopoff.attractors.labels import UNDETERMINED, advance, label
 from burridge_knopoff.attractors.lifetime import EXPOSURE, lifetimes
 from burridge_knopoff.attractors.search import find_attractors
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
@@ -33,17 +33,17 @@ from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
-# Batches of a long window: their scatter, and so the error of ⟨J⟩ in chaos, is known to a sixth.
+# Batches of a long window. Their scatter, and thus the error of ⟨J⟩ in chaos, has a relative error of about 1/6.
 BATCHES = 20
 
 
 @dataclass(frozen=True)
-class Ending:
-    """The motion that a state ends in.
+class AsymptoticState:
+    """The motion in which a state ends.
 
-    kind : undetermined where the state reaches nothing that is known to last, and then nothing else is known
+    kind : undetermined if the state reaches no motion that is known to persist; the other values are then not known
     mean_distance, mean_distance_error : ⟨J⟩ and its standard error, NaN if undetermined
-    section_period : upward section points after which the state of all blocks repeats, 0 if it does not
+    section_period : number of upward section points after which the state of all blocks repeats, 0 if it does not
     """
 
     kind: MotionKind = MotionKind.UNDETERMINED
@@ -52,18 +52,18 @@ class Ending:
     section_period: int = 0
 
 
-def endings(
+def asymptotic_states(
     model: Model,
     initial: Sequence[InitialState],
     settings: SearchSettings = SEARCH,
     motion: MotionSettings = MOTION,
     *,
     start: str = "moving",
-) -> list[Ending]:
-    """Return what each initial state ends on.
+) -> list[AsymptoticState]:
+    """Return the asymptotic state of each initial state.
 
-    settings : of the search for attractors, which is made from these states alone; motion : how kinds of motion are
-        told apart
+    settings : of the search for attractors, which starts from these states alone
+    motion : how kinds of motion are distinguished
     start : moving or tested, see `Model.begin`
 
     Raises ValueError if an initial state does not fit the model.
@@ -71,29 +71,29 @@ def endings(
     settings = replace(settings, samples=0)
     attractors, labels = find_attractors(model, settings, motion, starts=initial, start=start)
     lives = lifetimes(model, attractors, settings)
-    lasting = [index for index, life in enumerate(lives) if life is None or life.lasts(settings.lifetime)]
+    lasting = [index for index, life in enumerate(lives) if life is None or life.is_longer_than(settings.lifetime)]
     starts = [model.begin(state, start) for state in initial]
-    # Out of chaos that ends, and out of what the search has given up, states are followed for as long as labels are.
+    # States in transient chaos, and those that the search has given up, are followed up to the limit of labels.
     late = [k for k, index in enumerate(labels.tolist()) if index not in lasting]
     there, _ = label(model, [attractors[index] for index in lasting], [starts[k] for k in late], settings.label_limit)
     labels[late] = [lasting[index] if index != UNDETERMINED else UNDETERMINED for index in there.tolist()]
     # A mirror image has the same ⟨J⟩ and the same kind.
     labels = np.array([*(min(index, one.partner) for index, one in enumerate(attractors)), UNDETERMINED])[labels]
     reached = {*labels.tolist()} - {UNDETERMINED}
-    known = {index: _ending(model, attractors, index, settings) for index in reached}
+    known = {index: _state_on(model, attractors, index, settings) for index in reached}
     lost = np.flatnonzero(labels == UNDETERMINED).tolist()
-    ends = moved(model, [starts[k] for k in lost], settings.label_limit) if lost else []
+    ends = advance(model, [starts[k] for k in lost], settings.label_limit) if lost else []
     slow = {k: _slow_synchrony(model, end, settings, motion) for k, end in zip(lost, ends, strict=True)}
     return [slow[k] if k in slow else known[index] for k, index in enumerate(labels.tolist())]
 
 
-def _ending(model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings) -> Ending:
-    """Return the motion on an attractor, ⟨J⟩ of chaos from the time for which it is followed to see whether it lasts.
+def _state_on(model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings) -> AsymptoticState:
+    """Return the motion on an attractor, with ⟨J⟩ of chaos averaged over the time in which its lifetime is measured.
 
-    The search's own window leaves ⟨J⟩ of chaos an error of half a percent and more: too much where that decides.
+    In the window of the search ⟨J⟩ of chaos has an error of half a percent or more.
     """
     motion = attractors[index].motion
-    found = _ending_of(motion)
+    found = _from_motion(motion)
     if motion.kind not in CHAOS:
         return found
     window = EXPOSURE * settings.lifetime
@@ -111,30 +111,30 @@ def _ending(model: Model, attractors: Sequence[Attractor], index: int, settings:
         return found
     last = np.concatenate([trajectory.event_position[-1] - model.sliding_offset, trajectory.event_velocity[-1]])
     at, _ = label(model, attractors, [state_of(last)], settings.time_limit)
-    # Chaos that lasts may end all the same, and the average is then one of two motions.
+    # Even chaos that persists may end in this time. The average would then mix two motions.
     if at[0] not in (index, attractors[index].partner):
         return found
     return replace(found, mean_distance=trajectory.mean_distance, mean_distance_error=trajectory.mean_distance_error)
 
 
-def _slow_synchrony(model: Model, end: ChainState, settings: SearchSettings, motion: MotionSettings) -> Ending:
-    """Return the ending in synchrony of a state that is on its way there; undetermined if it is not.
+def _slow_synchrony(model: Model, end: ChainState, settings: SearchSettings, motion: MotionSettings) -> AsymptoticState:
+    """Return synchrony if a state approaches it slowly, and an undetermined state otherwise.
 
-    Next to the loss of synchrony a state neither reaches it nor leaves it in the time it has: whether it attracts is
-    told by the multipliers of the synchronized orbit.
+    Near the loss of synchrony a state neither reaches it nor leaves it within the time limit. The multipliers of the
+    synchronized orbit decide whether it attracts.
     """
     if not model.chain.is_mirror_symmetric or pair_distances(end).max() > settings.resolution * model.scale:
-        return Ending()
+        return AsymptoticState()
     symmetric = symmetrized(end)
     try:
         orbit = limit_cycle(model, symmetric)
     except OrbitError:
-        return Ending()
+        return AsymptoticState()
     if orbit.symmetry != Symmetry.SYNCHRONIZED or multipliers(orbit).unstable_count:
-        return Ending()
+        return AsymptoticState()
     found = Classifier(model, settings.transient, settings.window, motion).measure(symmetric)
-    return _ending_of(found) if found is not None else Ending()
+    return _from_motion(found) if found is not None else AsymptoticState()
 
 
-def _ending_of(motion: SteadyMotion) -> Ending:
-    return Ending(motion.kind, motion.mean_distance, motion.mean_distance_error, motion.section_period)
+def _from_motion(motion: SteadyMotion) -> AsymptoticState:
+    return AsymptoticState(motion.kind, motion.mean_distance, motion.mean_distance_error, motion.section_period)

@@ -1,4 +1,4 @@
-"""One attractor: a settled motion with its mirror symmetry and the radius within which it captures trajectories."""
+"""One attractor: a settled motion, its mirror symmetry, and the radius within which it captures trajectories."""
 
 from __future__ import annotations
 
@@ -13,24 +13,25 @@ from burridge_knopoff.motion.section_returns import Returns
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import ROUNDING
 
-#: Successive returns within the capture radius after which a trajectory is captured: none passes by so often by chance.
+#: Successive returns within the capture radius after which a trajectory counts as captured. A trajectory that only
+#: passes by does not return that often.
 CLOSE_RETURNS = 8
 
-# Longest orbit, in returns, that a trajectory has to go round twice; it bounds the cost of a label.
+# Longest orbit, in returns, of which a trajectory has to complete two periods; it bounds the cost of a label.
 LONGEST_ORBIT = 100
 
 
 @dataclass(frozen=True, eq=False)
 class Attractor:
-    """A settled motion with what distinguishes it from others.
+    """An attractor, represented by a settled motion.
 
-    partner : index, among the attractors of the same a, of its mirror image; its own where that is the same set, or
-        where there is none
-    radius : distance from its returns within which trajectories are captured
-    slow : whether the motion on the set is too slow to settle, so that its returns are those of pushed states
+    partner : index of its mirror image among the attractors of the same a; its own index if the mirror image is the
+        same set, or if there is none
+    radius : capture radius, the distance from its returns within which trajectories are captured
+    slow : whether the motion on the set is too slow to settle, so that its returns are those of perturbed states
     close_returns : successive returns within the radius after which a trajectory counts as captured
-    patience : time by which a captured trajectory may still come to a closed orbit in the midst of the attractor; 0
-        where there is no such orbit
+    patience : time by which a captured trajectory may still reach a periodic orbit embedded in the attractor; 0 if
+        there is no such orbit
 
     Distances are the largest difference of a position or a velocity, in the units of `Model`.
 
@@ -54,22 +55,22 @@ class Attractor:
         return f"<Attractor, {self.symmetry.name.lower()}: {self.motion.words}>"
 
 
-def close_returns(found: Returns, tolerance: float) -> int:
-    """Return how many successive returns have to be close to a motion: twice round it if it is a closed orbit."""
+def required_returns(found: Returns, tolerance: float) -> int:
+    """Return the number of successive returns that capture requires: at least two periods of a periodic orbit."""
     if not found.closed(tolerance):
         return CLOSE_RETURNS
     return max(CLOSE_RETURNS, 2 * orbit_length(found.returns, 10.0 * tolerance, LONGEST_ORBIT))
 
 
-def perturbed(start: ChainState, size: float, generator: np.random.Generator) -> ChainState:
-    """Return a state with all positions and all velocities of slipping blocks changed by at most `size` at random.
+def perturb(start: ChainState, size: float, generator: np.random.Generator) -> ChainState:
+    """Return a state with positions, and velocities of slipping blocks, changed at random by at most `size`.
 
-    A block does not turn round by it.
+    The direction of slip is not reversed.
     """
     blocks = len(start.position)
     change = generator.uniform(-size, size, 2 * blocks)
     moved = start.velocity + change[blocks:]
-    # Less is rounding at a stop, of either sign.
+    # Smaller velocities of either sign are rounding errors at a stop.
     backward = start.velocity < -ROUNDING * max(1.0, np.abs(start.velocity).max())
     velocity = np.where(start.stuck | (np.where(backward, -moved, moved) < 0.0), 0.0, moved)
     return ChainState(start.position + change[:blocks], velocity, start.stuck)

@@ -1,4 +1,4 @@
-"""When a trajectory has settled, on what, and whether that is its own mirror image."""
+"""Settling of trajectories: when a motion has converged, what it is, and whether it is its own mirror image."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from burridge_knopoff.attractors.attractor import perturbed
+from burridge_knopoff.attractors.attractor import perturb
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.slow_set import SLOW_PUSH, SLOW_TIME
 from burridge_knopoff.model.model import ChainState, Model
@@ -18,26 +18,26 @@ from burridge_knopoff.motion.section_returns import Returns, stops_alike, visit
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near, least_distance
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 
-# Drift, in resolutions, up to which a motion that has not converged by then is followed on, for as many times the
-# `time_limit` in the longest wait: either it comes to rest, or it is undetermined.
+# Drift, in resolutions, up to which a motion that has not converged is followed for longer. It is undetermined if it
+# still drifts after that.
 LOOSE_DRIFT = 10.0
 
-# What drifts by less than this share of the tolerance within which it repeats does not drift.
-STILL = 1e-3
+# Drift, as a fraction of the period tolerance, below which a motion counts as steady.
+STEADY_DRIFT = 1e-3
 
-# Part of the resolution that a closed orbit may still be away when it counts as reached.
-LEFT = 0.1
+# Distance from a periodic orbit, in resolutions, below which the orbit counts as reached.
+REACHED_DISTANCE = 0.1
 
-# Window, in that of the settings, of a motion that is not a closed orbit: near a resonance half of a torus looks like a
-# set of its own until it has filled.
-FILLING = 4
+# Window, in windows of the settings, of a motion that is not a periodic orbit: near a resonance a half-filled torus
+# looks like a smaller set.
+FILLING_WINDOWS = 4
 
-# Transients for which a motion that touches its mirror image is followed, to see whether it covers it: at the default
-# settings about 100 000 time units, ten times as long as a run of the paper.
-LASTING = 33
+# Time, in transients, for which a motion close to its mirror image is followed to see whether it covers it. With the
+# default settings this is about 100 000 time units, ten times a run of the paper.
+SYMMETRY_WINDOW = 33
 
-# Error of ⟨J⟩, as a share of it, above which what is no chaos may be on its way to another motion.
-UNSTEADY = 0.02
+# Relative error of ⟨J⟩ above which motion that is not chaotic may be a transient to another motion.
+UNSTEADY_ERROR = 0.02
 
 
 @dataclass(eq=False)
@@ -45,27 +45,28 @@ class Convergence:
     """Follows the trajectories of one model until they have converged.
 
     motion_settings : how kinds of motion are distinguished
-    patience : longest transient and window, in those of the settings, of a motion that still converges: four doublings
-    trials : motions that a trajectory may turn out to leave, or unstable ones that it may come close to, before it is
-        given up; each costs a whole convergence
+    longest_extension : factor by which transient, window and waiting time are extended at most while a motion still
+        converges: four doublings
+    trials : number of transients or unstable motions that a trajectory may pass before it is given up; each costs a
+        complete convergence
     growth_window : see `Classifier`
     """
 
     model: Model
     settings: SearchSettings = SEARCH
     motion_settings: MotionSettings = MOTION
-    patience: int = 16
+    longest_extension: int = 16
     trials: int = 2
     growth_window: float = Classifier.growth_window
 
     @property
     def resolution(self) -> float:
-        """Distance below which attractors are not told apart."""
+        """Distance below which two attractors count as one."""
         return self.settings.resolution * self.model.scale
 
     @property
     def tolerance(self) -> float:
-        """Distance within which the returns of a closed orbit repeat."""
+        """Distance within which the returns of a periodic orbit repeat."""
         return self.motion_settings.at_speed(self.model.v).period_tolerance
 
     def settle(self, start: ChainState) -> Returns | None:
@@ -73,35 +74,37 @@ class Convergence:
         found = None
         transient, window = self.settings.transient, self.settings.window
         tolerance, resolution = self.tolerance, self.resolution
-        longest = self.patience * window
-        while transient <= self.patience * self.settings.transient:
+        longest = self.longest_extension * window
+        while transient <= self.longest_extension * self.settings.transient:
             found = visit(self.model, start, transient, window)
             if found is None:
                 return None
             start = found.state()
             closed, settled = found.closed(tolerance), found.settled(tolerance, resolution)
-            # A set that is no closed orbit takes longer to fill, most of all near a resonance, where half of it looks
-            # like a set of its own; and a chaotic transient may still end.
+            # A set that is not a periodic orbit takes longer to fill, above all near a resonance, where half of a torus
+            # looks like a complete set. A chaotic transient may still end.
             whole = self.is_symmetric(found) or not self.model.chain.is_mirror_symmetric
-            filled = window >= FILLING * self.settings.window and whole
+            filled = window >= FILLING_WINDOWS * self.settings.window and whole
             if settled and (closed or filled or window == longest):
-                return self.at_rest(found)
+                return self.follow_until_steady(found)
             if not settled:
                 transient *= 2
             if not closed:
                 window = min(2 * window, longest)
-        # What has not settled by now drifts slowly, along a set or to one.
-        return self.at_rest(found) if found is not None and found.drift <= LOOSE_DRIFT * resolution else None
+        # A motion that has not settled by now drifts slowly along a set or towards one.
+        return (
+            self.follow_until_steady(found) if found is not None and found.drift <= LOOSE_DRIFT * resolution else None
+        )
 
-    def at_rest(self, found: Returns) -> Returns | None:
-        """Return a motion as it is when it no longer drifts; None if it still does after all the time that it is given.
+    def follow_until_steady(self, found: Returns) -> Returns | None:
+        """Return a motion once it no longer drifts; None if it still drifts after the longest wait.
 
-        A closed orbit is approached exponentially: from how fast the drift dies out follows how far the motion still
-        is. A set that is no closed orbit has to stay where it is.
+        A periodic orbit is approached exponentially, so the decay of the drift gives the remaining distance. A set that
+        is not a periodic orbit has to stay in the same place.
         """
-        still = self.tolerance * STILL
+        still = self.tolerance * STEADY_DRIFT
         wait = self.settings.time_limit
-        while wait <= self.patience * self.settings.time_limit:
+        while wait <= self.longest_extension * self.settings.time_limit:
             closed = found.closed(self.tolerance)
             if found.drift <= still or (not closed and found.settled(self.tolerance, self.resolution)):
                 return found
@@ -109,70 +112,70 @@ class Convergence:
             if later is None:
                 return None
             if closed and later.closed(self.tolerance):
-                if _left(found, later, wait) <= LEFT * self.resolution:
+                if _remaining_distance(found, later, wait) <= REACHED_DISTANCE * self.resolution:
                     return later
             elif not closed and is_near(later.returns, found.returns, self._reach(found)):
                 return later
             found, wait = later, 2.0 * wait
         return None
 
-    def measured(self, found: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
-        """Measure a settled motion; where it turns out to be on its way to another one, return that one instead."""
+    def measure(self, found: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
+        """Measure a settled motion. If it turns out to be a transient, return the motion that follows it instead."""
         settings = self.settings
-        closed, window = found.closed(self.tolerance), self.window_of(found)
+        closed, window = found.closed(self.tolerance), self.measuring_window(found)
         motion = self.classifier(settings.transient, window).measure(found.state())
         if motion is None:
             return None
         if motion.left_for is not None:
             later = None if again == self.trials else visit(self.model, motion.left_for, 0.0, settings.window)
-            later = self.at_rest(later) if later is not None else None
-            return None if later is None else self.measured(later, again + 1)
+            later = self.follow_until_steady(later) if later is not None else None
+            return None if later is None else self.measure(later, again + 1)
         chaotic = motion.kind in CHAOS
         if closed and not chaotic:
-            # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.
+            # The motion repeats. A window gives no better exponents of a long orbit that hardly attracts.
             mean = judged_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
             own = self.motion_settings.at_speed(self.model.v)
             period = motion.period if math.isfinite(motion.period) else math.inf
             return found, replace(motion, kind=closed_kind(mean, period, own), period=period)
-        if not chaotic and motion.mean_distance_error <= UNSTEADY * motion.mean_distance:
+        if not chaotic and motion.mean_distance_error <= UNSTEADY_ERROR * motion.mean_distance:
             return found, motion
-        # Chaos in which a state may still be when it is given up is a set to be listed, however long it lasts.
+        # Chaos that still holds a state at the time limit is listed, however long it lasts.
         later = visit(self.model, found.state(), settings.time_limit, settings.window)
         if later is None:
             return None
-        # Thin chaos may look closed in a window, but hardly twice in the same place.
+        # Thin chaos may look periodic in one window, but hardly in a second one.
         ended = later.closed(self.tolerance) and later.settled(self.tolerance, self.resolution)
         stays = not ended and (chaotic or stops_alike(later.stop_count, found.stop_count))
-        return (found, motion) if stays or again == self.trials else self.measured(later, again + 1)
+        return (found, motion) if stays or again == self.trials else self.measure(later, again + 1)
 
-    def window_of(self, found: Returns) -> float:
-        """Return how long a motion is measured: one that takes long to close for as long as it took."""
-        return found.window if found.closed(self.tolerance) else FILLING * self.settings.window
+    def measuring_window(self, found: Returns) -> float:
+        """Return the window in which a motion is measured; for a long orbit, the window in which it has repeated."""
+        return found.window if found.closed(self.tolerance) else FILLING_WINDOWS * self.settings.window
 
     def is_symmetric(self, found: Returns) -> bool:
-        """Tell whether a motion cannot be told apart from its mirror image, in the window in which it was seen."""
-        return _sees_both(found) and is_near(found.mirror_returns, found.returns, self._reach(found))
+        """Return whether a motion cannot be distinguished from its mirror image in its window."""
+        return _has_comparable_image(found) and is_near(found.mirror_returns, found.returns, self._reach(found))
 
-    def touches(self, found: Returns | SteadyMotion) -> bool:
-        """Tell whether a motion comes to where its mirror image has been."""
-        if not _sees_both(found):
+    def is_close_to_mirror_image(self, found: Returns | SteadyMotion) -> bool:
+        """Return whether a motion comes within the resolution of its mirror image."""
+        if not _has_comparable_image(found):
             return False
         return least_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
 
-    def changes_sides(self, found: Returns) -> bool:
-        """Tell whether a motion that touches its mirror image comes to cover it in a longer time."""
-        if found.closed(self.tolerance) or not self.touches(found):
+    def is_eventually_symmetric(self, found: Returns) -> bool:
+        """Return whether a motion close to its mirror image covers it in a longer time."""
+        if found.closed(self.tolerance) or not self.is_close_to_mirror_image(found):
             return False
-        longer = visit(self.model, found.state(), 0.0, LASTING * self.settings.transient)
+        longer = visit(self.model, found.state(), 0.0, SYMMETRY_WINDOW * self.settings.transient)
         if longer is None or longer.block != found.block:
             return False
         return is_near(found.mirror_returns, longer.returns, self._reach(found))
 
-    def lies_in_chaos(self, found: Returns) -> bool:
-        """Tell whether a state pushed off a motion moves in chaos that lasts."""
+    def is_embedded_in_chaos(self, found: Returns) -> bool:
+        """Return whether a state perturbed off a motion moves in chaos up to the time limit."""
         settings = self.settings
-        start = perturbed(found.state(), SLOW_PUSH * self.resolution, np.random.default_rng(settings.seed))
-        times = SLOW_TIME * settings.transient, FILLING * settings.window
+        start = perturb(found.state(), SLOW_PUSH * self.resolution, np.random.default_rng(settings.seed))
+        times = SLOW_TIME * settings.transient, FILLING_WINDOWS * settings.window
         around = self.classifier(*times).measure(start)
         if around is None or around.kind not in CHAOS:
             return False
@@ -180,20 +183,20 @@ class Convergence:
         return later is not None and not later.closed(self.tolerance)
 
     def classifier(self, transient: float, window: float) -> Classifier:
-        """Return what measures a converged motion in these times."""
+        """Return a classifier of converged motion with this transient and window."""
         return Classifier(self.model, transient, window, self.motion_settings, self.growth_window)
 
     def _reach(self, found: Returns) -> float:
-        """Return how far from a motion a return that belongs to it may lie."""
+        """Return the largest distance from a motion of a return that belongs to it."""
         return max(self.resolution, 0.0 if found.closed(self.tolerance) else SPACINGS * found.spacing)
 
 
-def _left(found: Returns, later: Returns, wait: float) -> float:
-    """Return how far a motion that was seen twice, so long after each other, still is from the orbit it approaches."""
+def _remaining_distance(found: Returns, later: Returns, wait: float) -> float:
+    """Return the distance of a motion from the orbit that it approaches, from its drift at two times `wait` apart."""
     rate = np.log(found.drift / max(later.drift, np.finfo(float).tiny)) / (wait + later.window)
     return float(later.drift / np.expm1(0.5 * rate * later.window)) if rate > 0.0 else np.inf
 
 
-def _sees_both(found: Returns | SteadyMotion) -> bool:
-    """Tell whether a motion and its mirror image are seen at the stops of one block, so that they can be compared."""
+def _has_comparable_image(found: Returns | SteadyMotion) -> bool:
+    """Return whether the returns of a motion and its mirror image are taken at the same block and can be compared."""
     return len(found.mirror_returns) > 0 and found.block == found.mirror_block

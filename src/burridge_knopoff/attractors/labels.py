@@ -1,4 +1,4 @@
-"""Labels: which of several known attractors a trajectory reaches, by its returns, and when that is certain."""
+"""Labels: which of several known attractors a trajectory reaches, and at what time this is certain."""
 
 from __future__ import annotations
 
@@ -18,31 +18,31 @@ from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.running.threads import in_threads
 from burridge_knopoff.values import each_instance_of, instance_of, real_array
 
-#: Label of a state that comes close to no attractor.
+#: Label of a state that reaches no known attractor.
 UNDETERMINED = -1
 
 
 def label(
     model: Model, attractors: Sequence[Attractor], starts: Sequence[ChainState], time_limit: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return which attractor each state reaches and when that was certain.
+    """Return the label of each state, and the time at which it was certain, both of shape (n,).
 
-    −1 where no attractor is reached by the time limit.
+    A label is the index of an attractor, or −1 if none is reached by the time limit.
     """
     if not len(attractors) or not len(starts):
         return np.full(len(starts), UNDETERMINED, dtype=np.intc), np.zeros(len(starts))
-    return label_together(model, attractors, *arrays(starts), time_limit)[:2]
+    return label_arrays(model, attractors, *stack_states(starts), time_limit)[:2]
 
 
-def arrays(starts: Sequence[ChainState]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return positions, velocities and which blocks stick of states, each of shape (n, blocks)."""
+def stack_states(starts: Sequence[ChainState]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return positions, velocities and stuck blocks of states as arrays, each of shape (n, blocks)."""
     position, velocity, stuck = (
         np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity", "stuck")
     )
     return position, velocity, stuck
 
 
-def label_together(
+def label_arrays(
     model: Model,
     attractors: Sequence[Attractor],
     position: np.ndarray,
@@ -50,13 +50,13 @@ def label_together(
     stuck: np.ndarray,
     time_limit: float,
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Do the work of `label` for states x_i, U_i' and which blocks stick, each of shape (n, blocks).
+    """Return labels and times as `label` does, for states x_i, U_i' and stuck blocks, each of shape (n, blocks).
 
-    The third array has the states at the time limit, shape (n, 2 blocks), NaN where a label was certain before.
+    The third array contains the states at the time limit, shape (n, 2 blocks), NaN if a label was certain before.
 
-    A state has reached an attractor when enough of its successive returns, at the stops of its block, lie within
-    the attractor's radius of one of its returns; but where closed orbits lie in its midst, one of these, or any other
-    without patience, if it gets there within the attractor's patience.
+    A state has reached an attractor when `close_returns` of its successive returns lie within the capture radius of
+    returns of the attractor. If the attractor has a patience, a state that reaches an attractor without one within this
+    time is assigned to the latter.
     """
 
     def first(
@@ -84,8 +84,8 @@ def label_together(
     return labels, times, last
 
 
-def moved(model: Model, starts: Sequence[ChainState], time: float) -> list[ChainState]:
-    """Return where states are after a time."""
+def advance(model: Model, starts: Sequence[ChainState], time: float) -> list[ChainState]:
+    """Return the states after a time."""
     position, velocity = (np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity"))
     stuck = np.array([start.stuck for start in starts], dtype=bool)
     end = new_ensemble(model).run(position, velocity, stuck, [time])
@@ -102,15 +102,15 @@ def label_states(
     time_limit: float = SEARCH.time_limit,
     threads: int = 1,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return which attractor each initial state reaches, and the time τ at which that was certain, both of shape (n,).
+    """Return the attractor that each initial state reaches, and the time τ at which this is certain, shape (n,) each.
 
     model, attractors : as `find_attractors` takes and returns them
     position, velocity : U(0) and U'(0), shape (n, blocks); start : moving or tested, see `Model.begin`
-    time_limit : by which a state has to reach one of them
-    threads : trajectories are shared out among them; each is followed alone, so that no label depends on them
+    time_limit : time by which a state has to reach one of them
+    threads : number of threads that share the trajectories; the labels do not depend on it
 
-    A label is the index of an attractor, or −1 where none is reached. Raises ValueError, one line, for shapes, times or
-    a start that are not allowed, for numbers that are not finite, and for velocities below 0 under one-sided contact.
+    A label is the index of an attractor, or −1 if none is reached. Raises ValueError, one line, for shapes, times or a
+    start that are not allowed, for numbers that are not finite, and for velocities below 0 under one-sided contact.
 
     >>> import numpy as np
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, label_states, law_of
@@ -148,7 +148,7 @@ def label_states(
 
     def work(first: int, last: int) -> None:
         part = slice(first, last)
-        labels[part], times[part], _ = label_together(
+        labels[part], times[part], _ = label_arrays(
             model, attractors, offset[part], velocity[part], stuck[part], time_limit
         )
 

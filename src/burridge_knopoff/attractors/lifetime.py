@@ -1,7 +1,7 @@
-"""How long chaos lasts: the mean lifetime of a chaotic set from an ensemble of trajectories that begin on it.
+"""Lifetimes of chaos: the mean lifetime of a chaotic set from an ensemble of trajectories that begin on it.
 
-Chaos may be a transient. Then it ends at a constant rate, whatever has gone before, so that lifetimes are exponentially
-distributed, and the number of ends in a total time of all trajectories has a Poisson distribution.
+Transient chaos ends at a constant rate. Lifetimes are therefore exponentially distributed, and the number of
+trajectories that leave in a given total time has a Poisson distribution.
 
 Reference: C. Grebogi, E. Ott and J. A. Yorke, "Crises, sudden changes in chaotic attractors, and transient chaos",
 Physica D 7 (1983) 181-200; for the interval F. Garwood, Biometrika 28 (1936) 437-442.
@@ -17,9 +17,9 @@ from functools import partial
 import numpy as np
 import scipy.special
 
-from burridge_knopoff.attractors.attractor import Attractor, perturbed
-from burridge_knopoff.attractors.capture_radius import PATIENT_TIME
-from burridge_knopoff.attractors.labels import UNDETERMINED, arrays, label, label_together, moved
+from burridge_knopoff.attractors.attractor import Attractor, perturb
+from burridge_knopoff.attractors.capture_radius import LONGEST_PATIENCE
+from burridge_knopoff.attractors.labels import UNDETERMINED, advance, label, label_arrays, stack_states
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.sampling import CONFIDENCE
@@ -27,37 +27,38 @@ from burridge_knopoff.motion.kind import CHAOS
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.motion.set_distance import SPACINGS
 
-#: Trajectories of chaos that are followed, and the time for all of them together, in units of the lifetime beyond which
-#: it counts as lasting. If none of them leaves it, its lifetime is beyond that with 98 % certainty.
-FOLLOWED = 32
+#: Number of trajectories that are followed, and their total time, in units of the lifetime above which chaos counts as
+#: an attractor. If none of them leaves, the lifetime is above this limit with 98 % certainty.
+TRAJECTORIES = 32
 EXPOSURE = 4.0
 
-# Where these leave open whether the lifetime is below or beyond, or where fewer than FEWEST_ENDS leave, so many times
-# more are followed: stopping at few ends would favour samples in which, by chance, many left. Looking twice leaves 96
-# %.
-UNDECIDED = 10
+# If these do not decide whether the lifetime is above the limit, or if fewer than FEWEST_ENDS leave, this many times as
+# many are added: stopping at few ends would favour samples in which many left by chance. With two tests 96 % certainty
+# remains.
+EXTENSION = 10
 FEWEST_ENDS = 30
 
-# Times, in those that another attractor takes to capture a trajectory, after which those who left at once and are not
-# yet captured no longer make chaos seem to last.
-LATENESS = 2.0
+# Time, in capture times of another attractor, after which counting starts. Trajectories that leave at once are captured
+# by then; counted earlier, they would make chaos seem to last longer.
+CAPTURE_MARGIN = 2.0
 
-# Distance, for v = 0.1, from which they come, and how few that are left by then make the captures before count instead.
-FAR = 0.2
+# Distance, for v = 0.1, from which escaping trajectories approach another attractor; and the number of trajectories
+# left at the start of counting below which all captures are counted instead.
+ESCAPE_DISTANCE = 0.2
 FEWEST_LEFT = 8
 
-# Perturbation, in resolutions, that parts trajectories which begin at different times of one and the same; and the
-# share of the radius that it has at most. The radius of thin chaos rests on few perturbations: of as large ones a third
-# may leave.
-PARTING_PUSH = 0.1
-PARTING_SHARE = 0.01
+# Perturbation, in resolutions, that separates trajectories of the ensemble, and its largest size as a fraction of the
+# capture radius. The radius of thin chaos rests on few perturbations; from the full radius a third may leave.
+ENSEMBLE_PERTURBATION = 0.1
+ENSEMBLE_RADIUS_SHARE = 0.01
 
 
 @dataclass(frozen=True)
 class Lifetime:
-    """What was seen of the ends of a chaotic motion.
+    """Lifetime of a chaotic motion, from observed escapes.
 
-    ends : trajectories that left it for another attractor; time : for which all of them together were on it
+    ends : number of trajectories that left it for another attractor
+    time : total time that all trajectories spent on it
     """
 
     ends: int
@@ -75,17 +76,18 @@ class Lifetime:
         low = self.time / float(scipy.special.gammainccinv(self.ends + 1, tail))
         return low, self.time / float(scipy.special.gammaincinv(self.ends, tail)) if self.ends else math.inf
 
-    def lasts(self, least: float) -> bool:
-        """Tell whether the mean lifetime is certain to be above that."""
+    def is_longer_than(self, least: float) -> bool:
+        """Return whether the 95 % interval of the mean lifetime lies above `least`."""
         return self.interval[0] > least
 
 
 def lifetimes(
     model: Model, attractors: Sequence[Attractor], settings: SearchSettings, exposure: float = EXPOSURE
 ) -> list[Lifetime | None]:
-    """Return the lifetime of each attractor that is chaotic, None for the others; mirror images have the same one.
+    """Return the lifetime of each attractor that is chaotic, None for the others; mirror images share theirs.
 
-    settings : `lifetime` says how long chaos is followed; exposure : see EXPOSURE
+    settings : its `lifetime` is the limit above which chaos counts as an attractor
+    exposure : total time in units of this limit, see EXPOSURE
     """
     found: list[Lifetime | None] = []
     for index, attractor in enumerate(attractors):
@@ -101,18 +103,18 @@ def lifetimes(
 def _lifetime(
     model: Model, attractors: Sequence[Attractor], index: int, settings: SearchSettings, exposure: float
 ) -> Lifetime:
-    """Follow trajectories from states on a chaotic set, and more where few left it or where it is open if it lasts."""
+    """Return the lifetime of a chaotic set, from more trajectories if few leave or the first ones do not decide."""
     generator = np.random.default_rng(settings.seed)
-    follow = partial(_followed, model, attractors, index, settings, exposure, generator)
-    first = follow(FOLLOWED)
+    follow = partial(_follow, model, attractors, index, settings, exposure, generator)
+    first = follow(TRAJECTORIES)
     low, high = first.interval
     if (not first.ends or first.ends >= FEWEST_ENDS) and not low <= settings.lifetime < high:
         return first
-    more = follow(FOLLOWED * UNDECIDED)
+    more = follow(TRAJECTORIES * EXTENSION)
     return Lifetime(first.ends + more.ends, first.time + more.time)
 
 
-def _followed(
+def _follow(
     model: Model,
     attractors: Sequence[Attractor],
     index: int,
@@ -121,35 +123,35 @@ def _followed(
     generator: np.random.Generator,
     count: int,
 ) -> Lifetime:
-    """Follow so many trajectories from a chaotic set and see which are still on it, or on its mirror image."""
+    """Follow `count` trajectories from a chaotic set, and count those that leave it and its mirror image."""
     attractor = attractors[index]
-    time = exposure * settings.lifetime / FOLLOWED
+    time = exposure * settings.lifetime / TRAJECTORIES
     returns = attractor.motion.returns
-    size = min(PARTING_PUSH * settings.resolution * model.scale, PARTING_SHARE * attractor.radius)
+    size = min(ENSEMBLE_PERTURBATION * settings.resolution * model.scale, ENSEMBLE_RADIUS_SHARE * attractor.radius)
     chosen = generator.integers(len(returns), size=count)
-    starts = [perturbed(state_of(returns[k]), size, generator) for k in chosen]
+    starts = [perturb(state_of(returns[k]), size, generator) for k in chosen]
     others = [other for k, other in enumerate(attractors) if k not in (index, attractor.partner)]
-    # Chaos is left at a constant rate, and so is, once the first have had the time for it, the state of not being
-    # certain of another attractor: what comes before that time says nothing.
+    # Trajectories leave chaos at a constant rate, and are captured elsewhere at the same rate once the first have had
+    # time for it. Captures before that time are not counted.
     late = max((_capture_time(model, other) for other in others), default=0.0)
-    gone, when, last = label_together(model, others, *arrays(starts), late + time)
+    gone, when, last = label_arrays(model, others, *stack_states(starts), late + time)
     known = gone != UNDETERMINED
 
-    # The radius of thin chaos may be smaller than the distances within it: by that it does not know its own states.
+    # The radius of thin chaos may be smaller than the distances between its returns, and would miss its own states.
     sets = [
         replace(one, radius=max(one.radius, SPACINGS * one.motion.spacing)) if k in (index, attractor.partner) else one
         for k, one in enumerate(attractors)
     ]
 
-    def nowhere(chosen: np.ndarray, there: list[ChainState]) -> np.ndarray:
-        """Return which of the chosen trajectories come from where they are to nothing that is known."""
+    def find_undetermined(chosen: np.ndarray, there: list[ChainState]) -> np.ndarray:
+        """Return which of the chosen trajectories, now in these states, reach no known attractor."""
         return chosen[label(model, sets, there, settings.time_limit)[0] == UNDETERMINED]
 
-    # A trajectory that reaches no known set has left at an unknown time; some had left already by then.
-    lost = nowhere(np.flatnonzero(~known), [state_of(state) for state in last[~known]])
-    early = nowhere(lost, moved(model, [starts[k] for k in lost], late) if len(lost) else [])
+    # A trajectory that reaches no known set has left at an unknown time, some before counting starts.
+    lost = find_undetermined(np.flatnonzero(~known), [state_of(state) for state in last[~known]])
+    early = find_undetermined(lost, advance(model, [starts[k] for k in lost], late) if len(lost) else [])
     if count - np.count_nonzero(known & (when <= late)) - len(early) < FEWEST_LEFT:
-        # Chaos that is as short as that: captures are all that is seen.
+        # Chaos this short is over before counting starts; all captures are counted.
         spent = np.where(known, when, late + time)
         spent[lost] = 0.5 * late
         return Lifetime(int(known.sum()) + len(lost), float(spent.sum()))
@@ -162,14 +164,15 @@ def _followed(
 
 
 def _capture_time(model: Model, attractor: Attractor) -> float:
-    """Return a time within which trajectories that have left chaos are certain to be on an attractor.
+    """Return a time within which an attractor captures trajectories that have left chaos.
 
-    By its second exponent they come from afar to the radius of a closed orbit, and then so often close to it as they
-    have to. Of a torus, of chaos, and of an orbit to which a torus is locked this exponent tells nothing.
+    They approach a periodic orbit at the rate of its second exponent until they are within its radius, and then need
+    `close_returns` returns. For a torus, for chaos, and for an orbit to which a torus is locked this exponent gives no
+    such rate.
     """
     motion, rate = attractor.motion, -attractor.motion.exponent[1]
-    if rate < 1.0 / PATIENT_TIME:
-        return PATIENT_TIME
-    nearer = math.log(FAR * model.scale / attractor.radius) / rate
+    if rate < 1.0 / LONGEST_PATIENCE:
+        return LONGEST_PATIENCE
+    nearer = math.log(ESCAPE_DISTANCE * model.scale / attractor.radius) / rate
     close = attractor.close_returns / motion.stop_rate[motion.block - 1]
-    return LATENESS * (max(nearer, 0.0) + close)
+    return CAPTURE_MARGIN * (max(nearer, 0.0) + close)

@@ -1,6 +1,6 @@
-"""What files say of attractors, looked up by name.
+"""Values of attractors read from the files of a study, by name.
 
-It imports nothing of the search: a figure that reads a name here does not depend on how attractors are found.
+This module imports nothing of the search, so that a figure that reads a name does not depend on the search.
 """
 
 from __future__ import annotations
@@ -12,12 +12,12 @@ import numpy as np
 if TYPE_CHECKING:
     import xarray
 
-#: Crossings of the section that `refined.nc` holds of an attractor, at most.
+#: Largest number of section crossings that `refined.nc` holds for each attractor.
 CROSSINGS = 300
 
 
 def branch_names(dataset: xarray.Dataset) -> dict[int, str]:
-    """Return what each branch of a file is called, by its number."""
+    """Return {number: name} of the branches of a file."""
     return dict(zip(dataset["branch_number"].values.tolist(), map(str, dataset["branch_name"].values), strict=True))
 
 
@@ -30,7 +30,7 @@ def side_name(name: str, side: int) -> str:
 
 
 def largest_basin_fraction(attractors: xarray.Dataset, branch: int) -> tuple[float, float]:
-    """Return (fraction, a) of the largest basin of a branch, its sides counted together; of equal ones the first.
+    """Return (fraction, a) of the largest basin of a branch, both sides together; the first of equal ones.
 
     attractors : of one law
     """
@@ -42,14 +42,14 @@ def largest_basin_fraction(attractors: xarray.Dataset, branch: int) -> tuple[flo
     return float(fraction[largest]), float(attractors["a"].values[there][largest])
 
 
-def reached(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
+def reached_values(attractors: xarray.Dataset, initial: str, law: str, name: str) -> tuple[np.ndarray, np.ndarray]:
     """Return (known, values) of a variable on the attractors that an initial state reaches.
 
-    attractors : with a, under one convention
-    known : shape (a,); False where no attractor is known to be reached, and the values mean nothing
+    attractors : at all a, under one convention
+    known : shape (a,); False where the attractor is undetermined, and the value is meaningless
     values : shape (a, …)
     """
-    # Of variables, not of Datasets: claims ask for it a thousand times.
+    # Indexing variables is faster than indexing the Dataset; the claims call this a thousand times.
     chosen = {"law": law, "initial": initial}
     place = {dimension: attractors[dimension].values.tolist().index(one) for dimension, one in chosen.items()}
 

@@ -1,4 +1,4 @@
-"""How attractors are searched for; fields and defaults are those of a study's config."""
+"""Settings of the search for attractors; fields and defaults are those of a study's config."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from burridge_knopoff.running.settings import TIME
 @settings
 @dataclass(frozen=True)
 class SearchSettings:
-    """How attractors are looked for, told apart and matched along a: the config's section `attractors`.
+    """How attractors are searched for and distinguished: the config's section `attractors`.
 
     Raises ValueError, one line, for anything out of range.
 
@@ -28,41 +28,43 @@ class SearchSettings:
     samples: Annotated[
         int,
         Whole(0, 1_000_000),
-        "initial states drawn at each a, from which attractors are looked for, besides those that are given",
+        "number of random initial states at each a from which the search starts, in addition to the study's own",
     ] = 200
     fraction_width: Annotated[
         float,
         Number(5e-4, 0.5),
-        "half the width of the 95 % interval of each basin fraction; states are drawn anew at each a until all have "
-        "it, 0.5 draws none",
+        "target half-width of the 95 % interval of each basin fraction: states are drawn at each a until every "
+        "interval is this narrow (0.5: no sampling)",
     ] = 0.02
     seed: Annotated[int, SEED, "seed of all random numbers of the search"] = 1
-    position: Annotated[Sequence[float], POSITION, "box of the sampled U_i(0), of all blocks"] = POSITIONS
-    velocity: Annotated[Sequence[float], VELOCITY, "box of the sampled U_i'(0), of all blocks"] = VELOCITIES
+    position: Annotated[Sequence[float], POSITION, "range of the random U_i(0) of all blocks"] = POSITIONS
+    velocity: Annotated[Sequence[float], VELOCITY, "range of the random U_i'(0) of all blocks"] = VELOCITIES
     transient: Annotated[
-        float, TIME, "time after which a motion may count as settled; it grows where a motion settles slowly"
+        float, TIME, "time after which a motion may count as settled; extended automatically where it settles slowly"
     ] = 3000.0
     window: Annotated[
-        float, TIME, "time for which a settled motion is observed; it grows where a motion settles slowly"
+        float, TIME, "time for which a settled motion is observed; extended automatically where it settles slowly"
     ] = 3000.0
     time_limit: Annotated[
         float,
         TIME,
-        "time by which a trajectory of the search has to reach a known attractor; states counted in "
-        "basin fractions get ten times this limit, after which they are undetermined",
+        "time by which a trajectory of the search has to reach a known attractor; states that are counted, as in basin "
+        "fractions, are undetermined after ten times this limit",
     ] = 20_000.0
     resolution: Annotated[
         float,
         Number(1e-6, 0.1),
-        "distance in positions and velocities below which attractors are not told apart, for v = 0.1; it scales with v",
+        "attractors closer than this in positions and velocities count as one; for v = 0.1, scales with v",
     ] = 1e-3
     perturbations: Annotated[
-        int, Whole(4, 10_000), "random perturbations from which motion must come back for a capture radius to count"
+        int,
+        Whole(4, 10_000),
+        "number of random perturbations that must all return before a capture radius is accepted",
     ] = 16
     lifetime: Annotated[
         float,
         TIME,
-        "chaos is an attractor if its mean lifetime is above this with 96 % certainty, and transient if not",
+        "chaos is an attractor if its mean lifetime is above this with 96 % certainty, and transient otherwise",
     ] = 100_000.0
 
     def __post_init__(self) -> None:
@@ -70,9 +72,9 @@ class SearchSettings:
 
     @property
     def label_limit(self) -> float:
-        """Time by which a state that is counted has to reach a known attractor, or is undetermined: ten `time_limit`.
+        """Time by which a state that is counted has to reach a known attractor: ten times `time_limit`.
 
-        Chaos that lives about as long as a trajectory of the search would leave many states undetermined.
+        With `time_limit` itself, transient chaos of about that lifetime would leave many states undetermined.
         """
         return 10.0 * self.time_limit
 
@@ -80,5 +82,5 @@ class SearchSettings:
 #: The defaults of a study.
 SEARCH = SearchSettings()
 
-#: Its fields that bear upon what given states end on; the others say which states are drawn.
-OF_GIVEN_STATES = ("seed", "transient", "window", "time_limit", "resolution", "perturbations", "lifetime")
+#: Fields on which the asymptotic states of given initial states depend; the others concern the states that are drawn.
+GIVEN_STATE_KEYS = ("seed", "transient", "window", "time_limit", "resolution", "perturbations", "lifetime")

@@ -1,43 +1,43 @@
-"""Slow sets: tori near a resonance, which attract as a whole while the motion on them is too slow to settle."""
+"""Slow sets: tori near a resonance that attract as a whole, while the motion on them is too slow to settle."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from burridge_knopoff.attractors.attractor import perturbed
+from burridge_knopoff.attractors.attractor import perturb
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.section_returns import Returns, state_of, stops_alike, visit
 
-#: States that show a slow set; how far they are perturbed, in resolutions, so that they leave the locked orbit on it;
-#: and how long they are left to fall back, in transients, too short to reach that orbit again.
+#: Number of states that sample a slow set; their perturbation, in resolutions, large enough to leave a locked orbit on
+#: it; and the time, in transients, in which they fall back on the set, too short to reach that orbit again.
 SLOW_STATES = 12
 SLOW_PUSH = 5.0
 SLOW_TIME = 0.3
 
 
-def spread(model: Model, motion: SteadyMotion, settings: SearchSettings) -> SteadyMotion:
-    """Return a motion with the returns of trajectories that were perturbed off it as its own.
+def sample_slow_set(model: Model, motion: SteadyMotion, settings: SearchSettings) -> SteadyMotion:
+    """Return a motion together with the returns of trajectories that were perturbed off it.
 
-    Near a resonance the motion on a torus is locked, or nearly so, to orbits that hardly attract anything. The torus
-    itself attracts; perturbed states, which fall back on it and drift along, show more of it than a settled one.
+    Near a resonance the motion on a torus is locked, or nearly locked, to orbits that hardly attract. The torus itself
+    attracts: perturbed states fall back on it and drift along it, and so sample more of it than a settled one.
     """
     generator = np.random.default_rng(settings.seed)
     clouds: list[Returns] = []
     blocks = motion.block, motion.mirror_block
     for k in generator.integers(len(motion.returns), size=SLOW_STATES):
         size = SLOW_PUSH * settings.resolution * model.scale
-        start = perturbed(state_of(motion.returns[k]), size, generator)
+        start = perturb(state_of(motion.returns[k]), size, generator)
         found = visit(model, start, SLOW_TIME * settings.transient, settings.window)
-        # A state that has left for another motion shows nothing of this one.
+        # A state that has left for another motion does not belong to the set.
         if (
             found is not None
             and (found.block, found.mirror_block) == blocks
             and stops_alike(found.stop_count, motion.stop_rate)
         ):
             clouds.append(found)
-    # The last return, from which the motion is followed on, is its own.
+    # The motion is continued from the last return, which has to be its own.
     returns = np.concatenate([*(cloud.returns for cloud in clouds), motion.returns])
     mirror_returns = np.concatenate([*(cloud.mirror_returns for cloud in clouds), motion.mirror_returns])
     return motion.with_returns(returns, mirror_returns)

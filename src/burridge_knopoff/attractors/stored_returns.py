@@ -1,6 +1,6 @@
-"""The section returns of the attractors of one law in a netCDF file, by which states are labelled without a search.
+"""The section returns of the attractors of one law in a netCDF file, for labelling states without a new search.
 
-A row for each attractor at each a of the grid, its returns one after another (a CF contiguous ragged array).
+The file has a row for each attractor at each a of the grid, and its returns in a CF contiguous ragged array.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ VARIABLES = {
         ("attractor",), "i2", "number of the attractor at this a along the dimension `attractor` of attractors.nc"
     ),
     "return_count": Variable(
-        ("attractor",), "i4", "section returns of the attractor", {"sample_dimension": "section_return"}
+        ("attractor",), "i4", "number of section returns of the attractor", {"sample_dimension": "section_return"}
     ),
     "section_block": Variable(("attractor",), "i4", "block at whose stops the returns are taken"),
     "spacing": Variable(("attractor",), "f8", "distance between neighbouring returns"),
@@ -46,7 +46,7 @@ VARIABLES = {
 def returns_of_law(models: Sequence[Model], rows: Sequence[Sequence[Row]], about: Mapping[str, Any]) -> xarray.Dataset:
     """Return the section returns of the attractors of one law.
 
-    models, rows : at each a of the grid; about : attributes of the table that they belong to
+    models, rows : at each a of the grid; about : attributes of the table of attractors
     """
     held = [
         (model, slot, row.attractor.motion)
@@ -84,8 +84,8 @@ class KnownAttractors:
 def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model: Model) -> KnownAttractors:
     """Return the attractors of a model from the files of a study.
 
-    attractors : `attractors.nc`, which has the law of the model, by its name, and its a
-    returns : the section returns under that law, of the same search
+    attractors : `attractors.nc`, with the law and the a of the model
+    returns : the section returns under that law, from the same search
     """
     found = attractors.sel(law=model.law.name, a=model.a)
     slots = np.flatnonzero(found["branch"].values != UNDETERMINED)

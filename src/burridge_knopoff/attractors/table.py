@@ -1,4 +1,4 @@
-"""The table of attractors: what netCDF files hold of each attractor at each a; `lookup` reads it."""
+"""The table of attractors: the variables of each attractor at each a in netCDF files; `lookup` reads them."""
 
 from __future__ import annotations
 
@@ -23,8 +23,9 @@ from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 class Row:
     """One attractor at one a.
 
-    index : among the attractors found there; branch, side : see `continuation.branches.branches`
+    index : its index among the attractors found at this a
     lifetime : of chaos; None for other motion
+    branch, side : see `continuation.branches.branches`
     """
 
     index: int
@@ -36,17 +37,17 @@ class Row:
 
 @dataclass(frozen=True, eq=False)
 class Slot:
-    """A row with its model; lasting : mean lifetime that chaos has to exceed, or its kind is transient chaos."""
+    """A row and its model; least_lifetime : mean lifetime up to which chaos counts as transient."""
 
     row: Row
     model: Model
-    lasting: float
+    least_lifetime: float
 
     @property
     def kind(self) -> int:
-        """The kind of motion, of chaos also by its lifetime."""
+        """The kind of motion; transient chaos if its lifetime is not shown to exceed `least_lifetime`."""
         life = self.row.lifetime
-        lasts = life is None or life.lasts(self.lasting)
+        lasts = life is None or life.is_longer_than(self.least_lifetime)
         return self.row.attractor.motion.kind if lasts else MotionKind.TRANSIENT_CHAOS
 
     @property
@@ -60,23 +61,21 @@ class Slot:
         return self.row.attractor.motion.state().velocity
 
 
-NOTHING = {"comment": "-1 where there is none or it is undetermined"}
+NOTHING = {"comment": "-1 if there is none or it is undetermined"}
 _SYMMETRY = flag("i1", {-1: "none", **{int(item): item.name.lower() for item in Symmetry}})
 _SLOW = flag("i1", {-1: "none", 0: "no", 1: "yes"})
-_SIDE = "side of the branch: 1 and -1 for mirror images of each other, 0 for its own mirror image"
-_POINTS = "upward section points after which the state of all blocks repeats, 0 if it does not"
-_LIFE = "mean lifetime of chaos, inf if none of an ensemble ended; NaN for other motion"
-_RETURNS = "successive returns within the radius after which a trajectory is captured"
-_PATIENCE = "time by which a captured trajectory may still come to a closed orbit in the midst; 0 without one"
+_SIDE = "side of the branch: 1 and -1 for the two of a mirror pair, 0 for a set that is its own mirror image"
+_POINTS = "number of upward section points after which the state of all blocks repeats, 0 if it does not"
+_LIFE = "mean lifetime of chaos, inf if no trajectory of an ensemble left it; NaN for other motion"
+_RETURNS = "number of successive returns within the radius after which a trajectory counts as captured"
+_PATIENCE = "time by which a captured trajectory may still reach a periodic orbit embedded in the attractor; 0 if none"
 _POSITION = "positions of one state on the attractor, at a stop of the block nearest to an end that stops often"
 _DRIVER = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
-#: What a branch is called, over all numbers of branches of a file.
+#: The names of the branches of a file, by their numbers.
 NAMES = {
     "branch_number": Variable(("number",), "i2", "numbers of the branches"),
-    "branch_name": Variable(
-        ("number",), "O", "what the branch of that number is called, by its symmetry and its sticks"
-    ),
+    "branch_name": Variable(("number",), "O", "name of the branch of that number, from its symmetry and its sticks"),
 }
 
 
@@ -111,7 +110,7 @@ def slot_variables(place: str) -> dict[str, Column]:
         "close_returns": column(f"{of}.close_returns", "i4", _RETURNS),
         "patience": column(f"{of}.patience", "f8", _PATIENCE),
         "slow": column(f"{of}.slow", "i1", "whether motion on the attractor is too slow to settle", _SLOW),
-        "stop_rate": column(f"{of}.motion.stop_rate", "f8", "stops of a block in a unit of time", None, "block"),
+        "stop_rate": column(f"{of}.motion.stop_rate", "f8", "stops of a block per unit of time", None, "block"),
         "lyapunov_exponent": column(
             f"{of}.motion.exponent", "f8", "Lyapunov exponents, the largest first", None, "exponent"
         ),
@@ -121,17 +120,18 @@ def slot_variables(place: str) -> dict[str, Column]:
 
 
 def slot_coordinates(blocks: int) -> dict[str, Any]:
-    """Return the coordinates that slots have besides a."""
+    """Return the coordinates of slots in addition to a."""
     return {"block": ("block", np.arange(1, blocks + 1, dtype="i4"), {"long_name": "block number", "units": "1"})}
 
 
 def slot_values(
-    models: Sequence[Model], rows: Sequence[Sequence[Row]], lasting: float, dimension: str
+    models: Sequence[Model], rows: Sequence[Sequence[Row]], least_lifetime: float, dimension: str
 ) -> dict[str, np.ndarray]:
     """Return the variables of all slots.
 
-    models, rows : at each a; lasting : mean lifetime that chaos has to exceed, or its kind is transient chaos
-    dimension : name of that of a
+    models, rows : at each a
+    least_lifetime : mean lifetime up to which chaos counts as transient
+    dimension : name of the dimension of a
     """
     shape = {
         dimension: len(models),
@@ -140,7 +140,7 @@ def slot_values(
         "exponent": EXPONENTS,
     }
     slots = {
-        (k, slot): Slot(row, model, lasting)
+        (k, slot): Slot(row, model, least_lifetime)
         for k, (model, here) in enumerate(zip(models, rows, strict=True))
         for slot, row in enumerate(here)
     }

@@ -1,1 +1,1 @@
-"""Basins of attraction: maps, fractions, uncertainty of their boundaries."""
+"""Basins of attraction: maps, fractions, boundaries and their edge states."""

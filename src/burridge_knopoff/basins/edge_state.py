@@ -1,9 +1,10 @@
-"""Edge states: the motion to which trajectories on the boundary between two basins settle.
+"""Edge states: the motion on which trajectories on the boundary between two basins settle.
 
-Almost every trajectory on a boundary tends to a set that attracts within it and repels across it: a saddle orbit, a
-saddle torus or a chaotic saddle. The boundary is the stable manifold of this set. The unstable manifold leads to the
-attractors on both sides. If a branch of it returns to the boundary, it crosses the stable manifold, which then has the
-structure of a Cantor set (S. Smale): the boundary is fractal. If it does not, the boundary is smooth near this set.
+Almost every trajectory on a boundary tends to a set that attracts within the boundary and repels across it: a saddle
+orbit, a saddle torus or a chaotic saddle. The boundary is the stable manifold of this set. The unstable manifold leads
+to the attractors on both sides. If a branch of it returns to the boundary, it crosses the stable manifold, which then
+has the structure of a Cantor set (S. Smale), and the boundary is fractal. Otherwise the boundary is smooth near this
+set.
 
 References: J. D. Skufca, J. A. Yorke and B. Eckhardt, Phys. Rev. Lett. 96 (2006) 174101; C. Grebogi, E. Ott and
 J. A. Yorke, Physica D 7 (1983) 181-200; S. W. McDonald, C. Grebogi, E. Ott and J. A. Yorke, Physica D 17 (1985) 125.
@@ -19,10 +20,10 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.attractors.labels import UNDETERMINED, label, label_together
+from burridge_knopoff.attractors.labels import UNDETERMINED, label, label_arrays
 from burridge_knopoff.attractors.search import find_attractors
 from burridge_knopoff.attractors.settings import SEARCH
-from burridge_knopoff.basins.edge_tracking import FAR, EdgeTrack, LabelError
+from burridge_knopoff.basins.edge_tracking import SEPARATED_DISTANCE, EdgeTrack, LabelError
 from burridge_knopoff.basins.settings import EDGES, EdgeSettings
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
@@ -39,40 +40,41 @@ from burridge_knopoff.running.runner import check_state
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.values import each_instance_of, instance_of
 
-# A boundary is followed for this part of the longest time, and for twice as long, until an orbit is found.
+# A boundary is first followed for the longest time divided by this number, and then for twice as long each time, until
+# an orbit is found.
 FIRST_PART = 8
 
-# A trajectory on the boundary lies on an orbit if its last return is as close to it as the two sides are to each other,
-# within this factor, or this many times closer than its first return.
-CLOSER = 10.0
+# A trajectory on the boundary lies on an orbit if its last return is closer to the orbit than this factor times the
+# distance of the two sides, or by this factor closer than its first return.
+CLOSE_FACTOR = 10.0
 
-#: Displacements from an edge state, for v = 0.1 in the chain's own units: far beyond the distance of the two sides,
-#: and small enough for the motion to be linear.
-DISPLACED = (1e-6, 1e-4)
+#: Range of the displacements from an edge state, for v = 0.1 in the chain's own units: much larger than the distance of
+#: the two sides, and small enough for the motion to be linear.
+DISPLACEMENTS = (1e-6, 1e-4)
 
-# Capture radii, as parts of those of the attractors, one after another until no label is contradicted by a later one.
-# Within a radius there may be states from which the motion leaves, as random perturbations do not show.
-RADII = (1.0, 0.1, 0.01, 1e-3)
+# Capture radii, as fractions of those of the attractors, that are tried in turn until no label contradicts an earlier
+# one. Trajectories may escape from within a capture radius although no random perturbation did.
+RADIUS_SHARES = (1.0, 0.1, 0.01, 1e-3)
 
-# Parts of the trajectory whose scatter gives the errors of the exponents.
+# Number of batches of the trajectory whose scatter gives the errors of the exponents.
 BATCHES = 20
 
 
 @dataclass(frozen=True, eq=False)
 class EdgeState:
-    """The motion to which a trajectory on the boundary between two basins settles.
+    """The motion on which a trajectory on the boundary between two basins settles.
 
     kind : SYNCHRONIZED or PERIODIC for a saddle orbit, QUASIPERIODIC for a saddle torus, CHAOTIC for a chaotic saddle;
-        UNDETERMINED if its exponents do not decide between these
+        UNDETERMINED if the exponents do not decide
     symmetry : mirror symmetry of the set
     orbit : the saddle orbit, with exactly one multiplier outside the unit circle; None otherwise
     exponent, exponent_error : largest Lyapunov exponents along the trajectory on the boundary, with standard errors,
         shape (3,)
     mean_distance : ⟨J⟩ along it
     lifetime, lifetime_error : mean time for which trajectories stay near the set, the reciprocal of the escape rate,
-        with its standard error: of a saddle orbit the period over the logarithm of the multiplier, of a saddle torus
-        the reciprocal of the largest exponent, of a chaotic saddle that of displaced states
-    reached : number of displaced states that reach each attractor, a row for each side, shape (2, attractors)
+        with its standard error: for a saddle orbit the period over the logarithm of the multiplier, for a saddle torus
+        the reciprocal of the largest exponent, for a chaotic saddle the mean over displaced states
+    reached_count : number of displaced states that reach each attractor, a row for each side, shape (2, attractors)
     returns : states of the settled trajectory at stops of one block, shape (n, 2 blocks)
     duration : time for which the boundary was followed
 
@@ -96,7 +98,7 @@ class EdgeState:
     mean_distance: float
     lifetime: float
     lifetime_error: float
-    reached: np.ndarray
+    reached_count: np.ndarray
     returns: np.ndarray
     duration: float
 
@@ -107,13 +109,13 @@ class EdgeState:
 
     @cached_property
     def multiplier(self) -> np.ndarray:
-        """The Floquet multipliers of the saddle orbit, the largest modulus first; none if there is no such orbit."""
+        """The Floquet multipliers of the saddle orbit, the largest modulus first; empty if there is no such orbit."""
         return np.zeros(0, dtype=complex) if self.orbit is None else multipliers(self.orbit).whole
 
     @property
     def sides(self) -> tuple[set[int], set[int]]:
-        """Indices of the attractors that displaced states reach on either side."""
-        first, second = ({int(k) for k in np.flatnonzero(row)} for row in self.reached)
+        """The indices of the attractors that displaced states reach, for each side."""
+        first, second = ({int(k) for k in np.flatnonzero(row)} for row in self.reached_count)
         return first, second
 
     @property
@@ -140,15 +142,15 @@ def edge_state(
     state_a, state_b : states that reach different attractors
     attractors : those of the model, as `find_attractors` returns them; by default it is called
     settings : how long the boundary is followed, and how many displaced states are labelled
-    time_limit : by which a state has to reach an attractor; between basins it takes longer than elsewhere
+    time_limit : time by which a state has to reach an attractor; near a boundary this takes longer than elsewhere
 
     The boundary is that of the basin of the attractor that state_a reaches. Mirror images of attractors count as one,
     unless state_a and state_b reach mirror images of each other. If the segment between the states passes through a
-    third basin, the boundary may be that with the third one: `sides` names the attractors. A set that attracts within
-    the boundary only weakly, or a period longer than half of the duration, is not told from a torus.
+    third basin, the boundary may be that with the third one: `sides` names the attractors. An orbit that attracts only
+    weakly within the boundary, or has a period longer than half of the duration, is not distinguished from a torus.
 
     Raises ValueError, one line, for a wrong argument and for states that reach the same attractor or none; OrbitError
-    if the boundary is lost, as between attractors that are not all known.
+    if the boundary is lost, which happens if not all attractors are known.
 
     Source: J. D. Skufca, J. A. Yorke and B. Eckhardt, Phys. Rev. Lett. 96 (2006) 174101.
 
@@ -168,12 +170,12 @@ def edge_state(
     attractors = each_instance_of(attractors, Attractor, "attractors")
     instance_of(settings, EdgeSettings, "settings")
     time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
-    for share in RADII:
-        narrowed = [_narrowed(attractor, share) for attractor in attractors]
+    for share in RADIUS_SHARES:
+        narrowed = [_narrow(attractor, share) for attractor in attractors]
         track = EdgeTrack(
             model,
             narrowed,
-            _own(model, narrowed, state_a, state_b, time_limit),
+            _first_side(model, narrowed, state_a, state_b, time_limit),
             state_a,
             state_b,
             time_limit,
@@ -181,22 +183,22 @@ def edge_state(
         )
         try:
             orbit = _settle(track, settings.duration)
-            return _measured(track, orbit, settings)
+            return _measure(track, orbit, settings)
         except LabelError:
             continue
     raise OrbitError(f"a = {model.a:.12g}: the boundary is lost: states near it change their labels")
 
 
-def _narrowed(attractor: Attractor, share: float) -> Attractor:
-    """Return an attractor with a smaller capture radius, if its returns are close enough together."""
+def _narrow(attractor: Attractor, share: float) -> Attractor:
+    """Return an attractor with a smaller capture radius, as far as the spacing of its returns allows."""
     least = min(attractor.radius, SPACINGS * attractor.motion.spacing)
     return replace(attractor, radius=max(share * attractor.radius, least))
 
 
-def _own(
+def _first_side(
     model: Model, attractors: Sequence[Attractor], state_a: ChainState, state_b: ChainState, time_limit: float
 ) -> np.ndarray:
-    """Return which attractors are on the side of the first state, shape (attractors,)."""
+    """Return whether each attractor is on the side of the first state, shape (attractors,)."""
     first, second = label(model, attractors, [state_a, state_b], time_limit)[0].tolist()
     for name, index in (("state_a", first), ("state_b", second)):
         if index == UNDETERMINED:
@@ -210,10 +212,10 @@ def _own(
 
 
 def _settle(track: EdgeTrack, duration: float) -> PeriodicOrbit | None:
-    """Follow the boundary until it leads to a saddle orbit; None if it does not within that time."""
+    """Follow the boundary until it leads to a saddle orbit, and return the orbit; None if it leads to none in time."""
 
     def accepted(orbit: PeriodicOrbit, first: float, last: float, _: float) -> bool:
-        return last <= max(CLOSER * FAR, first / CLOSER) and multipliers(orbit).unstable_count == 1
+        return last <= max(CLOSE_FACTOR * SEPARATED_DISTANCE, first / CLOSE_FACTOR) and multipliers(orbit).unstable_count == 1
 
     part = duration / FIRST_PART
     while part <= duration:
@@ -229,15 +231,15 @@ def _second_half(track: EdgeTrack) -> int:
     return track.piece_at(0.5 * track.duration)
 
 
-def _measured(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettings) -> EdgeState:
-    """Return what a trajectory has settled on, from its second half."""
+def _measure(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettings) -> EdgeState:
+    """Return the edge state on which a trajectory has settled, from its second half."""
     since, model = _second_half(track), track.model
     _, values = track.events(since)
     stops = values[values[:, 1] == 0]
     found = returns_of(model, track.duration, stops[:, 0], lambda chosen: stops[chosen, 2:])
     exponent, error = _exponents(track.growth(since))
-    displaced = _Displaced(track, since, settings)
-    reached = displaced.reached()
+    displaced = _DisplacedStates(track, since, settings)
+    reached = displaced.counts()
     kind = _kind(orbit, exponent, error, reached)
     if orbit is not None:
         lifetime = orbit.period / math.log(abs(multipliers(orbit).whole[0])), 0.0
@@ -274,8 +276,8 @@ def _exponents(growth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def _kind(orbit: PeriodicOrbit | None, exponent: np.ndarray, error: np.ndarray, reached: np.ndarray) -> MotionKind:
     """Return the kind of motion on a boundary.
 
-    One of its positive exponents is that across the boundary. A trajectory on a fractal boundary that does not settle
-    on an orbit moves on a chaotic saddle, even if only one exponent is positive.
+    One positive exponent is that across the boundary, so the others decide. A trajectory on a fractal boundary that
+    does not settle on an orbit moves on a chaotic saddle, even if no other exponent is positive.
     """
     if orbit is not None:
         return MotionKind.SYNCHRONIZED if orbit.symmetry == Symmetry.SYNCHRONIZED else MotionKind.PERIODIC
@@ -291,40 +293,40 @@ def _symmetry(model: Model, found: Returns | None) -> Symmetry:
     return Symmetry.SYMMETRIC if is_near(found.mirror_returns, found.returns, reach) else Symmetry.ASYMMETRIC
 
 
-class _Displaced:
+class _DisplacedStates:
     """States displaced from a set on a boundary to either side, and the attractors that they reach."""
 
     def __init__(self, track: EdgeTrack, since: int, settings: EdgeSettings) -> None:
         self.track, self.since, self.samples = track, since, settings.samples
         self.generator = np.random.default_rng(settings.seed)
 
-    def reached(self) -> np.ndarray:
-        """Return how many of them reach each attractor, shape (2, attractors).
+    def counts(self) -> np.ndarray:
+        """Return the number of states that reach each attractor, shape (2, attractors).
 
-        A uniform logarithm of the displacements shows all of the unstable manifold.
+        The logarithm of the displacements is uniform, so that they cover all of the unstable manifold.
         """
-        low, high = np.log(DISPLACED)
+        low, high = np.log(DISPLACEMENTS)
         counts = []
         for side in (-1.0, 1.0):
-            labels, _ = self._labelled(side * np.exp(self.generator.uniform(low, high, self.samples)))
+            labels, _ = self._label(side * np.exp(self.generator.uniform(low, high, self.samples)))
             counts.append(np.bincount(labels[labels != UNDETERMINED], minlength=len(self.track.attractors)))
         return np.array(counts)
 
     def lifetime(self) -> tuple[float, float]:
         """Return the mean time for which uniformly displaced states stay, and its error.
 
-        From the exponential tail of the times at which their labels are certain, beyond the median of each side.
+        It is that of the exponential tail, beyond the median of each side, of the times at which labels are certain.
         """
         left = []
         for side in (-1.0, 1.0):
-            labels, times = self._labelled(side * DISPLACED[1] * self.generator.random(self.samples))
+            labels, times = self._label(side * DISPLACEMENTS[1] * self.generator.random(self.samples))
             late = np.sort(times[labels != UNDETERMINED])
             late = late[len(late) // 2 :]
             left.append(late[1:] - late[:1])
         tail = np.concatenate(left)
         return float(tail.mean()), float(tail.mean()) / math.sqrt(len(tail))
 
-    def _labelled(self, amount: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        states = self.track.displaced(self.since, amount, self.generator)
-        labels, times, _ = label_together(self.track.model, self.track.attractors, *states, self.track.time_limit)
+    def _label(self, amount: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        states = self.track.displace(self.since, amount, self.generator)
+        labels, times, _ = label_arrays(self.track.model, self.track.attractors, *states, self.track.time_limit)
         return labels, times

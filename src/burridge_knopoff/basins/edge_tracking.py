@@ -1,13 +1,13 @@
 """Edge tracking: a trajectory on the boundary between two basins, kept there by restarted bisection.
 
-Two states in different basins are brought together by bisection of the segment between them, by the attractors that its
-points reach. Both are then advanced, and while they are close they shadow the boundary between them. Once they have
-separated, the segment between them is bisected again.
+The segment between two states in different basins is bisected, by the attractors that its points reach. Both states are
+then advanced, and while they are close they shadow the boundary between them. Once they have separated, the segment
+between them is bisected again.
 
-Blocks stick, so that the two states may differ in which blocks are stuck. A stuck block has velocity 0 and a spring
-force at most at its threshold. Between such a state and one in which the block slips all velocities are positive, so
-that the block slips there; between two states in which it is stuck it is stuck. The segment is therefore one in
-positions and velocities, and all its points are states of the chain.
+The two states may differ in which blocks are stuck. A stuck block has velocity 0 and a spring force at most at its
+threshold. Between a state in which a block is stuck and one in which it slips, its velocity is positive, so the block
+slips; between two states in which it is stuck, it is stuck. All points of the segment in positions and velocities are
+therefore states of the chain.
 
 References: J. D. Skufca, J. A. Yorke and B. Eckhardt, Phys. Rev. Lett. 96 (2006) 174101; T. M. Schneider, B. Eckhardt
 and J. A. Yorke, Phys. Rev. Lett. 99 (2007) 034502.
@@ -21,44 +21,44 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.attractors.labels import UNDETERMINED, label_together
+from burridge_knopoff.attractors.labels import UNDETERMINED, label_arrays
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.flow import OrbitError, mean_distance
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
-# Parts into which a segment is divided at once: labels of many states take little longer than that of one.
+# Number of parts into which a segment is divided. Labelling many states together takes little longer than one.
 PARTS = 16
 
-#: Distances of the two states, for v = 0.1 in the chain's own units: down to which the segment between them is
-#: bisected, a thousand times rounding, and from which on it is bisected again.
-CLOSE, FAR = 1e-12, 1e-7
+#: Distances of the two states, for v = 0.1 in the chain's own units: the segment between them is bisected down to the
+#: first, a thousand times the rounding error, and again once they are the second apart.
+BISECTED_DISTANCE, SEPARATED_DISTANCE = 1e-12, 1e-7
 
-# Distance from which on the direction between the two states is known to three digits and more.
-DIRECTED = 1e-9
+# Distance above which the direction between the two states is known to at least three digits.
+DIRECTION_DISTANCE = 1e-9
 
-# Time, in the chain's own unit, after which the distance is measured again. The fastest motion seen to leave a
+# Time, in the chain's own unit, between two measurements of the distance. Of all motions seen, the fastest to leave a
 # boundary takes twice as long for a factor e.
 STEP = 5.0
 
-# Where both states have come to the same side, as in strips of a fractal boundary thinner than rounding, the line
-# through them is searched at these distances from them, in units of their distance.
-BESIDE = np.geomspace(0.1, 100.0, 32)
+# Distances from the two states, in units of their distance, at which the line through them is searched if both have
+# come to the same side, as in strips of a fractal boundary thinner than the rounding error.
+LINE_DISTANCES = np.geomspace(0.1, 100.0, 32)
 
-# Growth of a perturbation in a step below which it has vanished, as that of the velocity of a block that stops.
-VANISHED = 1e-12
+# Growth of a perturbation in a step below which it counts as zero, as that of the velocity of a block that stops.
+LEAST_GROWTH = 1e-12
 
 
 class LabelError(Exception):
-    """A state near a boundary has another label than the trajectory that led to it."""
+    """The label of a state near a boundary contradicts that of the trajectory that led to it."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Piece:
-    """What was seen between two bisections.
+    """The part of a track between two bisections.
 
     start, duration : of the trajectory on the first side
-    times, values : of its events, as the kernel keeps them
+    times, values : of its events, in the form of the kernel
     growth : logarithms of the growth of perturbations in each step, shape (steps, vectors)
     place, direction : states at some of the steps, and unit vectors to the second side, shape (n, 2 blocks)
     """
@@ -76,15 +76,15 @@ class _Piece:
 class EdgeTrack:
     """A trajectory on the boundary of a basin, as far as it has been followed.
 
-    attractors : of the model; own : which of them are on the first side, shape (attractors,)
+    attractors : of the model; on_first_side : whether each is on the first side, shape (attractors,)
     first, second : states on the two sides
-    time_limit : by which a state has to reach an attractor
-    vectors : perturbations whose growth is measured
+    time_limit : time by which a state has to reach an attractor
+    vectors : number of perturbations whose growth is measured
     """
 
     model: Model
     attractors: Sequence[Attractor]
-    own: np.ndarray
+    on_first_side: np.ndarray
     first: ChainState
     second: ChainState
     time_limit: float
@@ -107,7 +107,7 @@ class EdgeTrack:
         return sum(piece.duration for piece in self.pieces)
 
     def advance(self, duration: float) -> None:
-        """Follow the boundary for that time, and on to the next separation.
+        """Follow the boundary for at least this time, up to the next separation.
 
         Raises OrbitError if the boundary is lost, LabelError if labels contradict each other.
         """
@@ -117,7 +117,7 @@ class EdgeTrack:
             self._follow()
 
     def events(self, since: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return times and values of the events, as the kernel keeps them, from the piece of that number on."""
+        """Return times and values of the events from piece `since` on, in the form of the kernel."""
         clock = np.cumsum([0.0, *(piece.duration for piece in self.pieces)])
         kept = range(since, len(self.pieces))
         return (
@@ -126,36 +126,36 @@ class EdgeTrack:
         )
 
     def piece_at(self, time: float) -> int:
-        """Return the number of the piece that contains a time."""
+        """Return the index of the piece that contains a time."""
         ends = np.cumsum([piece.duration for piece in self.pieces])
         return min(int(np.searchsorted(ends, time, side="right")), len(ends) - 1)
 
     def mean_distance(self, since: int) -> float:
-        """Return ⟨J⟩ from the piece of that number on."""
+        """Return ⟨J⟩ from piece `since` on."""
         kept = self.pieces[since:]
         total = sum(mean_distance(self.model, piece.start, piece.duration) * piece.duration for piece in kept)
         return total / sum(piece.duration for piece in kept)
 
     def growth(self, since: int) -> np.ndarray:
-        """Return the rates of growth of perturbations in each step from a piece on, shape (steps, vectors)."""
+        """Return the growth rates of perturbations in each step from piece `since` on, shape (steps, vectors)."""
         return np.concatenate([piece.growth for piece in self.pieces[since:]]) / self.step
 
-    def displaced(
+    def displace(
         self, since: int, amount: np.ndarray, generator: np.random.Generator
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return states displaced from the boundary, as positions, velocities and stuck blocks, shape (n, blocks).
 
         amount : displacements, positive towards the second side, for v = 0.1 in the chain's own units, shape (n,)
 
-        They begin at random places of the trajectory from the piece of that number on, in the direction in which the
-        two sides separate.
+        They are displaced from random points of the trajectory from piece `since` on, in the direction in which the two
+        sides separate.
         """
         place = np.concatenate([piece.place for piece in self.pieces[since:]])
         direction = np.concatenate([piece.direction for piece in self.pieces[since:]])
         chosen = generator.integers(len(place), size=len(amount))
         position, velocity = np.split(place[chosen] + amount[:, None] * direction[chosen], 2, axis=1)
         stuck = place[chosen, self.model.blocks :] == 0.0
-        # A displacement reverses no slip.
+        # A displacement does not reverse a slip.
         slip = np.sign(place[chosen, self.model.blocks :])
         return position, np.where(velocity * slip > 0.0, velocity, 0.0), stuck
 
@@ -163,9 +163,9 @@ class EdgeTrack:
         return float(np.abs((first.vector() - second.vector()) / self.model.state_scale).max())
 
     def _bisect(self) -> None:
-        """Bring the two states together; what lies between them and reaches nothing is passed over."""
+        """Bring the two states together. States between them that reach no attractor are ignored."""
         shares = np.arange(PARTS + 1) / PARTS
-        while (distance := self._distance(self.first, self.second)) > CLOSE:
+        while (distance := self._distance(self.first, self.second)) > BISECTED_DISTANCE:
             states, ours = self._sides(shares)
             if len(ours) < 2 or not ours[0] or ours[-1]:
                 self._find_change()
@@ -179,27 +179,27 @@ class EdgeTrack:
                 )
 
     def _sides(self, shares: np.ndarray) -> tuple[list[ChainState], np.ndarray]:
-        """Return states on the line through the two states that reach an attractor, and which are on the first side.
+        """Return states on the line through the two that reach an attractor, and whether each is on the first side.
 
-        shares : of the way from the first to the second, shape (n,)
+        shares : positions on the line, 0 at the first state and 1 at the second, shape (n,)
         """
         first, second, share = self.first, self.second, shares[:, None]
         stuck = np.tile(first.stuck & second.stuck, (len(shares), 1))
         stuck[shares == 0.0], stuck[shares == 1.0] = first.stuck, second.stuck
         position = (1.0 - share) * first.position + share * second.position
         velocity = (1.0 - share) * first.velocity + share * second.velocity
-        # Beyond the two states a slip may not be reversed.
+        # Outside the segment a slip could be reversed.
         velocity[velocity * np.sign(first.velocity + second.velocity) < 0.0] = 0.0
-        labels, _, _ = label_together(self.model, self.attractors, position, velocity, stuck, self.time_limit)
+        labels, _, _ = label_arrays(self.model, self.attractors, position, velocity, stuck, self.time_limit)
         known = np.flatnonzero(labels != UNDETERMINED)
-        return [ChainState(position[k], velocity[k], stuck[k]) for k in known], self.own[labels[known]]
+        return [ChainState(position[k], velocity[k], stuck[k]) for k in known], self.on_first_side[labels[known]]
 
     def _find_change(self) -> None:
-        """Replace two states on the same side by the nearest two on the line through them that are not.
+        """Replace two states on the same side by the nearest two on the line through them on different sides.
 
         Raises LabelError if there are none.
         """
-        states, ours = self._sides(np.concatenate([-BESIDE[::-1], [0.0, 1.0], 1.0 + BESIDE]))
+        states, ours = self._sides(np.concatenate([-LINE_DISTANCES[::-1], [0.0, 1.0], 1.0 + LINE_DISTANCES]))
         changes = np.flatnonzero(np.diff(ours))
         if not len(changes):
             raise LabelError
@@ -216,20 +216,20 @@ class EdgeTrack:
         other.begin(self.second, 0.0)
         growth, place, direction = [], [], []
         distance, blocks = 0.0, self.model.blocks
-        while distance < FAR:
+        while distance < SEPARATED_DISTANCE:
             clock += step
             if clock > self.time_limit:
-                # They reach the same attractor after all.
+                # Both states reach the same attractor, in contradiction to their labels.
                 raise LabelError
             if any(one.run(clock) != Status.COMPLETED for one in (runner, other)):
                 raise OrbitError(f"a = {self.model.a:.12g}: the run ends at τ = {clock:g} on the boundary")
             self._basis, triangle = np.linalg.qr(runner.perturbations)
             runner.carry(self._basis)
             size = np.abs(np.diag(triangle))
-            growth.append(np.where(size > VANISHED, np.log(np.maximum(size, VANISHED)), -np.inf))
+            growth.append(np.where(size > LEAST_GROWTH, np.log(np.maximum(size, LEAST_GROWTH)), -np.inf))
             self.first, self.second = runner.state(), other.state()
             distance = self._distance(self.first, self.second)
-            if DIRECTED < distance < FAR and (self.first.stuck == self.second.stuck).all():
+            if DIRECTION_DISTANCE < distance < SEPARATED_DISTANCE and (self.first.stuck == self.second.stuck).all():
                 place.append(self.first.vector())
                 direction.append((self.second.vector() - self.first.vector()) / distance)
         events = runner.log.events
@@ -238,11 +238,11 @@ class EdgeTrack:
 
 
 def _widest_change(ours: np.ndarray) -> int:
-    """Return the index of a point that is not on the first side, after one that is, with most such points next to them.
+    """Return the index of the point after the change from the first to the second side with the widest runs around it.
 
-    ours : which points are on the first side, shape (points,): the first is, the last is not
+    ours : whether each point is on the first side, shape (points,): the first is, the last is not
 
-    A basin may be a strip thinner than rounding.
+    A wide run is preferred because a basin may be a strip thinner than the rounding error.
     """
     edges = np.flatnonzero(np.diff(ours)) + 1
     runs = np.diff([0, *edges, len(ours)])

@@ -1,7 +1,7 @@
-"""Which attractors the states reach that are drawn for the basin fractions: at each a others, and as many as needed.
+"""Labels of the states drawn for the basin fractions: an independent sample at each a, as large as needed.
 
-States are drawn until the interval of each fraction is as narrow as asked; how many that takes is decided by the labels
-in the order of the states. Where a fraction is small few are enough.
+States are drawn until the interval of each fraction is as narrow as required. The labels, in the order of the states,
+decide how many that takes; small fractions take few.
 """
 
 from __future__ import annotations
@@ -12,33 +12,33 @@ from functools import partial
 
 import numpy as np
 
-from burridge_knopoff.attractors.capture_radius import midst
-from burridge_knopoff.attractors.labels import UNDETERMINED, label_together
+from burridge_knopoff.attractors.capture_radius import embedded_orbits
+from burridge_knopoff.attractors.labels import UNDETERMINED, label_arrays
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.model.sampling import half_width, most_states, sample_states, seed_at
 from burridge_knopoff.running.processes import Shared
 
-#: States that one process labels at a time; no label depends on it.
-PART = 250
+#: Number of states that one process labels at a time; the labels do not depend on it.
+LABELLED_AT_ONCE = 250
 
-# The patience with an attractor in whose midst orbits lie: this many times that of the last of a sample that reaches
-# one.
+# Patience of an attractor in which periodic orbits are embedded, in units of the longest time that a state of a sample
+# takes to reach one of them.
 PATIENCE_MARGIN = 3.0
 
-#: Numbers of states after which it is asked whether the intervals are narrow enough.
+#: The widths of the intervals are tested each time that this many states have been added.
 STEP = 50
 
 
 def fraction_labels(searches: Sequence[Search], start: str, each: Shared) -> tuple[list[Search], list[np.ndarray]]:
-    """Return, for each model, the index of the attractor that each drawn state reaches, and the searches as they are.
+    """Return the searches, and for each the index of the attractor that each drawn state reaches.
 
-    start : see `Model.begin`; each : as `running.processes.shared_out` gives it
+    start : see `Model.begin`; each : from `running.processes.shared_out`
 
-    The states are not those from which attractors are looked for; but where one reaches none that is known, it is
-    looked for from there as well, and all are labelled once more.
+    The states are independent of those from which the search started. If one reaches no known attractor, the search
+    continues from it. All states are labelled again if that finds a new attractor.
     """
-    spared = each("patience spared", partial(_spared, start=start), searches)
+    spared = each("patience reduced", partial(_reduce_patience, start=start), searches)
     searches = [one or search for one, search in zip(spared, searches, strict=True)]
     labels = [np.zeros(0, dtype=np.intc) for _ in searches]
     waiting = list(range(len(searches)))
@@ -48,39 +48,44 @@ def fraction_labels(searches: Sequence[Search], start: str, each: Shared) -> tup
         wide = [k for k in waiting if most_states(searches[k].settings.fraction_width)]
         while wide:
             those, firsts = [searches[k] for k in wide], [len(labels[k]) for k in wide]
-            found = each("labelled for basin fractions", partial(_labels, start=start), those, firsts)
+            found = each("labelled for basin fractions", partial(_label_next, start=start), those, firsts)
             for k, part in zip(wide, found, strict=True):
                 labels[k] = np.concatenate([labels[k], part])
-            enough = {k: enough_states(labels[k], searches[k].settings.fraction_width) for k in wide}
+            enough = {k: required_states(labels[k], searches[k].settings.fraction_width) for k in wide}
             labels = [one[: enough.get(k, len(one))] for k, one in enumerate(labels)]
             wide = [k for k in wide if enough[k] is None]
         lost = [k for k in waiting if (labels[k] == UNDETERMINED).any()]
         those = [searches[k] for k in lost]
-        looked = each("looked for from the others", partial(_more, start=start), those, [labels[k] for k in lost])
+        looked = each(
+            "searched from undetermined states",
+            partial(_search_from_undetermined, start=start),
+            those,
+            [labels[k] for k in lost],
+        )
         for k, (search, _) in zip(lost, looked, strict=True):
             searches[k] = search
         waiting = [k for k, (_, more) in zip(lost, looked, strict=True) if more]
     return searches, labels
 
 
-def enough_states(labels: np.ndarray, width: float) -> int | None:
-    """Return after how many states the interval of each fraction is as narrow as asked; None if more are needed.
+def required_states(labels: np.ndarray, width: float) -> int | None:
+    """Return the number of states after which every interval has half-width `width` or less; None if more are needed.
 
-    labels : of the states in their order, shape (n,), −1 where it is undetermined, which is a fraction as well
+    labels : of the states in their order, shape (n,); −1 (undetermined) is a fraction as well
     """
     most = most_states(width)
     for count in (*range(STEP, most, STEP), most):
         if count > len(labels):
             return None
         hits = np.unique(labels[:count], return_counts=True)[1].tolist()
-        # That of what has not been met is as wide as that of what is always met.
+        # An attractor that no state has reached has an interval too: 0 hits, as wide as that of `count` hits.
         if max(half_width(hit, count) for hit in (0, *hits)) <= width:
             return count
     return most
 
 
-def _drawn(search: Search, start: str, first: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return some of the drawn states: x_i, U_i' and which blocks stick, each of shape (states, blocks)."""
+def _draw_states(search: Search, start: str, first: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return `count` drawn states from number `first` on: x_i, U_i' and stuck blocks, each of shape (count, blocks)."""
     settings, model = search.settings, search.model
     seed = seed_at(settings.seed, model.a)
     box = settings.position, settings.velocity
@@ -89,19 +94,18 @@ def _drawn(search: Search, start: str, first: int, count: int) -> tuple[np.ndarr
     return position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
 
 
-def _spared(search: Search, start: str) -> Search | None:
-    """Lessen the patience with attractors whose inner orbits a sample of states reaches much earlier.
+def _reduce_patience(search: Search, start: str) -> Search | None:
+    """Reduce the patience of attractors whose embedded orbits a sample of states reaches much earlier.
 
-    None where no attractor has inner orbits.
-
-    Where chaos is a transient before the orbits, the last of the sample come late and nothing is spared.
+    None if no periodic orbit is embedded in an attractor. If chaos is a transient that leads to the orbits, the last
+    states of the sample arrive late and the patience is not reduced.
     """
     attractors = search.attractors
-    inner = [midst(attractors, index, search.tolerance) for index in range(len(attractors))]
-    sample = _drawn(search, start, 0, min(search.settings.samples, most_states(search.settings.fraction_width)))
+    inner = [embedded_orbits(attractors, index, search.tolerance) for index in range(len(attractors))]
+    sample = _draw_states(search, start, 0, min(search.settings.samples, most_states(search.settings.fraction_width)))
     if not any(inner) or not len(sample[0]):
         return None
-    labels, times, _ = label_together(search.model, attractors, *sample, search.settings.time_limit)
+    labels, times, _ = label_arrays(search.model, attractors, *sample, search.settings.time_limit)
     for index, orbits in enumerate(inner):
         came = times[np.isin(labels, orbits)]
         if len(came):
@@ -110,17 +114,19 @@ def _spared(search: Search, start: str) -> Search | None:
     return search
 
 
-def _labels(search: Search, first: int, start: str) -> np.ndarray:
-    """Label a part of the drawn states, from that number on."""
-    part = _drawn(search, start, first, min(PART, most_states(search.settings.fraction_width) - first))
+def _label_next(search: Search, first: int, start: str) -> np.ndarray:
+    """Return the labels of the next drawn states from number `first` on."""
+    part = _draw_states(
+        search, start, first, min(LABELLED_AT_ONCE, most_states(search.settings.fraction_width) - first)
+    )
     if not search.attractors:
         return np.full(len(part[0]), UNDETERMINED, dtype=np.intc)
-    labels, _, _ = label_together(search.model, search.attractors, *part, search.settings.label_limit)
+    labels, _, _ = label_arrays(search.model, search.attractors, *part, search.settings.label_limit)
     return labels
 
 
-def _more(search: Search, labels: np.ndarray, start: str) -> tuple[Search, bool]:
-    """Look for attractors from states that reach none; return the search, and whether it knows more than before."""
-    drawn = _drawn(search, start, 0, len(labels))
+def _search_from_undetermined(search: Search, labels: np.ndarray, start: str) -> tuple[Search, bool]:
+    """Search from the states that reach no attractor; return the search, and whether it found a new attractor."""
+    drawn = _draw_states(search, start, 0, len(labels))
     lost = np.flatnonzero(labels == UNDETERMINED)
     return search, search.discover([ChainState(*(values[k] for values in drawn)) for k in lost.tolist()])

@@ -1,9 +1,9 @@
-"""Pairs of near points of a plane at ever smaller separations, for the fraction of pairs that a boundary parts.
+"""Pairs of near points of a plane at ever smaller separations, for the fraction of pairs that a boundary separates.
 
-Pairs at a small separation that differ are rare, and most of them lie in pairs at a larger one that differ. So pairs
-are divided: each into three, a third as far apart, with a third of the weight. Of these some are kept, chosen with
-probabilities by which all weights together are still those of pairs drawn from the whole plane: few from far inside a
-basin, most from near a boundary, however near. The mean of what is found is that of plain sampling, whatever is kept.
+At a small separation pairs with different labels are rare, and most of them are parts of such pairs at a larger
+separation. Each pair is therefore divided into three, a third as far apart, with a third of the weight (splitting). A
+random selection of these is kept: few from far inside a basin, most from near a boundary. Their weights are increased
+accordingly, so that the mean of any sum over pairs is that of plain sampling.
 
 Reference: H. Kahn and T. E. Harris, National Bureau of Standards Applied Mathematics Series 12 (1951) 27-30.
 """
@@ -17,38 +17,37 @@ import numpy as np
 
 from burridge_knopoff.attractors.labels import UNDETERMINED
 
-#: Into how many each pair is divided.
+#: Number of parts into which each pair is divided.
 PARTS = 3
 
-#: Separations ε of the pairs, as parts of the width of the plane.
+#: Separations ε of the pairs, as fractions of the width of the plane.
 SEPARATIONS = tuple(0.1 * PARTS**-k for k in range(13))
 
-#: Independent groups of pairs, whose scatter is the error of all that follows from them.
+#: Number of independent groups of pairs, whose scatter gives the errors.
 BATCHES = 20
 
-# So many pairs are kept of an age for one of the age below: the longer ago that pairs have differed, the farther
-# they are from the boundary that was seen, and the less often another one lies hidden between their points. Of 0.5,
-# 0.7, 0.85, and a quarter for those that differ with equal shares for the rest, 0.85 gave the smallest errors for
-# Cantor strips.
-_KEPT_OF_OLDER = 0.85
+# Ratio of the numbers of pairs that are kept of successive ages. The longer ago a pair has differed, the farther it is
+# from the boundary that was seen, and the less often another boundary lies between its points. Of 0.5, 0.7, 0.85, and a
+# quarter for pairs that differ with equal numbers for the rest, 0.85 gave the smallest errors for Cantor strips.
+_AGE_FACTOR = 0.85
 
-#: Takes points of the plane, shape (n, 2), and returns their labels, shape (n,): below 0 where undetermined.
+#: A function of points of the plane, shape (n, 2), that returns their labels, shape (n,): negative if undetermined.
 Label = Callable[[np.ndarray], np.ndarray]
 
 
 @dataclass(frozen=True)
 class PairCounts:
-    """What became of pairs of points.
+    """Weights and numbers of the pairs at each separation.
 
     different, known : weights of the pairs with two different labels, and of all with two labels, shape (batches,
         separations)
-    different_count, known_count : their numbers, shape (separations,)
+    different_count, labelled_count : their numbers, shape (separations,)
     """
 
-    different: np.ndarray
-    known: np.ndarray
+    different_weight: np.ndarray
+    labelled_weight: np.ndarray
     different_count: np.ndarray
-    known_count: np.ndarray
+    labelled_count: np.ndarray
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,8 +56,8 @@ class _Pairs:
 
     start, direction : first points and unit vectors to the second ones, shape (n, 2); labels : of both, shape (2, n)
     batch, weight : shape (n,)
-    age : how many separations ago a pair that this one is a part of has differed, shape (n,)
-    never : age of a pair whose points, and those of the pairs that it is a part of, have never differed
+    age : number of separations since a pair that contains this one has differed, shape (n,)
+    never : age of a pair if no pair that contains it has differed
     """
 
     start: np.ndarray
@@ -70,36 +69,36 @@ class _Pairs:
     never: int
 
     @property
-    def known(self) -> np.ndarray:
-        """Which have two labels."""
+    def is_labelled(self) -> np.ndarray:
+        """Whether both points of each pair have a label."""
         return np.logical_and(*(self.labels >= 0))
 
     @property
-    def different(self) -> np.ndarray:
-        """Pairs with differing labels."""
-        return self.known & (self.labels[0] != self.labels[1])
+    def is_different(self) -> np.ndarray:
+        """Whether the points of each pair have different labels."""
+        return self.is_labelled & (self.labels[0] != self.labels[1])
 
     def weights(self, chosen: np.ndarray) -> np.ndarray:
         """Return the weights of the chosen pairs in each batch."""
         return np.bincount(self.batch, self.weight * chosen, BATCHES)
 
-    def kept(self, size: int, generator: np.random.Generator) -> _Pairs:
-        """Return about `size` pairs of each batch, the more of an age the younger it is, with the weight of all."""
-        age = np.where(self.different, 0, np.minimum(self.age + 1, self.never))
+    def select(self, size: int, generator: np.random.Generator) -> _Pairs:
+        """Return about `size` pairs of each batch with its total weight; most of them are of the youngest ages."""
+        age = np.where(self.is_different, 0, np.minimum(self.age + 1, self.never))
         indices, weights = [], []
         for batch in range(BATCHES):
             ages = np.unique(age[self.batch == batch])
-            rooms = size * _KEPT_OF_OLDER**ages / np.sum(_KEPT_OF_OLDER**ages)
+            rooms = size * _AGE_FACTOR**ages / np.sum(_AGE_FACTOR**ages)
             for one, room in zip(ages, rooms, strict=True):
                 members = np.flatnonzero((self.batch == batch) & (age == one))
-                chosen, weight = _chosen(self.weight[members], max(1, int(room)), generator)
+                chosen, weight = _select(self.weight[members], max(1, int(room)), generator)
                 indices.append(members[chosen])
                 weights.append(weight)
         index = np.concatenate(indices)
         here = (self.start[index], self.direction[index], self.labels[:, index], self.batch[index])
         return _Pairs(*here, np.concatenate(weights), age[index], self.never)
 
-    def divided(self, separation: float, label: Label) -> _Pairs:
+    def divide(self, separation: float, label: Label) -> _Pairs:
         """Return all parts of the pairs, `separation` apart."""
         points = [self.start + part * separation * self.direction for part in range(PARTS)]
         between = label(np.concatenate(points[1:])).reshape(PARTS - 1, -1)
@@ -123,12 +122,13 @@ def follow_pairs(
     seed: int,
     separations: Sequence[float] = SEPARATIONS,
 ) -> PairCounts:
-    """Label pairs of points of a plane at each of several separations, each a third of the one before.
+    """Label pairs of points of a plane at several separations, each a third of the one before.
 
-    first, last : ranges (low, high) of both coordinates; separations are parts of the width of the first one
-    count : pairs that are kept at a separation, about; for each two points are labelled
+    first, last : ranges (low, high) of both coordinates
+    count : approximate number of pairs that are kept at each separation; two points are labelled for each
+    separations : as fractions of the width of the first range
 
-    A pair belongs to the plane if both points do; such pairs are uniform in place and in direction.
+    A pair counts if both points lie in the plane. Such pairs are uniform in position and direction.
     """
     generator = np.random.default_rng(seed)
     low, high = np.array([first, last], dtype=float).T
@@ -143,7 +143,7 @@ def follow_pairs(
 
     longest, never = separations[0] * width, len(separations)
     batch = np.repeat(np.arange(BATCHES), size)
-    # Parts of a pair that begins outside may lie in the plane: without these there would be fewer near its edges.
+    # Parts of a pair that begins outside may lie in the plane; without them there would be too few near its edges.
     start = low - longest + (high - low + 2.0 * longest) * generator.random((len(batch), 2))
     angle = 2.0 * np.pi * generator.random(len(batch))
     direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -151,18 +151,18 @@ def follow_pairs(
     pairs = _Pairs(start, direction, ends, batch, np.ones(len(batch)), np.full(len(batch), never), never)
     found = []
     for separation in (*separations[1:], 0.0):
-        known, different = pairs.known, pairs.different
+        known, different = pairs.is_labelled, pairs.is_different
         found.append((pairs.weights(different), pairs.weights(known), different.sum(), known.sum()))
         if separation and len(batch):
-            pairs = pairs.kept(size, generator).divided(separation * width, labels_of)
+            pairs = pairs.select(size, generator).divide(separation * width, labels_of)
     weights, all_weights, counts, all_counts = (np.array(part) for part in zip(*found, strict=True))
     return PairCounts(weights.T, all_weights.T, counts, all_counts)
 
 
-def _chosen(weight: np.ndarray, count: int, generator: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
-    """Return which of some weights are chosen, and their new weights: of each, the mean of these is the old weight.
+def _select(weight: np.ndarray, count: int, generator: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
+    """Return the indices of selected weights, and their new weights, whose mean for each index is the old weight.
 
-    All, unless there are more than `count`; then equally spaced steps through their sum choose.
+    All are selected unless there are more than `count`; then `count` are, by systematic sampling of their sum.
     """
     if len(weight) <= count:
         return np.arange(len(weight)), weight

@@ -1,4 +1,4 @@
-"""Maps of basins, initial phases and edge states; fields and defaults are those of a study's config."""
+"""Settings of maps of basins, initial phases and edge states; fields and defaults are those of a study's config."""
 
 from __future__ import annotations
 
@@ -19,22 +19,28 @@ from burridge_knopoff.running.settings import TIME
 class BasinSettings:
     """A map of basins over U_1(0) and U_N(0): the config's section `basins`, without the values of a.
 
-    initial : the state that gives all other positions and velocities
+    initial : the state with all other positions and velocities
 
     Raises ValueError, one line, for anything out of range.
     """
 
-    pixels: Annotated[int, Whole(1, 16_384), "pixels of a map along each axis"] = 256
+    pixels: Annotated[int, Whole(1, 16_384), "number of pixels of a map along each axis"] = 256
     initial: InitialState = PAPER_STATES["minus"]
     first_position: Annotated[Sequence[float], POSITION, "range of U_1(0)"] = POSITIONS
     last_position: Annotated[Sequence[float], POSITION, "range of U_N(0)"] = POSITIONS
     pairs: Annotated[
         int,
         Whole(0, 10_000_000),
-        "pairs of near states of the plane, at each of thirteen separations, for the uncertainty exponent",
+        "number of pairs of nearby states of the plane, at each of 13 separations, for the uncertainty exponent",
     ] = 1600
-    tiles: Annotated[int, Whole(1, 16_384), "bands of rows of a map, each a job, at most as many as pixels"] = 2
-    threads: Annotated[int, Whole(1, 1024), "threads that compute a map or each of its tiles; they change no label"] = 1
+    tiles: Annotated[
+        int,
+        Whole(1, 16_384),
+        "number of bands into which a map is divided, one job each; at most `pixels`",
+    ] = 2
+    threads: Annotated[
+        int, Whole(1, 1024), "number of threads for each map or tile; the result does not depend on it"
+    ] = 1
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -53,25 +59,25 @@ class PhaseSettings:
     amplitude: Annotated[
         Sequence[float],
         Several(Number(0.0, 1e6, above=True), 1, 100, distinct=True),
-        "amplitudes A of both end blocks, each with each phase difference",
+        "amplitudes A of both end blocks, each combined with each phase difference",
     ] = (0.01, 0.03, 0.07, 0.1, 0.15, 0.2, 0.3, 1.0)
     phase_difference: Annotated[
         Sequence[float],
         Several(Number(0.0, 180.0), 1, 100, distinct=True),
-        "by how many degrees the last block is ahead of the first; exactly 0 is synchrony from the start",
+        "phase of the last block minus that of the first, in degrees; exactly 0 is synchrony from the start",
     ] = (15.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0)
     inner_share: Annotated[
         Sequence[float],
         Several(Number(0.0, 1e3), 1, 100, distinct=True),
-        "amplitudes of all blocks but the end blocks, over A; with 0 they slide uniformly",
+        "amplitudes of all blocks except the end blocks, divided by A; with 0 they slide uniformly",
     ] = (0.0, 0.3, 1.0)
     samples: Annotated[
-        int, SAMPLES, "states, of phases drawn at random, for each amplitude and phase difference at each a"
+        int, SAMPLES, "number of states with random phases for each amplitude and phase difference at each a"
     ] = 40
     seed: Annotated[
         int,
         SEED,
-        "seed of these phases, which differ from one a to the next and are the same for each law and inner_share",
+        "seed of these phases: independent at each a, the same for all laws and values of inner_share",
     ] = 1
 
     def __post_init__(self) -> None:
@@ -81,7 +87,7 @@ class PhaseSettings:
 @settings
 @dataclass(frozen=True)
 class EdgeSettings:
-    """How boundaries between basins are followed to edge states: the config's section `edges`, without the values of a.
+    """Tracking of basin boundaries to edge states: the config's section `edges`, without the values of a.
 
     Raises ValueError, one line, for anything out of range.
 
@@ -91,12 +97,12 @@ class EdgeSettings:
     """
 
     duration: Annotated[
-        float, TIME, "longest time for which a boundary is followed; shorter if it leads to a periodic orbit"
+        float, TIME, "longest time for which a boundary is followed; tracking ends earlier at a periodic orbit"
     ] = 24_000.0
     samples: Annotated[
         int,
         Whole(20, 1_000_000),
-        "states displaced from an edge state to each side, from which its lifetime and the attractors reached follow",
+        "number of states displaced from an edge state to each side, for its lifetime and the attractors reached",
     ] = 500
     seed: Annotated[int, SEED, "seed of these displacements"] = 1
 

@@ -1,7 +1,7 @@
-"""The uncertainty exponent of a basin boundary: how little it helps to know the initial state better.
+"""The uncertainty exponent α of a basin boundary.
 
-Two states a distance ε apart end on different attractors with a probability f(ε) ∝ ε^α as ε → 0. For a smooth curve in
-a plane α = 1; a fractal boundary of dimension D has α = 2 − D.
+Two states a distance ε apart end on different attractors with a probability f(ε) ∝ ε^α as ε → 0. A smooth curve in a
+plane has α = 1, a fractal boundary of dimension D has α = 2 − D: the smaller α, the less a better initial state helps.
 
 Reference: S. W. McDonald, C. Grebogi, E. Ott and J. A. Yorke, Physica D 17 (1985) 125-153.
 """
@@ -15,23 +15,23 @@ import numpy as np
 
 from burridge_knopoff.basins.pair_separation import BATCHES, SEPARATIONS, PairCounts
 
-#: α is fitted from the separation of this number on, over a factor of 6561; at larger ones f saturates.
+#: α is fitted from the separation of this index on, over a factor of 6561; at larger separations f saturates.
 FITTED_FROM = 4
 
-# Pairs that must differ at a separation for it to count, and separations that must count.
+# Smallest number of different pairs at a separation that is fitted, and smallest number of such separations.
 _FEWEST_PAIRS = 8
 _FEWEST_SEPARATIONS = 4
 
-# There is no single exponent where its change over the fitted separations is larger than this, and than so many
-# standard errors. A fractal repeats itself at a ratio of separations: around its exponent the local one swings by less.
+# A single exponent is rejected if its change over the fitted separations is larger than this, and than this many
+# standard errors. The local exponent of a self-similar fractal oscillates about α by less.
 _CHANGE = 0.3
 _STANDARD_ERRORS = 3.0
 
 
 class ExponentKind(IntEnum):
-    """Whether a boundary has an exponent: unknown, with too few pairs that differ; varying with ε; or a single one.
+    """Whether a boundary has a single exponent, an exponent that varies with ε, or too few different pairs to decide.
 
-    A single one is told unless its change is beyond the error of that, which with few pairs is large.
+    A single exponent is assumed unless its change is significant; with few pairs the error of the change is large.
     """
 
     UNKNOWN = -1
@@ -57,19 +57,19 @@ class Exponent:
 
 
 def uncertainty_exponent(pairs: PairCounts) -> Exponent:
-    """Return the exponents of a boundary from pairs at each of SEPARATIONS; NaN what too few pairs tell."""
+    """Return the exponents of a boundary from pairs at each of SEPARATIONS; NaN if there are too few pairs."""
     every = np.arange(BATCHES)[None]
     all_but_one = np.array([np.delete(every, batch) for batch in range(BATCHES)])
     x = np.log(SEPARATIONS)
-    # NaN where no pair is known, or none differs: the logarithm of 0 tells nothing.
+    # NaN where no pair has labels, or none has different ones.
     share, shares = (_share(pairs, batches) for batches in (every, all_but_one))
     y, without = (np.log(np.where(values > 0.0, values, np.nan)) for values in (share, shares))
     local, locals_ = (np.diff(values, axis=1) / np.diff(x) for values in (y, without))
     nothing = np.nan, np.nan
-    found = _with_error(share, shares), _with_error(local, locals_)
-    # Without gaps: a separation at which by chance many pairs differ tells nothing among others.
-    # If all of them are in one batch, nothing is known without it, and no error.
-    enough = (pairs.different_count >= _FEWEST_PAIRS) & (np.count_nonzero(pairs.different, axis=0) > 1)
+    found = _jackknife(share, shares), _jackknife(local, locals_)
+    # Fitted separations are consecutive: one with many different pairs by chance, among others with few, is left out.
+    # Different pairs in a single batch leave no error estimate.
+    enough = (pairs.different_count >= _FEWEST_PAIRS) & (np.count_nonzero(pairs.different_weight, axis=0) > 1)
     enough = enough[FITTED_FROM:]
     count = len(enough) if enough.all() else int(np.argmin(enough))
     if count < _FEWEST_SEPARATIONS:
@@ -78,26 +78,26 @@ def uncertainty_exponent(pairs: PairCounts) -> Exponent:
     line, lines = (_fit(x[fitted], values[:, fitted], 1) for values in (y, without))
     parabola, parabolas = (_fit(x[fitted], values[:, fitted], 2) for values in (y, without))
     span = 2.0 * (x[fitted][-1] - x[fitted][0])
-    (alpha,), (alpha_error,) = _with_error(line, lines)
-    (change,), (change_error,) = _with_error(span * parabola, span * parabolas)
+    (alpha,), (alpha_error,) = _jackknife(line, lines)
+    (change,), (change_error,) = _jackknife(span * parabola, span * parabolas)
     if abs(change) > max(_CHANGE, _STANDARD_ERRORS * change_error):
         return Exponent(ExponentKind.VARYING, *found, nothing, (change, change_error))
     return Exponent(ExponentKind.SINGLE, *found, (alpha, alpha_error), (change, change_error))
 
 
 def _share(pairs: PairCounts, batches: np.ndarray) -> np.ndarray:
-    """Return f from some batches of pairs, shape (n, BATCHES), as (n, separations); NaN where no pair is known."""
-    different, known = (weights[batches].sum(axis=1) for weights in (pairs.different, pairs.known))
+    """Return f from some batches of pairs, shape (n, BATCHES), as (n, separations); NaN where no pair has labels."""
+    different, known = (weights[batches].sum(axis=1) for weights in (pairs.different_weight, pairs.labelled_weight))
     return np.divide(different, known, out=np.full(known.shape, np.nan), where=known > 0.0)
 
 
 def _fit(x: np.ndarray, y: np.ndarray, degree: int) -> np.ndarray:
-    """Return the coefficient of x^degree in the polynomial nearest to each row of y, shape (n, 1)."""
+    """Return the coefficient of x^degree of the polynomial fitted to each row of y, shape (n, 1)."""
     return np.polyfit(x, y.T, degree)[0][:, None]
 
 
-def _with_error(value: np.ndarray, without: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the only row of a value, and its error from the rows without one batch each; NaN with a NaN among them."""
+def _jackknife(value: np.ndarray, without: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the only row of `value`, and its jackknife error from rows that each leave out a batch; NaN if one is."""
     error = np.sqrt(len(without) - 1.0) * without.std(axis=0)
-    # LAPACK's last bits depend on where in memory its arguments lie.
+    # The last bits of LAPACK depend on the memory alignment of its arguments.
     return value[0].round(10), error.round(10)

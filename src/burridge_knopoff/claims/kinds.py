@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.attractors.lookup import reached
+from burridge_knopoff.attractors.lookup import reached_values
 from burridge_knopoff.claims.conventions import by_readings, shares_by_readings, under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.for_all import Case, ForAll, for_all
@@ -262,7 +262,7 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float, 
         for law in laws:
             kind = int(kinds_reached(there, initial, law)[0])
             if kind != MotionKind.UNDETERMINED:
-                found[law] = kind, int(reached(there, initial, law, "section_count")[1][0])
+                found[law] = kind, int(reached_values(there, initial, law, "section_count")[1][0])
         if not found:
             return "", ""
         verdict = worst(_by_repetition(kind, count, points) for kind, count in found.values())

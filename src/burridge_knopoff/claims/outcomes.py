@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.attractors.lookup import reached
+from burridge_knopoff.attractors.lookup import reached_values
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import Range
 from burridge_knopoff.motion.kind import MotionKind, with_one_chaos
@@ -46,7 +46,7 @@ def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> np.ndar
 
     attractors : under one convention
     """
-    known, kind = reached(attractors, initial, law, "kind")
+    known, kind = reached_values(attractors, initial, law, "kind")
     return np.where(known, with_one_chaos(kind), MotionKind.UNDETERMINED)
 
 
@@ -56,5 +56,5 @@ def reached_at(attractors: xarray.Dataset, at: float, initial: str, law: str, *n
     attractors : under one convention
     """
     (there,) = np.flatnonzero(attractors["a"].values == at)
-    found = [reached(attractors, initial, law, name) for name in names]
+    found = [reached_values(attractors, initial, law, name) for name in names]
     return tuple(values[there] for _, values in found) if found[0][0][there] else None

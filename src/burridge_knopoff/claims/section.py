@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.attractors.lookup import reached
+from burridge_knopoff.attractors.lookup import reached_values
 from burridge_knopoff.claims.conventions import under_conventions
 from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
 from burridge_knopoff.claims.for_all import Case, for_all, judge_cases
@@ -78,8 +78,8 @@ def cloud_at_lower_velocities(
 
     def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
         inside = evidence.choose(attractors, a)
-        (there, first), (also, second) = (reached(inside, name, law, "section_count") for name in initial)
-        (_, above), (_, below) = (reached(inside, name, law, "section_velocity_mean") for name in initial)
+        (there, first), (also, second) = (reached_values(inside, name, law, "section_count") for name in initial)
+        (_, above), (_, below) = (reached_values(inside, name, law, "section_velocity_mean") for name in initial)
         seen = there & also & (first > 0) & (second >= 0)
         case = Case(law, inside["a"].values, (second > points) & (below < above), seen)
         verdict, text = judge_cases(loose_share, [case])
@@ -120,7 +120,7 @@ def cloud_not_periodic(
 
     def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
         inside = evidence.choose(attractors, a)
-        (there, count), (_, kind) = (reached(inside, initial, law, name) for name in ("section_count", "kind"))
+        (there, count), (_, kind) = (reached_values(inside, initial, law, name) for name in ("section_count", "kind"))
         seen = there & (count > points)
         known = kind != MotionKind.UNDETERMINED
         case = Case(law, inside["a"].values, ~np.isin(kind, CLOSED), known, about=seen)
@@ -157,7 +157,7 @@ def line_disappears(
 
     def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
         inside = evidence.choose(attractors, a)
-        (also, first), (there, second) = (reached(inside, name, law, "branch") for name in initial)
+        (also, first), (there, second) = (reached_values(inside, name, law, "branch") for name in initial)
         case = Case(law, inside["a"].values, first != second, also & there)
         verdict, text = judge_cases(loose_share, [case])
         return verdict, text and f"another attractor than from {initial[0]} at {case.share}"

@@ -22,7 +22,7 @@ from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settings import Settings
 
 DESCRIPTION = """Find the attractors of a model from initial states sampled in a box, and describe each.
-An attractor that no sampled state reaches is not found; docs/attractors.md explains the search."""
+An attractor that no sampled state reaches is not found; docs/search.md describes the search."""
 
 EXAMPLES = """  bk attractors --law linearized --a 0.08 --samples 100 --fraction-width 0.05 --out attractors.nc
   bk attractors --law nonlinear --a 0.05 --samples 20 --fraction-width 0.1 --lifetime 1000 --initial plus

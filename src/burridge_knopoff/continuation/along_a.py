@@ -1,8 +1,8 @@
-"""The attractors of one law along a: found at each a from states, handed on to the values beside it, and refined.
+"""The attractors of one law along a: searched for at each a, from initial states and from the neighbouring values.
 
-Between neighbouring values of a at which the attractors differ, values are put in until the change lies between two
-that are near enough to each other. What is done at one a, or between two, is shared out among processes; only what
-has just been handed on goes on from value to value.
+Between neighbouring values of a at which the attractors differ, values are inserted until each change is located. The
+work at each a, and between two values, is shared among processes. Only a chain of values that each get a new attractor
+from the one before is processed in sequence.
 
 Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
 Chaos 33 (2023) 073151: the search at each parameter begins from the attractors at the one before.
@@ -27,8 +27,8 @@ from burridge_knopoff.attractors.table import Row
 from burridge_knopoff.basins.fractions import fraction_labels
 from burridge_knopoff.continuation.branches import REMEMBERED, branches
 from burridge_knopoff.continuation.matching import Matcher, outlines
-from burridge_knopoff.continuation.refinement import refined
-from burridge_knopoff.continuation.settings import REFINE, Refine
+from burridge_knopoff.continuation.refinement import refine_searches
+from burridge_knopoff.continuation.settings import REFINEMENT, RefinementSettings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
@@ -39,14 +39,14 @@ from burridge_knopoff.running.processes import Shared, shared_out
 class Continuation:
     """The attractors of one law along a.
 
-    models : at each a, ascending: those that were given, and those that were put in between them
-    grid : positions in `models` of those that were given
-    attractors : for each given model those that coexist there; for the others those that change there
-    lifetimes : for each model and attractor its lifetime if it is chaotic, None if it is not
-    branch, side : for each model and attractor the number of its branch and its side of it; see `branches.branches`
+    models : at each a, ascending: the given ones and those inserted between them
+    grid : indices in `models` of the given ones
+    attractors : for each given model those that coexist there; for each inserted one those that change near it
+    lifetimes : for each model and attractor its lifetime if it is chaotic, None otherwise
+    branch, side : for each model and attractor the number of its branch and its side; see `branches.branches`
     upward, downward : for each given model and attractor the index of the attractor reached at the next or the previous
-        given one, −1 where it is undetermined or there is none
-    samples : for each given model the index reached by each state that was drawn for the basin fractions
+        given model, −1 if it is undetermined or there is none
+    samples : for each given model the index of the attractor that each state drawn for the basin fractions reaches
     """
 
     models: list[Model]
@@ -60,7 +60,7 @@ class Continuation:
     samples: list[np.ndarray]
 
     def rows(self, place: int) -> list[Row]:
-        """Return the attractors of one model as rows of the table, in the order of branch and side."""
+        """Return the attractors of one model as rows of the table, ordered by branch and side."""
         known = self.attractors[place], self.lifetimes[place], self.branch[place].tolist(), self.side[place].tolist()
         rows = [Row(index, *one) for index, one in enumerate(zip(*known, strict=True))]
         return sorted(rows, key=lambda row: (row.branch, -row.side))
@@ -70,7 +70,7 @@ def continue_attractors(
     models: Sequence[Model],
     settings: SearchSettings = SEARCH,
     motion: MotionSettings = MOTION,
-    refine: Refine = REFINE,
+    refine: RefinementSettings = REFINEMENT,
     *,
     starts: Sequence[InitialState] = (),
     start: str = "moving",
@@ -80,17 +80,17 @@ def continue_attractors(
     """Find the attractors of all models, of ascending a, from initial states and from each other, and match them.
 
     settings, motion, starts, start : see `find_attractors`
-    refine : how near in a a change is looked for
-    processes, folder : that work at once, and where they keep what they find; see `shared_out`. No result depends on
-        them
+    refine : how closely changes are located in a
+    processes, folder : number of processes, and the cache of their results; see `shared_out`. The results do not depend
+        on them
 
     Raises ValueError if an initial state does not fit the models.
     """
     matcher = Matcher(models[0].scale, refine.longest_period)
     with shared_out(processes, folder) as each:
         searches = [Search(model, settings, motion) for model in models]
-        searches = each("searched from states", partial(_searched, starts=starts, start=start), searches)
-        searches = _hand_on(searches, each, matcher, [True] * len(searches))
+        searches = each("searched from initial states", partial(_search, starts=starts, start=start), searches)
+        searches = _seed_neighbours(searches, each, matcher, [True] * len(searches))
         samples = [np.zeros(0, dtype=np.intc) for _ in searches]
         gained = [True] * len(searches)
         while any(gained):
@@ -99,24 +99,24 @@ def continue_attractors(
             found = fraction_labels([searches[k] for k in those], start, each)
             for k, search, labels in zip(those, *found, strict=True):
                 searches[k], samples[k] = search, labels
-            # What only these states have led to is looked for at the neighbours as well.
-            handed = _hand_on(
+            # Attractors to which only these states have led also seed the neighbours.
+            seeded = _seed_neighbours(
                 searches,
                 each,
                 matcher,
                 [len(one.attractors) > count for one, count in zip(searches, known, strict=True)],
             )
-            gained = [_knows_more(one, before) for one, before in zip(handed, searches, strict=True)]
-            searches = [one if more else before for one, more, before in zip(handed, gained, searches, strict=True)]
-        # The sets of attractors are complete now: what follows only reads them.
-        upward = each("carried upward", _carried, searches[:-1], searches[1:])
-        downward = each("carried downward", _carried, searches[1:], searches[:-1])
+            gained = [_has_more_attractors(one, before) for one, before in zip(seeded, searches, strict=True)]
+            searches = [one if more else before for one, more, before in zip(seeded, gained, searches, strict=True)]
+        # The sets of attractors are complete now; from here on they are only read.
+        upward = each("swept upward", _attractors_at_neighbour, searches[:-1], searches[1:])
+        downward = each("swept downward", _attractors_at_neighbour, searches[1:], searches[:-1])
         whole = [searches[0]]
-        for inner, search in zip(refined(searches, refine, matcher, each), searches[1:], strict=True):
+        for inner, search in zip(refine_searches(searches, refine, matcher, each), searches[1:], strict=True):
             whole += [*inner, search]
-        lived = each("lifetimes", _lifetimes, whole)
+        lives = each("lifetimes", _lifetimes, whole)
     attractors = [search.attractors for search in whole]
-    # At the ends of the grid nothing follows.
+    # Nothing follows at the ends of the grid.
     first, last = (np.full(len(search.attractors), UNDETERMINED) for search in (searches[0], searches[-1]))
     width = max((other.a - one.a for one, other in pairwise(models)), default=0.0)
     grid = [whole.index(search) for search in searches]
@@ -125,7 +125,7 @@ def continue_attractors(
         [search.model for search in whole],
         grid,
         attractors,
-        lived,
+        lives,
         *branches(values, attractors, grid, reach, matcher),
         [*upward, last],
         [first, *downward],
@@ -133,56 +133,56 @@ def continue_attractors(
     )
 
 
-def _searched(search: Search, starts: Sequence[InitialState], start: str) -> Search:
+def _search(search: Search, starts: Sequence[InitialState], start: str) -> Search:
     """Find attractors from initial states."""
     search.labels(search.starts(starts, start))
     return search
 
 
-def _knows_more(search: Search, before: Search) -> bool:
+def _has_more_attractors(search: Search, before: Search) -> bool:
     return len(search.attractors) > len(before.attractors)
 
 
-def _hand_on(searches: Sequence[Search], each: Shared, matcher: Matcher, new: Sequence[bool]) -> list[Search]:
-    """Follow attractors, down and up, to the neighbouring a at which they are not known, or not as they are.
+def _seed_neighbours(searches: Sequence[Search], each: Shared, matcher: Matcher, new: Sequence[bool]) -> list[Search]:
+    """Start each attractor, downward and upward, at the neighbouring a where it has no unchanged counterpart.
 
-    new : which of the searches may know what its neighbours have not been asked for
+    new : whether each search may have attractors with which its neighbours have not been seeded
     """
     searches, new = list(searches), list(new)
     for way in ("down", "up"):
         before, new = searches[::-1], new[::-1]
-        givers = [k for k in range(len(before) - 1) if new[k]]
+        sources = [k for k in range(len(before) - 1) if new[k]]
         handed = each(
-            f"handed {way}",
-            partial(_handed_on, matcher=matcher),
-            [before[k] for k in givers],
-            [before[k + 1] for k in givers],
+            f"seeded {way}ward",
+            partial(_seeded_search, matcher=matcher),
+            [before[k] for k in sources],
+            [before[k + 1] for k in sources],
         )
-        given = dict(zip(givers, handed, strict=True))
+        given = dict(zip(sources, handed, strict=True))
         searches = [before[0]]
-        for k, (giver, taker) in enumerate(pairwise(before)):
-            # What has just come to the giver goes on as well.
-            more = _knows_more(searches[-1], giver)
-            searches.append((_handed_on(searches[-1], taker, matcher) if more else given.get(k)) or taker)
-        new = [known or _knows_more(*pair) for known, *pair in zip(new, searches, before, strict=True)]
+        for k, (source, target) in enumerate(pairwise(before)):
+            # An attractor that has just been found at the source is continued as well.
+            more = _has_more_attractors(searches[-1], source)
+            searches.append((_seeded_search(searches[-1], target, matcher) if more else given.get(k)) or target)
+        new = [known or _has_more_attractors(*pair) for known, *pair in zip(new, searches, before, strict=True)]
     return searches
 
 
-def _handed_on(giver: Search, taker: Search, matcher: Matcher) -> Search | None:
-    """Return a search that has followed what a neighbour knows; None if that is nothing new."""
-    known, shown = (outlines(search.attractors) for search in (giver, taker))
-    lacking, _ = matcher.differing(known, shown)
+def _seeded_search(source: Search, target: Search, matcher: Matcher) -> Search | None:
+    """Return the target after a search from the attractors of the source that it lacks; None if it lacks none."""
+    known, shown = (outlines(search.attractors) for search in (source, target))
+    lacking, _ = matcher.unmatched(known, shown)
     if not lacking:
         return None
-    # Whatever states have led to nothing: what attracts next to it is worth looking for.
-    taker = replace(taker, attractors=list(taker.attractors), vain=())
-    taker.labels(taker.seeds(item.attractor for item in lacking.values()), check=False)
-    return taker
+    # Earlier unsuccessful states do not count against the seeds.
+    target = replace(target, attractors=list(target.attractors), unsuccessful_states=())
+    target.labels(target.seeds(item.attractor for item in lacking.values()), check=False)
+    return target
 
 
-def _carried(giver: Search, taker: Search) -> np.ndarray:
-    """Return the index of the attractor at a neighbouring a that each attractor leads to."""
-    return taker.known_labels(taker.seeds(giver.attractors))
+def _attractors_at_neighbour(source: Search, target: Search) -> np.ndarray:
+    """Return the index of the attractor at a neighbouring a that is reached from each attractor."""
+    return target.known_labels(target.seeds(source.attractors))
 
 
 def _lifetimes(search: Search) -> list[Lifetime | None]:

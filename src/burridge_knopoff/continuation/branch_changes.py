@@ -1,4 +1,4 @@
-"""Between which values of a the branches of `refined.nc` begin, end, or change, whatever the spacing of a is."""
+"""The values of a in `refined.nc` between which branches begin, end or change, for any spacing of a."""
 
 from __future__ import annotations
 
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
 
 class Change(IntEnum):
-    """What a branch of attractors does at a bifurcation, numbered as in netCDF files.
+    """The change of a branch of attractors at a bifurcation, with the numbers used in netCDF files.
 
-    passed : its orbits stay stable, but their stops change or other orbits branch off
+    PASSED : its orbits stay stable, but their stops change or other orbits branch off
     """
 
     BEGINNING = 0
@@ -32,10 +32,10 @@ class Change(IntEnum):
 class BranchChange:
     """A beginning, an end or a change of a branch between two values of a.
 
-    low, high : numbers of these values in `refined.nc`; the branch is not known at any between them
-    before, after : slot of the attractor at them, −1 where the branch has none
-    from_branch, to_branch : the branch itself; where it begins or ends the one that is reached from it at the nearest
-        value of the grid on the other side, −1 where it has not come to the grid yet
+    low, high : indices of these values in `refined.nc`; the branch is not known at any value between them
+    before, after : slot of the attractor at each, −1 if the branch has none there
+    from_branch, to_branch : the branch itself; at a beginning or an end, the one on the other side is the branch that
+        is reached from it at the nearest value of the grid, −1 if it does not extend to the grid
     """
 
     low: int
@@ -48,14 +48,14 @@ class BranchChange:
 
 
 def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[BranchChange]:
-    """Return what the branches of one law do, sorted by a.
+    """Return the beginnings, ends and changes of the branches of one law, sorted by a.
 
-    attractors, refined : those of one law at the values of the grid, and at all
+    attractors, refined : those of one law at the values of the grid, and at all values
 
-    A change is one of the kind of motion, of mirror symmetry, or of the number of section points of periodic motion;
-    but a torus and the orbits longer than `Refine.longest_period` to which it is locked are one motion. Of a mirror
-    pair one is looked at. The first and the last value of a are no ends. Between values of the grid a branch that does
-    not change is not looked for; so it has ended only where it is absent from the grid.
+    A branch changes if the kind of motion, the mirror symmetry, or the number of section points of periodic motion
+    changes. A torus and the orbits longer than `refine.longest_period` to which it is locked count as the same motion.
+    One motion of each mirror pair is examined. The first and the last value of a are not ends. Between values of the
+    grid only changing branches are searched for, so a branch has ended only where it is absent from the grid.
     """
     slots = slots_of_branches(refined)
     grid = np.flatnonzero(refined["in_grid"].values[: len(slots)] == 1)
@@ -81,7 +81,7 @@ def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[
             if ((grid > low) & (grid < high)).any():
                 yield end(low)
                 yield beginning(high)
-            elif _differ(refined, (low, slots[low][branch]), (high, slots[high][branch])):
+            elif _has_changed(refined, (low, slots[low][branch]), (high, slots[high][branch])):
                 yield BranchChange(low, high, slots[low][branch], slots[high][branch], branch, branch, Change.CHANGE)
         if there[-1] < len(slots) - 1:
             yield end(there[-1])
@@ -91,7 +91,7 @@ def branch_changes(attractors: xarray.Dataset, refined: xarray.Dataset) -> list[
 
 
 def slots_of_branches(refined: xarray.Dataset) -> list[dict[int, int]]:
-    """Return for each a of one law the slot of each branch, of a mirror pair that of one side."""
+    """Return for each a of one law the slot of each branch, one side of a mirror pair."""
     count = int(np.isfinite(refined["a"].values).sum())
     branch, side = refined["branch"].values[:count], refined["side"].values[:count]
     rows = []
@@ -101,8 +101,8 @@ def slots_of_branches(refined: xarray.Dataset) -> list[dict[int, int]]:
     return rows
 
 
-def _differ(refined: xarray.Dataset, *places: tuple[int, int]) -> bool:
-    """Tell whether the motions at two values of a and slots are no longer the same."""
+def _has_changed(refined: xarray.Dataset, *places: tuple[int, int]) -> bool:
+    """Return whether the motions at two places, each a value of a and a slot, differ."""
     before, after = (_features(refined, *place) for place in places)
     return before != after
 
@@ -116,6 +116,6 @@ def _features(refined: xarray.Dataset, k: int, slot: int) -> tuple[int, ...]:
 
 
 def is_followed(refined: xarray.Dataset, k: int, slot: int) -> bool:
-    """Tell whether a motion is a closed orbit that is short enough to be followed along a."""
+    """Return whether a motion is a periodic orbit that is short enough to be followed along a."""
     closed = refined["kind"].values[k, slot] in (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
     return bool(closed and refined["period"].values[k, slot] <= refined.attrs["refine_longest_period"])

@@ -1,4 +1,4 @@
-"""Branches: the numbers of attractors along a, matched from one value of a to the next with a memory of what vanished.
+"""Branches: numbers of attractors along a, matched between values of a; vanished branches are remembered.
 
 Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
 Chaos 33 (2023) 073151.
@@ -18,13 +18,13 @@ from burridge_knopoff.attractors.labels import UNDETERMINED
 from burridge_knopoff.continuation.matching import Matcher, Outline, outlines
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-#: Steps of the grid of a for which an attractor that has vanished is remembered: it gets its number back where a window
-#: of another motion lies between.
+#: Number of steps of the grid for which a vanished branch is remembered. It gets its number back after a window of
+#: another motion.
 REMEMBERED = 2.0
 
 
-class Seen(NamedTuple):
-    """Where a branch was seen last: the value of a, the attractor there, and its side."""
+class KnownBranch(NamedTuple):
+    """The last point of a branch: the value of a, the attractor there, and its side."""
 
     a: float
     outline: Outline
@@ -36,9 +36,9 @@ def branches(
 ) -> tuple[list[np.ndarray], list[np.ndarray]]:
     """Return the branch and the side of each attractor at each a.
 
-    a : ascending; grid : where in it all attractors are known: in between are those only that change from one of these
-        values to the next
-    reach : for how far in a an attractor that has vanished is remembered
+    a : ascending
+    grid : indices of the values at which all attractors are known; at the others only those are that change
+    reach : range of a over which a vanished branch is remembered
 
     The two of a mirror pair share a branch and lie on its sides 1 and −1; attractors that are their own mirror images
     have side 0. Branch 0 is the synchronized attractor, the first one found if there are several; the others are
@@ -47,14 +47,14 @@ def branches(
     numbering = _Numbering(matcher, reach)
     shown = [outlines(here) for here in attractors]
     following = dict(pairwise(grid))
-    # What does not change up to the next value of the grid is hardly looked at in between, and leaves its number to no
-    # other set there: {index at the next value of the grid: number}.
+    # Attractors that do not change up to the next value of the grid are mostly not followed in between. Their numbers
+    # are reserved: {index at the next value of the grid: number}.
     held: dict[int, int] = {}
     found = []
     for place, (value, here, now) in enumerate(zip(a, attractors, shown, strict=True)):
         branch, side = numbering.numbered(value, here, now, numbering.known(value, now, held, place in grid))
         if place in following:
-            same = matcher.unchanged(now, shown[following[place]])
+            same = matcher.match_unchanged(now, shown[following[place]])
             held = {new: int(branch[old]) for new, old in same.items()}
         found.append((branch, side))
     return [branch for branch, _ in found], [side for _, side in found]
@@ -62,22 +62,22 @@ def branches(
 
 @dataclass
 class _Numbering:
-    """The numbers given so far: where each branch was seen last, and the next number."""
+    """The numbers assigned so far: the last point of each branch, and the next number."""
 
     matcher: Matcher
     reach: float
-    seen: dict[int, Seen] = field(default_factory=dict)
+    seen: dict[int, KnownBranch] = field(default_factory=dict)
     following: int = 1
 
     def known(self, a: float, now: Mapping[int, Outline], held: Mapping[int, int], on_grid: bool) -> dict[int, int]:
         """Return {index of an attractor at a: number of the branch that it continues}.
 
-        Those seen last come first, then those that vanished before.
+        Branches that exist at the previous value of a are matched first, then those that vanished earlier.
         """
         if on_grid:
             found = dict(held)
         else:
-            found = self.matcher.unchanged({number: self.seen[number].outline for number in held.values()}, now)
+            found = self.matcher.match_unchanged({number: self.seen[number].outline for number in held.values()}, now)
         near = {
             number: item
             for number, item in self.seen.items()
@@ -88,13 +88,13 @@ class _Numbering:
             old = {
                 n: item.outline for n, item in near.items() if (item.a == last) == recent and n not in found.values()
             }
-            found |= self.matcher.matched(old, {i: item for i, item in now.items() if i not in found})
+            found |= self.matcher.match(old, {i: item for i, item in now.items() if i not in found})
         return found
 
     def numbered(
         self, a: float, here: Sequence[Attractor], now: Mapping[int, Outline], found: Mapping[int, int]
     ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the branch and the side of each attractor at a, new numbers for those that continue none."""
+        """Return the branch and the side of each attractor at a, with new numbers for those that continue no branch."""
         branch, side = np.full(len(here), UNDETERMINED), np.zeros(len(here), dtype=int)
         for i in sorted(now, key=lambda i: (round(here[i].motion.mean_distance, 6), i)):
             number = found.get(i)
@@ -106,12 +106,12 @@ class _Numbering:
             if partner != i:
                 side[i] = _side(now[i], self.seen.get(number))
                 branch[partner], side[partner] = number, -side[i]
-            self.seen[number] = Seen(a, now[i], int(side[i]))
+            self.seen[number] = KnownBranch(a, now[i], int(side[i]))
         return branch, side
 
 
-def _side(outline: Outline, before: Seen | None) -> int:
-    """Return the side of the first of a mirror pair: that of the nearer one of the pair before it, if there is one."""
+def _side(outline: Outline, before: KnownBranch | None) -> int:
+    """Return the side of the first of a mirror pair: that of the nearer one of the previous pair, if there is one."""
     if before is None or before.side == 0:
         return _orientation(outline.attractor)
     own, mirrored = outline.distances(before.outline)[:, 0]
@@ -119,7 +119,7 @@ def _side(outline: Outline, before: Seen | None) -> int:
 
 
 def _orientation(attractor: Attractor) -> int:
-    """Return 1 where the first block, at the returns, is ahead of the last one by more than in the mirrored motion."""
+    """Return 1 if the first block leads the last one, at the returns, by more than in the mirrored motion, else −1."""
     last = len(attractor.motion.stop_rate) - 1
     own, mirrored = attractor.motion.returns, attractor.motion.mirror_returns
     return 1 if np.mean(own[:, 0] - own[:, last]) > np.mean(mirrored[:, 0] - mirrored[:, last]) else -1

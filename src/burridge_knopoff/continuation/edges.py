@@ -1,4 +1,4 @@
-"""Edge states along a: those between the attractors at each a, their continuation, and those that crises meet."""
+"""Edge states along a: those between the attractors at each a, their continuation, and their role in crises."""
 
 from __future__ import annotations
 
@@ -23,10 +23,10 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.periodic_orbits.return_map import mirror_order
 
-# Difference of ⟨J⟩, for v = 0.1, up to which two edge states of one kind between the same branches are one.
+# Difference of ⟨J⟩, for v = 0.1, up to which two edge states of one kind between the same branches count as one.
 SAME_MEAN = 1e-3
 
-# Time for which chaos next to a crisis is followed, to see how close it comes to a saddle.
+# Time for which chaos near a crisis is followed to measure how close it comes to a saddle.
 APPROACH = 100_000.0
 
 
@@ -34,12 +34,12 @@ APPROACH = 100_000.0
 class Edge:
     """An edge state at one a.
 
-    reached : number of displaced states that reach each attractor of the table at this a, shape (2, slots)
-    branch, side : of the attractor that most of them reach on either side of the boundary, shape (2,)
+    reached_count : number of displaced states that reach each attractor of the table at this a, shape (2, slots)
+    branch, side : of the attractor that most of them reach from each side of the boundary, shape (2,)
     """
 
     state: EdgeState
-    reached: np.ndarray
+    reached_count: np.ndarray
     branch: np.ndarray
     side: np.ndarray
 
@@ -66,9 +66,9 @@ class Edge:
 class Approach:
     """How close a chaotic attractor comes to a saddle orbit at the last a before a crisis.
 
-    edge : number of the edge state whose orbit is closest; −1 for none
-    distance : least difference between returns of the attractor and states of the orbit
-    size : largest extent of the returns
+    edge : index of the edge state whose orbit is closest; −1 for none
+    distance : smallest distance between returns of the attractor and states of the orbit
+    size : largest extent of the returns in a coordinate
     """
 
     edge: int = -1
@@ -79,7 +79,7 @@ class Approach:
 def edges_at(known: KnownAttractors, settings: EdgeSettings, time_limit: float) -> list[Edge]:
     """Return the edge states between all pairs of branches, and of mirror images, at one a.
 
-    Chaos that ends is no attractor. A boundary that is lost is left out, with a line that says why.
+    Transient chaos is not an attractor. A boundary that is lost is left out, and the reason is printed.
     """
     lasting = [k for k, one in enumerate(known.attractors) if one.motion.kind != MotionKind.TRANSIENT_CHAOS]
     places = {index: k for k, index in enumerate(lasting)}
@@ -87,7 +87,7 @@ def edges_at(known: KnownAttractors, settings: EdgeSettings, time_limit: float) 
     branch, side = known.branch[lasting], known.side[lasting]
     found: list[Edge] = []
     for first, second in combinations(range(len(attractors)), 2):
-        # Of two mirror pairs one of each is enough.
+        # Between two mirror pairs one boundary of each kind suffices.
         if side[first] < 0 or (side[second] < 0 and branch[first] != branch[second]):
             continue
         one, other = (attractors[k].motion.state() for k in (first, second))
@@ -97,19 +97,19 @@ def edges_at(known: KnownAttractors, settings: EdgeSettings, time_limit: float) 
             print(f"{known.model.law.name}, branches {branch[first]} and {branch[second]}: {error}")
             continue
         reached = np.zeros((2, len(known.attractors)), dtype=int)
-        reached[:, lasting] = state.reached
-        largest = state.reached.argmax(axis=1)
+        reached[:, lasting] = state.reached_count
+        largest = state.reached_count.argmax(axis=1)
         edge = Edge(state, reached, branch[largest], side[largest])
         if not any(edge.is_same(other) for other in found):
             found.append(edge)
     return found
 
 
-def followed_edges(edges: Sequence[Edge], largest: float) -> tuple[list[list[BranchOrbit]], list[int]]:
-    """Follow the saddle orbits in a, up to the largest a, for as long as they have exactly one unstable direction.
+def continue_edges(edges: Sequence[Edge], largest: float) -> tuple[list[list[BranchOrbit]], list[int]]:
+    """Follow the saddle orbits in a, up to `largest`, as long as they have exactly one unstable direction.
 
-    Return the segments, each from one end to the other, and the number of the segment of each edge state, −1 for none.
-    An orbit that has been followed is not followed again.
+    Return the segments, each from one end to the other, and the index of the segment of each edge state, −1 for none.
+    An orbit that lies on an earlier segment is not followed again.
     """
     segments: list[list[BranchOrbit]] = []
     numbers = []
@@ -118,7 +118,7 @@ def followed_edges(edges: Sequence[Edge], largest: float) -> tuple[list[list[Bra
         if orbit is None:
             numbers.append(-1)
             continue
-        number = next((k for k, segment in enumerate(segments) if _holds(segment, orbit)), len(segments))
+        number = next((k for k, segment in enumerate(segments) if _is_on_segment(segment, orbit)), len(segments))
         if number == len(segments):
             try:
                 segments.append(_segment(orbit, largest))
@@ -143,8 +143,8 @@ def _segment(orbit: PeriodicOrbit, largest: float) -> list[BranchOrbit]:
     return segment
 
 
-def _holds(segment: Sequence[BranchOrbit], orbit: PeriodicOrbit) -> bool:
-    """Return whether an orbit lies on a segment, between two neighbours of which one has the same stops."""
+def _is_on_segment(segment: Sequence[BranchOrbit], orbit: PeriodicOrbit) -> bool:
+    """Return whether an orbit lies on a segment, between neighbours of which at least one has the same stops."""
     for one, other in pairwise(segment):
         low, high = sorted((one.orbit.a, other.orbit.a))
         if low <= orbit.a <= high:
@@ -156,7 +156,7 @@ def _holds(segment: Sequence[BranchOrbit], orbit: PeriodicOrbit) -> bool:
 
 
 def _is_similar(orbit: PeriodicOrbit, other: PeriodicOrbit, period: float) -> bool:
-    """Return whether an orbit has the stops of another one, or of its mirror image, and this period."""
+    """Return whether an orbit has this period, and the stops of another orbit or of its mirror image."""
     same_stops = other.stop_counts in (orbit.stop_counts, orbit.stop_counts[::-1])
     return same_stops and orbit.symmetry == other.symmetry and abs(orbit.period - period) <= SAME_PERIOD * period
 
@@ -164,7 +164,7 @@ def _is_similar(orbit: PeriodicOrbit, other: PeriodicOrbit, period: float) -> bo
 def approach(model: Model, state: ChainState, edges: Sequence[Edge], branch: int) -> Approach:
     """Return how close chaos comes to the saddle orbits on the boundaries of its basin.
 
-    model, state : next to a crisis, and a state on the attractor; branch : its branch
+    model, state : the model near a crisis, and a state on the attractor; branch : its branch
     edges : at the nearest a at which the attractor exists
     """
     found = visit(model, state, 0.0, APPROACH)
@@ -181,15 +181,15 @@ def approach(model: Model, state: ChainState, edges: Sequence[Edge], branch: int
         except OrbitError:
             continue
         distance = min(
-            (float(tree.query(one, p=np.inf)[0].min()) for one in _stops(orbit, found.block)), default=np.inf
+            (float(tree.query(one, p=np.inf)[0].min()) for one in _states_at_stops(orbit, found.block)), default=np.inf
         )
         if not distance >= nearest.distance:
             nearest = Approach(number, distance, size)
     return nearest
 
 
-def _stops(orbit: PeriodicOrbit, block: int) -> Iterator[np.ndarray]:
-    """Yield the states of an orbit at the stops of a block, and those of its mirror image, each if there are any."""
+def _states_at_stops(orbit: PeriodicOrbit, block: int) -> Iterator[np.ndarray]:
+    """Yield the states of an orbit, and those of its mirror image, at the stops of a block, if there are any."""
     values = flow(orbit.model, orbit.reference, orbit.period)[0].log.events.values()
     blocks = orbit.model.blocks
     stops = values[:, 1] == 0

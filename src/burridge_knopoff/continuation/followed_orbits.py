@@ -1,4 +1,4 @@
-"""The closed orbits among the attractors of a law, followed in a: which segment of orbits each of them lies on."""
+"""The periodic orbits among the attractors of a law, followed in a, and the segment on which each of them lies."""
 
 from __future__ import annotations
 
@@ -23,41 +23,41 @@ from burridge_knopoff.periodic_orbits.following import ContinuationSettings
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.processes import shared_out
 
-#: How closed orbits are followed, and how many unstable ones beyond a bifurcation, for the figure.
+#: How periodic orbits are followed, and the number of unstable ones beyond a bifurcation, for the figure.
 FOLLOWING = ContinuationSettings(first_step=1e-4, largest_step=2.5e-3, smallest_step=1e-7, max_orbits=120)
-BEYOND = 4
+UNSTABLE_ORBITS = 4
 
-#: Smallest a down to which orbits are followed; at a = 0 no periodic orbit is isolated, and sticks vanish.
+#: Smallest a to which orbits are followed; at a = 0 no periodic orbit is isolated, and sticks vanish.
 LEAST_A = 0.0
 
-# Orbits in a round, for each process: enough that none waits long for the others, and few that turn out to be followed.
-ROUND = 4
+# Orbits per process in a round: enough to keep the processes busy, few enough that few of them lie on one segment.
+ORBITS_PER_PROCESS = 4
 
-# Time after which a motion has come nearer to an orbit that attracts slowly than to any other beside it.
-LATER = 100_000.0
+# Time after which a motion has come closer to a slowly attracting orbit than to any other nearby orbit.
+LONG_SETTLING = 100_000.0
 
-# Share of its period within which a closed orbit is the one that has been followed.
+# Relative difference of the periods up to which two orbits of the same stops count as one.
 SAME_PERIOD = 1e-3
 
-#: Number of the value of a and slot of an attractor; and the closed orbit that it is.
+#: Indices of a and slot of an attractor; and the same with its periodic orbit.
 Place = tuple[int, int]
 Placed = tuple[Place, PeriodicOrbit]
 
 
 @dataclass(frozen=True)
 class FollowedOrbits:
-    """Closed orbits that have been followed.
+    """Periodic orbits that have been followed.
 
     segments, places : each segment, and the attractor from which it was followed
-    of_place : number of the segment on which an attractor lies
+    of_place : index of the segment on which an attractor lies
     """
 
     segments: list[BranchSegment] = field(default_factory=list)
     places: list[Place] = field(default_factory=list)
     of_place: dict[Place, int] = field(default_factory=dict)
 
-    def hold(self, place: Place, orbit: PeriodicOrbit, since: int = 0) -> bool:
-        """Tell whether an orbit has been followed, on a segment from that number on, and remember on which."""
+    def assign(self, place: Place, orbit: PeriodicOrbit, since: int = 0) -> bool:
+        """Assign an orbit to a segment from index `since` on, and return whether it lies on one."""
         numbers = range(since, len(self.segments))
         number = next((n for n in numbers if self.segments[n].contains(orbit, SAME_PERIOD)), None)
         if number is not None:
@@ -71,18 +71,18 @@ class FollowedOrbits:
         self.places.append(place)
 
 
-def followed(
+def follow_orbits(
     model: Model,
     one: xarray.Dataset,
     changes: Sequence[BranchChange],
     processes: int = 1,
     folder: str | Path | None = None,
 ) -> FollowedOrbits:
-    """Follow every attractor of one law that is a closed orbit.
+    """Follow every attractor of one law that is a periodic orbit.
 
-    one : the attractors at all values of a; those between the grid are left out where the branch does not change
-    processes, folder : that work at once, and where they keep what they find; see `shared_out`. No result depends on
-        them
+    one : the attractors at all values of a; between values of the grid only changing branches are followed
+    processes, folder : number of processes, and the cache of their results; see `shared_out`. The results do not depend
+        on them
     """
     largest = float(np.nanmax(one["a"].values))
     places = _places(one, changes)
@@ -90,20 +90,20 @@ def followed(
     states = ([one[name].values[place] for place in places] for name in ("position", "velocity"))
     found = FollowedOrbits()
     with shared_out(processes, folder) as each:
-        orbits = each("closed orbits", _closed, models, *states)
+        orbits = each("periodic orbits", _periodic_orbit, models, *states)
         closed = [pair for pair in zip(places, orbits, strict=True) if not _is_lost(model, pair[1])]
-        for following in _rounds(_in_turn(closed), found, ROUND * processes):
+        for following in _rounds(_sort(closed), found, ORBITS_PER_PROCESS * processes):
             before = len(found.segments)
             twice, upward = [orbit for _, orbit in following for _ in range(2)], [False, True] * len(following)
             halves = each("followed", partial(_half, largest=largest), twice, upward)
             for (place, orbit), *both in zip(following, halves[::2], halves[1::2], strict=True):
-                if not found.hold(place, orbit, before) and not any(_is_lost(model, item) for item in both):
+                if not found.assign(place, orbit, before) and not any(_is_lost(model, item) for item in both):
                     found.add(place, BranchSegment(*both))
     return found
 
 
 def _places(one: xarray.Dataset, changes: Sequence[BranchChange]) -> list[Place]:
-    """Return where the attractors of one law are closed orbits to be followed: on the grid of a, and beside changes."""
+    """Return the places of the periodic orbits that are followed: those on the grid of a, and those next to changes."""
     branch, side = (one[name].values for name in ("branch", "side"))
     closed = np.array([[is_followed(one, *at) for at in np.ndindex(branch.shape)]]).reshape(branch.shape)
     closed &= (branch >= 0) & (side >= 0)
@@ -115,17 +115,17 @@ def _places(one: xarray.Dataset, changes: Sequence[BranchChange]) -> list[Place]
 
 
 def _is_lost(model: Model, found: PeriodicOrbit | HalfBranch | OrbitError) -> bool:
-    """Tell whether there is no orbit but an error in its place, which is printed."""
+    """Return whether there is an error instead of an orbit, and print it."""
     if isinstance(found, OrbitError):
         print(f"{model.law.name}: {found}")
     return isinstance(found, OrbitError)
 
 
 def _rounds(left: Sequence[Placed], found: FollowedOrbits, count: int) -> Iterator[list[Placed]]:
-    """Yield those next in turn that have not been followed: what one shows of the others is seen after its round."""
+    """Yield the next orbits that lie on no known segment, `count` at a time; segments of a round are known after it."""
     following: list[Placed] = []
     for place, orbit in left:
-        if not found.hold(place, orbit):
+        if not found.assign(place, orbit):
             following.append((place, orbit))
         if len(following) == count:
             yield following
@@ -134,28 +134,28 @@ def _rounds(left: Sequence[Placed], found: FollowedOrbits, count: int) -> Iterat
         yield following
 
 
-def _in_turn(orbits: Sequence[Placed]) -> list[Placed]:
+def _sort(orbits: Sequence[Placed]) -> list[Placed]:
     """Return orbits, given with a ascending, in the order in which they are followed.
 
-    The longest first, by octaves of their period: they take the most time, and in one round each waits for all. Then
-    those far from each other: neighbours along a mostly lie on one segment.
+    The longest come first, by octaves of their period, because they take the most time and a round ends with its last
+    orbit. Within an octave orbits far from each other come first, because neighbours mostly lie on one segment.
     """
-    apart = scipy.stats.qmc.Halton(1, scramble=False).random(len(orbits))[:, 0]
-    turns = np.lexsort([apart, [-math.floor(math.log2(orbit.period)) for _, orbit in orbits]])
-    return [orbits[k] for k in turns]
+    place = scipy.stats.qmc.Halton(1, scramble=False).random(len(orbits))[:, 0]
+    order = np.lexsort([place, [-math.floor(math.log2(orbit.period)) for _, orbit in orbits]])
+    return [orbits[k] for k in order]
 
 
-def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> PeriodicOrbit | OrbitError:
-    """Return the closed orbit on which a motion through a state U_i, U_i' has settled, or why there is none."""
+def _periodic_orbit(model: Model, position: np.ndarray, velocity: np.ndarray) -> PeriodicOrbit | OrbitError:
+    """Return the periodic orbit on which a motion through a state U_i, U_i' has settled, or why there is none."""
     state = state_of(np.concatenate([position - model.sliding_offset, velocity]))
     try:
         try:
             found = limit_cycle(model, state)
         except OrbitError:
-            # One that attracts slowly is told later from others beside it.
-            found = limit_cycle(model, state, LATER)
+            # A slowly attracting orbit is distinguished from nearby ones only after a longer time.
+            found = limit_cycle(model, state, LONG_SETTLING)
         if multipliers(found).unstable_count:
-            raise OrbitError(f"a = {model.a:.12g}: the closed orbit beside the motion is unstable")
+            raise OrbitError(f"a = {model.a:.12g}: the periodic orbit next to the motion is unstable")
     except OrbitError as error:
         return error
     found.forget_events()
@@ -163,12 +163,12 @@ def _closed(model: Model, position: np.ndarray, velocity: np.ndarray) -> Periodi
 
 
 def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> HalfBranch | OrbitError:
-    """Follow an orbit one way, and find the bifurcations that it meets, or return why it cannot be followed."""
+    """Follow an orbit in one direction with its bifurcations, or return why it cannot be followed."""
     try:
-        # From one end of a wide grid to the other as well.
+        # Steps are large enough to cross a wide grid.
         step = max(FOLLOWING.largest_step, largest / orbit.model.chain.own_units.slope / FOLLOWING.max_orbits)
-        found = follow_half_branch(orbit, upward, (LEAST_A, largest), BEYOND, replace(FOLLOWING, largest_step=step))
-        # Found here, these go with the orbits to the process that asks for them.
+        found = follow_half_branch(orbit, upward, (LEAST_A, largest), UNSTABLE_ORBITS, replace(FOLLOWING, largest_step=step))
+        # Cached properties that are computed here go with the orbits to the calling process.
         _ = (
             [(bifurcation.stick_time, bifurcation.mean_distance) for bifurcation in found.bifurcations],
             [point.multipliers for point in found.orbits],

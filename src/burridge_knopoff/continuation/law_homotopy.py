@@ -1,4 +1,4 @@
-"""Branches under two friction laws: which are one, by following each attractor while one law turns into the other."""
+"""Matches the branches of two friction laws by following attractors while one law is deformed into the other."""
 
 from __future__ import annotations
 
@@ -17,21 +17,22 @@ from burridge_knopoff.motion.section_returns import Returns, visit
 from burridge_knopoff.motion.set_distance import is_near
 from burridge_knopoff.running.processes import shared_out
 
-#: Steps in which one friction law is turned into another, and values of a at which each branch is followed so.
+#: Number of steps in which one friction law is deformed into another, and of values of a at which each branch is
+#: followed in this way.
 STEPS = 16
-TRIES = 3
+FOLLOWED_VALUES = 3
 
-#: {branch: the states on it, at stops}, with the models that they belong to by position: at each of them one state.
+#: {branch: {index of a model: a state of the branch in this model, at a stop}}.
 States = Mapping[int, Mapping[int, ChainState]]
 
 
 def follow_law(first: Model, second: Model, start: ChainState, settings: SearchSettings) -> Returns | None:
-    """Return where an attractor of one model has come to when its law has turned into that of another model.
+    """Return the motion into which an attractor develops while the law of a model is deformed into that of another.
 
-    first, second : models that differ in the law alone; start : a state on an attractor of the first
+    first, second : models that differ only in the law; start : a state on an attractor of the first
 
-    The law is changed in steps, along the straight line between both. None where the motion does not go on smoothly: it
-    does not settle, or the set that it settles on is no neighbour of the one before.
+    The law is changed in steps, along the straight line between both. None if the motion does not continue smoothly: it
+    does not settle, or settles on a set that is not close to the one before.
     """
     before: Returns | None = None
     for share in np.linspace(0.0, 1.0, STEPS + 1).tolist():
@@ -48,7 +49,7 @@ def follow_law(first: Model, second: Model, start: ChainState, settings: SearchS
     return before
 
 
-def joined(
+def match_branches(
     firsts: Sequence[Model],
     seconds: Sequence[Model],
     first: States,
@@ -57,31 +58,31 @@ def joined(
     *,
     processes: int = 1,
 ) -> dict[int, int]:
-    """Return {branch under the second law: branch under the first} of those that turn into each other.
+    """Return {branch under the second law: branch under the first} of those that develop into each other.
 
     firsts, seconds : the models under both laws at the same values of a
-    first, second : states on the branches of each, by branch and by the position of their model
+    first, second : states on the branches of each law, by branch and index of the model
     settings : how long a motion is followed
-    processes : that work at once; no result depends on how many
+    processes : number of processes; the results do not depend on it
 
-    Each branch of the first law is followed at a few of the values at which it exists; it is one with the branch of the
-    second law that it comes to at most of them. Where several come to one, it is the one with the longest range. The
-    synchronized branch, 0, is one under all laws.
+    Each branch of the first law is followed at a few of the values of a at which it exists, and matched with the branch
+    of the second law at which it arrives most often. If several arrive at one branch, the one with the longest range is
+    matched. The synchronized branch, 0, is the same under all laws.
     """
     numbers = [sorted(n for n in states if n != 0) for states in (first, second)]
     tried = []
     for row, number in enumerate(numbers[0]):
         places = sorted(first[number])
-        chosen = np.linspace(0, len(places) - 1, min(TRIES, len(places))).round().astype(int)
+        chosen = np.linspace(0, len(places) - 1, min(FOLLOWED_VALUES, len(places))).round().astype(int)
         tried += [(row, places[i], first[number][places[i]], len(places) / len(chosen)) for i in chosen]
     models = ([law[k] for _, k, *_ in tried] for law in (firsts, seconds))
     starts = [start for *_, start, _ in tried]
     with shared_out(processes) as each:
         follow = partial(follow_law, settings=settings)
-        followed = each("turned into the other law", follow, *models, starts)
+        followed = each("continued to the other law", follow, *models, starts)
     arrivals = np.zeros((len(numbers[0]), len(numbers[1])))
     for (row, k, _, weight), found in zip(tried, followed, strict=True):
-        near = {n: _nearest(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
+        near = {n: _distance(found, second[n][k]) for n in numbers[1] if k in second[n]} if found else {}
         best = min(near, key=lambda n: near[n], default=None)
         if best is not None and near[best] <= SAME_SET * firsts[k].scale:
             arrivals[row, numbers[1].index(best)] += weight
@@ -89,7 +90,7 @@ def joined(
     return {0: 0} | {numbers[1][column]: numbers[0][row] for row, column in pairs if arrivals[row, column] > 0}
 
 
-def _nearest(found: Returns, state: ChainState) -> float:
-    """Return how far the state at a stop is from the nearest return of a motion, or of its mirror image."""
+def _distance(found: Returns, state: ChainState) -> float:
+    """Return the distance of the state at a stop from the nearest return of a motion or of its mirror image."""
     tree = cKDTree(np.concatenate([found.returns, found.mirror_returns]))
     return float(tree.query(state.vector(), p=np.inf)[0])

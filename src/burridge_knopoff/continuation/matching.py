@@ -1,4 +1,4 @@
-"""Which attractors of two sets are one, by the distance of their section returns.
+"""Matches the attractors of two sets by the distance of their section returns.
 
 Reference: G. Datseris, K. Luiz Rossi and A. Wagemakers, "Framework for global stability analysis of dynamical systems",
 Chaos 33 (2023) 073151, which matches sets by their distance and remembers those that vanish for a step.
@@ -15,45 +15,45 @@ from scipy.optimize import linear_sum_assignment
 from scipy.spatial import cKDTree
 
 from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.continuation.settings import REFINE
+from burridge_knopoff.continuation.settings import REFINEMENT
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
 from burridge_knopoff.motion.set_distance import distance
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-#: Distance, for v = 0.1, within which sets at neighbouring values of a are one branch. In the paper's study what
-#: follows smoothly moves by at most 0.007 a step, what is locked in turn to other orbits by at most 0.036, and sets
-#: that coexist are farther apart than 0.04 but for orbits born from one another.
+#: Distance, for v = 0.1, within which sets at neighbouring values of a belong to one branch. In the paper's study a set
+#: that changes smoothly moves by at most 0.007 per step, a torus that is locked to one orbit after another by at most
+#: 0.036, and coexisting sets are more than 0.04 apart, except orbits that have branched off from one another.
 SAME_SET = 0.03
 
-#: Returns of a set, spread over all, that are compared with another set.
+#: Number of returns of a set, evenly chosen, that are compared with another set.
 COMPARED_RETURNS = 150
 
 
 @dataclass(frozen=True, eq=False)
 class Outline:
-    """The returns of an attractor, thinned out, and those of its mirror image, as sets that can be compared."""
+    """The returns of an attractor and of its mirror image, thinned out for comparison with other sets."""
 
     attractor: Attractor
 
     @cached_property
     def tree(self) -> cKDTree:
-        """All returns, for the search of neighbours."""
+        """All returns, in a tree for nearest neighbours."""
         return cKDTree(self.attractor.motion.returns)
 
     @cached_property
     def own(self) -> np.ndarray:
-        """Some returns, spread evenly over all."""
-        return _thinned(self.attractor.motion.returns)
+        """An even selection of the returns."""
+        return _thin(self.attractor.motion.returns)
 
     @cached_property
     def mirrored(self) -> np.ndarray:
-        """The same of the mirror image."""
-        return _thinned(self.attractor.motion.mirror_returns)
+        """An even selection of the returns of the mirror image."""
+        return _thin(self.attractor.motion.mirror_returns)
 
     def distances(self, other: Outline, bound: float = np.inf) -> np.ndarray:
-        """Return how far the set, and its mirror image, is from another: both directed distances, the lesser first.
+        """Return the directed distances of the set and of its mirror image from another set, the smaller first.
 
-        Shape (2, 2); bound : what is farther may be given as infinitely far
+        The rows, of shape (2, 2), are for the set and its mirror image. bound : larger distances may be infinite
         """
         found = np.full((2, 2), np.inf)
         found[0] = distance(self.own, other.tree, bound=bound), distance(other.own, self.tree, bound=bound)
@@ -63,37 +63,37 @@ class Outline:
         return np.sort(found, axis=1)
 
 
-def _thinned(returns: np.ndarray) -> np.ndarray:
+def _thin(returns: np.ndarray) -> np.ndarray:
     chosen = np.linspace(0, len(returns) - 1, min(COMPARED_RETURNS, len(returns))) if len(returns) else np.zeros(0)
     return returns[chosen.astype(int)]
 
 
 def outlines(attractors: Sequence[Attractor]) -> dict[int, Outline]:
-    """Return the outlines of attractors by their index; of a mirror pair the first stands for both."""
+    """Return {index: outline} of attractors; the first of a mirror pair represents both."""
     return {index: Outline(attractor) for index, attractor in enumerate(attractors) if attractor.partner >= index}
 
 
 @dataclass(frozen=True)
 class Matcher:
-    """Tells which attractors of two sets are one.
+    """Matches the attractors of two sets, mostly those at neighbouring values of a.
 
     scale : of the model, see `Model.scale`
-    longest_period : up to which closed orbits are followed along a; longer ones count as a torus
+    longest_period : longest period of orbits that are followed along a; longer ones count as a torus
     """
 
     scale: float
-    longest_period: float = REFINE.longest_period
+    longest_period: float = REFINEMENT.longest_period
 
-    def matched(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
-        """Return {key in `after`: key in `before`} of the sets that are one: each has one at most.
+    def match(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
+        """Return {key in `after`: key in `before`} of the sets that match; each matches at most one.
 
-        Synchronized sets match each other, the nearest if there are several, and nothing else: what synchrony turns
-        into where it loses its stability is another branch. Of all others those are paired that lie within SAME_SET,
-        so that the distances of all pairs are least in sum.
+        Synchronized sets match only each other, the nearest if there are several: the motion that replaces synchrony
+        where it loses stability is another branch. Other sets are paired if they lie within SAME_SET, such that the sum
+        of the distances of all pairs is smallest.
 
-        An orbit that lies on a torus, or a window in the midst of chaos, is near it although most of that is not near
-        the orbit: so the lesser directed distance tells what may follow what along a. Where an orbit and the chaos
-        around it both go on, the greater one as well tells which is which.
+        A periodic orbit on a torus, or in a window of chaos, lies close to the set while most of the set is far from
+        the orbit. The smaller directed distance therefore decides whether two sets may match. If both an orbit and the
+        chaos around it continue, the larger directed distance distinguishes them.
         """
         first, second = list(before), list(after)
         largest = SAME_SET * self.scale
@@ -110,23 +110,23 @@ class Matcher:
         pairs = zip(*linear_sum_assignment(cost), strict=True)
         return {second[row]: first[column] for row, column in pairs if cost[row, column] < 2.0 * largest}
 
-    def unchanged(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
-        """Return {key in `after`: key in `before`} of the sets that are one, and of one kind, symmetry and period."""
-        found = self.matched(before, after)
+    def match_unchanged(self, before: Mapping[int, Outline], after: Mapping[int, Outline]) -> dict[int, int]:
+        """Return {key in `after`: key in `before`} of the sets that match with the same kind, symmetry and period."""
+        found = self.match(before, after)
         return {new: old for new, old in found.items() if self._features(before[old]) == self._features(after[new])}
 
-    def differing(
+    def unmatched(
         self, before: Mapping[int, Outline], after: Mapping[int, Outline]
     ) -> tuple[dict[int, Outline], dict[int, Outline]]:
-        """Return those of both sets without a counterpart of the same kind, symmetry and period in the other."""
-        same = self.unchanged(before, after)
+        """Return the attractors of both sets without a match of the same kind, symmetry and period in the other."""
+        same = self.match_unchanged(before, after)
         return (
             {k: item for k, item in before.items() if k not in same.values()},
             {k: item for k, item in after.items() if k not in same},
         )
 
     def _features(self, outline: Outline) -> tuple[int, int, int]:
-        """Return kind, symmetry and section points of a motion; one for a torus and all orbits that are too long."""
+        """Return kind, symmetry and section points of a motion, equal for a torus and all orbits that are too long."""
         attractor, motion = outline.attractor, outline.attractor.motion
         if motion.kind in REGULAR and not motion.period <= self.longest_period:
             return MotionKind.QUASIPERIODIC, 0, 0

@@ -1,4 +1,4 @@
-"""Values of a put in between two neighbours at which attractors differ, until each change lies between near values."""
+"""Values of a inserted between neighbours whose attractors differ, until each change is located."""
 
 from __future__ import annotations
 
@@ -8,24 +8,24 @@ from functools import partial
 from itertools import pairwise
 
 from burridge_knopoff.attractors.attractor import Attractor
-from burridge_knopoff.attractors.capture_radius import PUSH_GROUP
+from burridge_knopoff.attractors.capture_radius import PERTURBATION_GROUP
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher, Outline, outlines
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.processes import Shared
 
-#: Numbers of the attractors on both sides of a gap that differ.
+#: Indices of the attractors at both ends of a gap that differ.
 Differing = tuple[list[int], list[int]]
 
 
 @dataclass(frozen=True, eq=False)
 class Gap:
-    """Two values of a with nothing known in between.
+    """Two values of a without a known value in between.
 
-    search : without attractors, how they are looked for there
-    first, last : models at both ends; before, after : attractors there, of a mirror pair one, that may differ
-    still : others, which are the same at both ends
+    search : a search without attractors, with the settings for values in between
+    first, last : models at both ends; before, after : attractors there that may differ, one of each mirror pair
+    unchanged : other attractors, which are the same at both ends
     """
 
     search: Search
@@ -33,46 +33,50 @@ class Gap:
     last: Model
     before: Sequence[Attractor]
     after: Sequence[Attractor]
-    still: Sequence[Attractor]
+    unchanged: Sequence[Attractor]
 
-    def is_open(self, refine: Refine) -> bool:
-        """Tell whether something differs between values that are not near enough."""
+    def is_open(self, refine: RefinementSettings) -> bool:
+        """Return whether attractors differ and the values are farther apart than the resolution."""
         near = self.last.a - self.first.a <= refine.resolution * (1.0 + 1e-9)
         return bool(self.before or self.after) and not near
 
 
-def refined(searches: Sequence[Search], refine: Refine, matcher: Matcher, each: Shared) -> list[list[Search]]:
-    """Return searches at values of a between each two neighbours of the grid, ascending; none where nothing changes.
+def refine_searches(
+    searches: Sequence[Search], refine: RefinementSettings, matcher: Matcher, each: Shared
+) -> list[list[Search]]:
+    """Return the searches at values of a inserted between each two neighbours of the grid, ascending.
 
-    refine : how near to each other the values have to be at which something differs
-    each : as `running.processes.shared_out` gives it
+    refine : how closely changes are located
+    each : from `running.processes.shared_out`
 
-    At a value that is put in only those attractors are followed that change between its neighbours: in kind, symmetry
-    or period, or in that they have no counterpart. Where nothing attracts, as at a = 0, nothing is put in:
-    perturbations of sliding grow at a rate ∝ a, so that nothing would settle there.
+    No value is inserted if nothing changes. At an inserted value only those attractors are followed that change between
+    its neighbours, in kind, symmetry or period, or that have no counterpart. No value is inserted next to one without
+    attractors, as a = 0: perturbations of sliding grow at a rate ∝ a, so that no motion would settle in time.
     """
     found: list[list[Search]] = [[] for _ in searches[1:]]
-    differ = each("compared with the next", partial(_between, matcher=matcher), searches[:-1], searches[1:])
+    differ = each("neighbours compared", partial(_compare, matcher=matcher), searches[:-1], searches[1:])
     gaps = [(k, _gap(*pair, *differ[k])) for k, pair in enumerate(pairwise(searches))]
 
     def halves(k: int, gap: Gap, halved: tuple[Search, Differing, Differing]) -> list[tuple[int, Gap]]:
         middle, low, high = halved
         found[k].append(middle)
         here = middle.attractors
-        lower = _chosen(gap.before, low[0]), _chosen(here, low[1])
-        upper = _chosen(here, high[0]), _chosen(gap.after, high[1])
+        lower = _select(gap.before, low[0]), _select(here, low[1])
+        upper = _select(here, high[0]), _select(gap.after, high[1])
         both = (
             replace(gap, last=middle.model, before=lower[0], after=lower[1]),
             replace(gap, first=middle.model, before=upper[0], after=upper[1]),
         )
         return [(k, half) for half in both if half.is_open(refine)]
 
-    each.and_on("refined", partial(_halved, matcher=matcher), [one for one in gaps if one[1].is_open(refine)], halves)
+    each.and_on(
+        "values inserted", partial(_bisect, matcher=matcher), [one for one in gaps if one[1].is_open(refine)], halves
+    )
     return [sorted(inner, key=lambda search: search.model.a) for inner in found]
 
 
-def _between(left: Search, right: Search, matcher: Matcher) -> Differing:
-    """Return which attractors of two neighbours of the grid differ."""
+def _compare(left: Search, right: Search, matcher: Matcher) -> Differing:
+    """Return the indices of the attractors of two neighbours of the grid that differ."""
     if not left.attractors or not right.attractors:
         return [], []
     before, after = (outlines(side.attractors) for side in (left, right))
@@ -80,44 +84,44 @@ def _between(left: Search, right: Search, matcher: Matcher) -> Differing:
 
 
 def _gap(left: Search, right: Search, before: Sequence[int], after: Sequence[int]) -> Gap:
-    """Return the gap between two neighbours of the grid, from what differs."""
-    # What is known of the neighbours has settled nearby: less work tells what it has become. No states are labelled, so
-    # that few perturbations, but small ones, show whether it attracts; and an ensemble shows whether chaos lasts.
-    settings = replace(left.settings, perturbations=min(left.settings.perturbations, PUSH_GROUP))
+    """Return the gap between two neighbours of the grid, from the indices of the attractors that differ."""
+    # The attractors of the neighbours have settled nearby, so less work suffices. No states are labelled, so a few
+    # small perturbations decide whether a motion attracts, and an ensemble decides whether chaos persists.
+    settings = replace(left.settings, perturbations=min(left.settings.perturbations, PERTURBATION_GROUP))
     capture = replace(left.capture, shrinking=16.0, largest=left.capture.largest / 16.0)
     search = replace(
         left,
         settings=settings,
         capture=capture,
-        patience=left.patience // 4,
+        longest_extension=left.longest_extension // 4,
         trials=1,
         attractors=[],
-        vain=(),
+        unsuccessful_states=(),
     )
-    still = [k for k in outlines(left.attractors) if k not in before]
-    ends = _chosen(left.attractors, before), _chosen(right.attractors, after)
-    return Gap(search, left.model, right.model, *ends, _chosen(left.attractors, still))
+    unchanged = [k for k in outlines(left.attractors) if k not in before]
+    ends = _select(left.attractors, before), _select(right.attractors, after)
+    return Gap(search, left.model, right.model, *ends, _select(left.attractors, unchanged))
 
 
-def _halved(gap: Gap, matcher: Matcher) -> tuple[Search, Differing, Differing]:
-    """Follow what may differ at a value in the middle; return what is there, and what differs below and above it."""
+def _bisect(gap: Gap, matcher: Matcher) -> tuple[Search, Differing, Differing]:
+    """Follow attractors at the middle of a gap; return the search there, and what differs below and above it."""
     middle = replace(gap.search, model=gap.first.at(0.5 * (gap.first.a + gap.last.a)), attractors=[])
     middle.labels(middle.seeds([*gap.before, *gap.after]), check=False)
     known, before, after = (
         {k: Outline(item) for k, item in enumerate(attractors)}
-        for attractors in ([*gap.still, *gap.before], gap.before, gap.after)
+        for attractors in ([*gap.unchanged, *gap.before], gap.before, gap.after)
     )
-    # What a seed has left for may be an attractor that does not change.
+    # A seed may have left for an attractor that does not change.
     here = outlines(middle.attractors)
-    origin = matcher.matched(known, here)
-    here = {k: item for k, item in here.items() if origin.get(k, len(gap.still)) >= len(gap.still)}
+    origin = matcher.match(known, here)
+    here = {k: item for k, item in here.items() if origin.get(k, len(gap.unchanged)) >= len(gap.unchanged)}
     return middle, _differing(before, here, matcher), _differing(here, after, matcher)
 
 
 def _differing(before: Mapping[int, Outline], after: Mapping[int, Outline], matcher: Matcher) -> Differing:
-    one, other = matcher.differing(before, after)
+    one, other = matcher.unmatched(before, after)
     return list(one), list(other)
 
 
-def _chosen(attractors: Sequence[Attractor], numbers: Sequence[int]) -> list[Attractor]:
+def _select(attractors: Sequence[Attractor], numbers: Sequence[int]) -> list[Attractor]:
     return [attractors[k] for k in numbers]

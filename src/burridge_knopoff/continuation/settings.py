@@ -1,4 +1,4 @@
-"""How near in a the changes of attractors are located; fields and defaults are those of a study's config."""
+"""Settings of the location of changes along a; fields and defaults are those of a study's config."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from burridge_knopoff.running.settings import TIME
 
 @settings
 @dataclass(frozen=True)
-class Refine:
-    """Where values of a are put in between those of the grid, for attractors: the config's section `refine`.
+class RefinementSettings:
+    """How closely changes of attractors are located in a: the config's section `refine`.
 
     Raises ValueError, one line, for anything out of range.
     """
@@ -21,13 +21,13 @@ class Refine:
     resolution: Annotated[
         float,
         Number(1e-6, 100.0),
-        "neighbouring values of a at which kind, period, symmetry or set of the attractors differ are at most this far "
-        "apart; a step of the grid, or more, puts none in",
+        "where the attractors differ between neighbouring values of a, values are inserted until the change is located "
+        "to within this distance (the grid step or more: none are inserted)",
     ] = 1e-4
     longest_period: Annotated[
         float,
         TIME,
-        "period up to which closed orbits are followed along a; whether a torus is locked to a longer one is no change",
+        "longest period of orbits that are continued in a; locking to a longer orbit does not count as a change",
     ] = 500.0
 
     def __post_init__(self) -> None:
@@ -35,4 +35,4 @@ class Refine:
 
 
 #: The defaults of a study.
-REFINE = Refine()
+REFINEMENT = RefinementSettings()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict
 
-from burridge_knopoff.attractors.settings import OF_GIVEN_STATES
+from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS
 from burridge_knopoff.jobs import searches
 from burridge_knopoff.jobs.params import (
     catalogue_keys,
@@ -177,7 +177,7 @@ def two_blocks(study: Study) -> list[Rule]:
                 "sample": {key: config[key] for key in ("seed", "position", "velocity")},
                 "two_blocks": pair,
                 "settings": keys(study, "start", "transient", "window"),
-                "search": {key: search[key] for key in OF_GIVEN_STATES},
+                "search": {key: search[key] for key in GIVEN_STATE_KEYS},
                 # The block of the study's section may not exist here; the sum always does.
                 "motion": {key: value for key, value in motion_config(study).items() if key != "section"},
             },

@@ -47,7 +47,7 @@ def find_attractors(
     identified by the states at the stops of the outermost block that stops regularly. Raises ValueError, one line, for
     a wrong argument.
 
-    Times are in units of 1/ω. docs/attractors.md shows the search as a diagram.
+    Times are in units of 1/ω. docs/search.md describes the search.
 
     >>> from burridge_knopoff import find_attractors
     >>> attractors, labels = find_attractors(

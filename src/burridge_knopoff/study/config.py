@@ -14,7 +14,7 @@ from typing import Any
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings, EdgeSettings, PhaseSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
 from burridge_knopoff.model.initial import STATE_NAME, InitialState
@@ -217,7 +217,7 @@ CONFIG = Keys(
         "solvers": _section(COMPARED),
         "figures": _section(FIGURES),
         "attractors": _section(_part(SearchSettings)),
-        "refine": _section(_part(Refine)),
+        "refine": _section(_part(RefinementSettings)),
         "basins": _section(BASINS),
         "phases": _section(PHASES),
         "edges": _section(EDGES, FOLLOWS),

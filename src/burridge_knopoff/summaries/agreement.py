@@ -10,7 +10,7 @@ import numpy as np
 import scipy
 import xarray
 
-from burridge_knopoff.attractors.lookup import reached
+from burridge_knopoff.attractors.lookup import reached_values
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import ANSWER, PERIOD, Answer, Variable, flag
 from burridge_knopoff.motion.kind import (
@@ -134,8 +134,8 @@ def _fill_settled(
     own = attractors.sel(contact=attractors.attrs["contact"], start=attractors.attrs["start"])
     for law, initial in np.ndindex(values["settled"].shape[:2]):
         names = str(own["initial"].values[initial]), str(own["law"].values[law])
-        known, mean = reached(own, *names, "mean_distance")
-        _, error = reached(own, *names, "mean_distance_error")
+        known, mean = reached_values(own, *names, "mean_distance")
+        _, error = reached_values(own, *names, "mean_distance_error")
         mine, my_error = (values[name][law, initial] for name in ("mean_distance", "mean_distance_error"))
         allowed = np.maximum(
             standard_errors * np.hypot(error, my_error), np.maximum(SAME_MEAN * np.maximum(mean, mine), threshold)
@@ -143,7 +143,7 @@ def _fill_settled(
         there = known & (np.abs(mean - mine) <= allowed)
         kind, (_, finer), (_, period) = (
             values["kind"][law, initial],
-            *(reached(own, *names, k) for k in ("kind", "period")),
+            *(reached_values(own, *names, k) for k in ("kind", "period")),
         )
         # Transient chaos that outlasts the run is chaos in the run.
         lasting = np.where(mean < threshold, MotionKind.SYNCHRONIZED_CHAOS, MotionKind.CHAOTIC)

@@ -18,7 +18,7 @@ from burridge_knopoff.attractors.labels import UNDETERMINED
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import NAMES, name_branches
-from burridge_knopoff.continuation.law_homotopy import joined
+from burridge_knopoff.continuation.law_homotopy import match_branches
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
@@ -93,9 +93,32 @@ def branch_numbers(
     for part, model in zip(parts[1:], models[1:], strict=True):
         grid = part["a"].values.tolist()
         firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
-        renamed = joined(firsts, seconds, first, _states(part, model), settings, processes=processes)
+        renamed = match_branches(firsts, seconds, first, _states(part, model), settings, processes=processes)
         numbers.append(_number_remaining(renamed, part, numbers))
-    return numbers
+    order = number_in_order(parts, numbers)
+    return [{own: order[number] for own, number in renamed.items()} for renamed in numbers]
+
+
+def number_in_order(parts: Sequence[xarray.Dataset], numbers: Sequence[Mapping[int, int]]) -> dict[int, int]:
+    """Return {number of a branch: its place in the order in which branches appear along a}, those of the first law first.
+
+    parts : of the laws, see `one_law`; numbers : for each law {number of a branch in its part: common number}
+
+    The synchronized branch is 0, and branches that appear at the same a are ordered by ⟨J⟩ there. Branches that exist
+    at fewer than `LASTING` values of the grid come after all others, since a deeper search finds more of them.
+    """
+    first: dict[int, tuple[int, int, float]] = {}
+    values: Counter[int] = Counter()
+    for law, (part, renamed) in enumerate(zip(parts, numbers, strict=True)):
+        branch, distance = part["branch"].values, part["mean_distance"].values
+        for own, number in renamed.items():
+            slots = branch == own
+            there = np.flatnonzero(slots.any(axis=1))
+            if len(there):
+                values[number] = max(values[number], len(there))
+                first.setdefault(number, (law, int(there[0]), float(distance[there[0]][slots[there[0]]].min())))
+    ranked = sorted(first, key=lambda number: (number != 0, values[number] < LASTING, *first[number], number))
+    return {number: place for place, number in enumerate(ranked, start=0 if 0 in first else 1)}
 
 
 def _number_remaining(

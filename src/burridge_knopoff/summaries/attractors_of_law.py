@@ -10,7 +10,7 @@ import xarray
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.stored_returns import returns_of_law
 from burridge_knopoff.continuation.along_a import continue_attractors
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.motion.settings import MotionSettings
@@ -28,7 +28,7 @@ def make(given: Given, model: Mapping[str, Any], grid: Sequence[float], **config
     models, start = [model_of(model, given.law, a) for a in grid], config["start"]
     initial = [InitialState(name, **state) for name, state in config["initial"].items()]
     settings, motion = SearchSettings(**config["attractors"]), MotionSettings(**config["motion"])
-    refine = Refine(**config["refine"])
+    refine = RefinementSettings(**config["refine"])
     kept = given.cache(
         f"attractors {given.law}", config, model, source_fingerprint("burridge_knopoff.continuation.along_a")
     )

@@ -164,7 +164,7 @@ def pairs(known: KnownAttractors, basins: BasinSettings, label_limit: float, see
 
     found = follow_pairs(label, basins.first_position, basins.last_position, basins.pairs, seed)
     exponent = uncertainty_exponent(found)
-    values: dict[str, Any] = {"uncertain_count": found.different_count, "pair_count": found.known_count}
+    values: dict[str, Any] = {"uncertain_count": found.different_count, "pair_count": found.labelled_count}
     for name, pair in (
         ("uncertain_fraction", exponent.fraction),
         ("local_exponent", exponent.local),

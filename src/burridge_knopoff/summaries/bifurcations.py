@@ -17,7 +17,7 @@ import xarray
 
 from burridge_knopoff.continuation.bifurcations import LEAST_ERROR, Entry, entries
 from burridge_knopoff.continuation.branch_changes import Change, branch_changes
-from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, followed
+from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, follow_orbits
 from burridge_knopoff.dataset.columns import Column, filled
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
@@ -186,12 +186,12 @@ def one_law(
 
     model : with this law, at any a
     attractors, refined : of this law, at the values of the grid, and at all
-    processes, folder : see `followed`
+    processes, folder : see `follow_orbits`
     """
     law = str(attractors["law"].item())
     one = refined.load()
     changes = branch_changes(attractors, one)
-    orbits = followed(model, one, changes, processes, folder)
+    orbits = follow_orbits(model, one, changes, processes, folder)
     found = list(entries(one, changes, orbits))
     segments = enumerate(zip(_branches_of_segments(orbits, one["branch"].values), orbits.segments, strict=True))
     points = [(number, branch, point) for number, (branch, segment) in segments for point in segment.drawn_orbits]

@@ -13,7 +13,7 @@ import xarray
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.stored_returns import known_attractors
 from burridge_knopoff.basins.settings import EdgeSettings
-from burridge_knopoff.continuation.edges import Approach, Edge, approach, edges_at, followed_edges
+from burridge_knopoff.continuation.edges import Approach, Edge, approach, continue_edges, edges_at
 from burridge_knopoff.dataset.columns import Column, filled
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
@@ -84,8 +84,8 @@ EDGES = {
     "reached_count": Column(
         (*_BANKS, "attractor"),
         "i4",
-        "number of displaced states that reach this attractor, numbered as in attractors.nc; -1 if there is none",
-        value=lambda one: one.edge.reached,
+        "displaced states that reach this attractor, by its number in attractors.nc; -1 where there is none",
+        value=lambda one: one.edge.reached_count,
     ),
     "period": Column(
         _EDGE,
@@ -201,7 +201,7 @@ def make_of_law(
     with shared_out(given.cores) as each:
         at = each("edge states", partial(edges_at, settings=EdgeSettings(**edges), time_limit=limit), known)
     states = [edge for one in at for edge in one]
-    segments, numbers = followed_edges(states, float(found["a"].max()))
+    segments, numbers = continue_edges(states, float(found["a"].max()))
     crises = [
         (a, branch, _approach(known[0].model.at(near), refined, states, branch))
         for bifurcations in given.summaries("bifurcations")

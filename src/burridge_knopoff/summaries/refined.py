@@ -13,7 +13,7 @@ from burridge_knopoff.attractors.lookup import CROSSINGS
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import slot_coordinates, slot_values, slot_variables
 from burridge_knopoff.continuation.along_a import Continuation
-from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.motion.settings import MotionSettings
@@ -36,7 +36,7 @@ VARIABLES = {
 
 
 def one_law(
-    found: Continuation, settings: SearchSettings, motion: MotionSettings, refine: Refine, start: str
+    found: Continuation, settings: SearchSettings, motion: MotionSettings, refine: RefinementSettings, start: str
 ) -> xarray.Dataset:
     """Return the attractors of one law at all values of a; arguments as in `attractors.one_law`."""
     count = len(found.models)

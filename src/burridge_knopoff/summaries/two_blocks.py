@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.attractors.asymptotic_states import endings
-from burridge_knopoff.attractors.settings import OF_GIVEN_STATES, SearchSettings
+from burridge_knopoff.attractors.asymptotic_states import asymptotic_states
+from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS, SearchSettings
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
@@ -218,7 +218,7 @@ def summarize(
             "window": settings.window,
             **{f"agreement_{name}": value for name, value in agreement.items()},
             **{f"motion_{name}": value for name, value in judged.items()},
-            **{f"search_{name}": getattr(search, name) for name in OF_GIVEN_STATES},
+            **{f"search_{name}": getattr(search, name) for name in GIVEN_STATE_KEYS},
         },
         module=__name__,
     )
@@ -234,7 +234,7 @@ def _compare_at(
 ) -> dict[str, np.ndarray]:
     """Return all variables at one a: of motions, shape (law, state), of pairs, shape (other law, state)."""
     here = [model.at(a) for model in models]
-    ends = [endings(model, initial, search, motion, start=settings.start) for model in here]
+    ends = [asymptotic_states(model, initial, search, motion, start=settings.start) for model in here]
     values = {name: np.array([[getattr(found, name) for found in row] for row in ends]) for name in MOTION_VARIABLES}
     count, until = (np.zeros((len(here) - 1, len(initial))) for _ in range(2))
     for j, state in enumerate(initial):
