@@ -15,6 +15,7 @@ from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings, EdgeSettings, PhaseSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.continuation.settings import Refine
+from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
 from burridge_knopoff.model.initial import STATE_NAME, InitialState
@@ -54,16 +55,25 @@ STUDY_NAME = Text("letters, digits, _ and -, at most 64, a letter or digit first
 
 
 class LawKeys(Range):
-    """The description of a law: `law` or `formula`, and numbers under any other names."""
+    """The description of a law: `law` or `formula`, and parameters under any other names."""
+
+    fields: Mapping[str, Field] = {
+        "law": Field(OneOf(tuple(LAWS)), "built-in law, to use it under another name"),
+        "formula": Field(
+            Text(), "friction over the static friction of the block, as a function of u, a and other names"
+        ),
+    }
+    #: Range of a parameter.
+    number = NUMBER
 
     def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
         if not isinstance(value, Mapping):
             return None
-        kinds = {"law": Text(), "formula": Text()}
-        return {name: kinds.get(name, NUMBER).form(item, joined(key, name)) for name, item in value.items()}
+        known = {name: field.range for name, field in self.fields.items()}
+        return {name: known.get(name, self.number).form(item, joined(key, name)) for name, item in value.items()}
 
     def __str__(self) -> str:
-        return "law or formula, and numbers; {} for a built-in law with its defaults"
+        return "law or formula, and parameters; {} for a built-in law with its defaults"
 
 
 def _part(kind: type, *without: str, **other: Field) -> dict[str, Field]:

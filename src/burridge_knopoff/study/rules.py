@@ -86,10 +86,8 @@ def fill_names(config: dict[str, Any]) -> None:
     """Check the names of laws and states in other keys, and fill in the default names."""
     laws, state, solver = config["laws"], next(iter(config["initial"])), config["solver"]
     for name, description in laws.items():
-        kind = description.get("law", name)
-        if "formula" not in description and kind not in LAWS:
-            key = f"laws.{name}{'.law' if 'law' in description else ''}"
-            raise refusal(key, kind, f"{' | '.join(LAWS)}, or a formula")
+        if name not in LAWS and not {"law", "formula"} & description.keys():
+            raise refusal(f"laws.{name}", name, f"{' | '.join(LAWS)}, or a formula")
     known, first = OneOf(tuple(laws)), next(iter(laws))
     known.form(config["figures"].setdefault("law", first), "figures.law")
     Several(known).form(config["chains"].setdefault("laws", [first]), "chains.laws")
