@@ -83,8 +83,8 @@ def test_several_parameters():
     jobs = Jobs(load_study(PLANE, "plane.yaml"))
     assert jobs.files("summary/") == ["summary/grid.nc"]
     assert {rule.stage for rule in jobs.there.values()} == {"points", "summary", "figures", "report"}
-    assert jobs.point_files(jobs.there["grid"], {}) == ["stretches/0000.done"]
-    assert "stretch" not in ALL.there
+    assert jobs.point_files(jobs.there["grid"], {}) == ["chunks/0000.done"]
+    assert "chunk" not in ALL.there
 
 
 def test_every_function_takes_what_the_rule_gives():

@@ -7,7 +7,7 @@ def inputs(rule, name):
 
 
 def points_of(rule):
-    """Return a function that gives the points that a job reads, or the marks of their stretches."""
+    """Return a function that gives the points that a job reads, or the marks of their chunks."""
     return lambda wildcards: paths(JOBS.point_files(rule, dict(wildcards)))
 
 

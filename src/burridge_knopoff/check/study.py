@@ -16,10 +16,10 @@ from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import NAME, remake_command
 from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.running.status import ENDS
+from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.study.job_log import last_words
 from burridge_knopoff.study.recorded import recorded_study
-from burridge_knopoff.study.stretches import stretches
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.summaries.points import check_run
 
@@ -133,11 +133,11 @@ def _points(results: Path, jobs: Jobs) -> dict[Path, tuple[str, Path]]:
     """Return {point file: (command, log)} of all runs of a study."""
     study = jobs.study
     points = {results / name: (study.command(**run), results / log) for name, run, log in run_files(jobs)}
-    for stretch, runs in stretches(study).items():
+    for chunk, runs in chunks(study).items():
         for run in runs:
             path = results / "points" / study.point_file.format(**run)
             command, log = points[path]
-            points[path] = command, log if log.exists() else results / f"logs/stretch/{stretch}.log"
+            points[path] = command, log if log.exists() else results / f"logs/chunk/{chunk}.log"
     return points
 
 

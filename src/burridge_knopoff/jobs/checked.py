@@ -10,8 +10,8 @@ from pathlib import Path
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import study_folder
 from burridge_knopoff.provenance.seal import BadFile, first_difference, of_config, read_seal, told_difference
+from burridge_knopoff.study.chunks import incomplete_chunks
 from burridge_knopoff.study.recorded import recorded_study
-from burridge_knopoff.study.stretches import incomplete
 
 
 def check_file(jobs: Jobs, results: Path, name: str, *, any_sources: bool = False) -> str:
@@ -41,7 +41,7 @@ def check_file(jobs: Jobs, results: Path, name: str, *, any_sources: bool = Fals
 
 
 def damaged(jobs: Jobs, results: Path) -> list[tuple[Path, str]]:
-    """Return texts and pictures that are damaged, which hardly any job reads, and marks of stretches without points.
+    """Return texts and pictures that are damaged, which hardly any job reads, and marks of chunks without points.
 
     With the reason of each, in words.
     """
@@ -53,7 +53,7 @@ def damaged(jobs: Jobs, results: Path) -> list[tuple[Path, str]]:
                 read_seal(path)
             except BadFile as error:
                 found.append((path, error.reason))
-    marks = incomplete(jobs.study, results)
+    marks = incomplete_chunks(jobs.study, results)
     return [*found, *((mark, "a point of it is missing or was changed") for mark in marks)]
 
 

@@ -24,7 +24,7 @@ PATTERNS = {
     "a": VALUE,
     "values": rf"[A-Za-z]\w*?{VALUE}(?:_[A-Za-z]\w*?{VALUE})*",
     "solver": r"\w+",
-    "stretch": r"\d+",
+    "chunk": r"\d+",
     "tile": r"(?:0|[1-9]\d*)",
     "blocks": r"[1-9]\d*",
 }
@@ -130,11 +130,11 @@ class Jobs:
                 yield rule, other
 
     def point_files(self, rule: Rule, job: Wildcards) -> list[str]:
-        """Return the points that a job reads; of a grid over several parameters, the marks of their stretches."""
+        """Return the points that a job reads; of a grid over several parameters, the marks of their chunks."""
         if rule.points is None:
             return []
-        if "stretch" in self.there:
-            return made(self.there["stretch"])
+        if "chunk" in self.there:
+            return made(self.there["chunk"])
         points = rule.points(job)
         names = ("law", "initial", *points["parameters"])
         found = product(points["laws"], points["initial"], *points["parameters"].values())

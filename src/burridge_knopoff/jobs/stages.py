@@ -18,8 +18,8 @@ from burridge_knopoff.jobs.params import (
 from burridge_knopoff.jobs.rule import Rule, Shown
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
 from burridge_knopoff.running.settings import SOLVERS
-from burridge_knopoff.study.paths import STRETCH
-from burridge_knopoff.study.stretches import stretches
+from burridge_knopoff.study.chunks import chunks
+from burridge_knopoff.study.paths import CHUNK
 from burridge_knopoff.study.study import Study, all_points, solver_points
 
 
@@ -28,8 +28,8 @@ def _time(study: Study) -> float:
 
 
 def runs(study: Study) -> list[Rule]:
-    """Points, which the workflow makes: a job each, or one for each stretch of a grid over several parameters."""
-    file, parts = study.point_file, stretches(study)
+    """Points, which the workflow makes: a job each, or one for each chunk of a grid over several parameters."""
+    file, parts = study.point_file, chunks(study)
     return [
         Rule(
             "simulate",
@@ -44,14 +44,14 @@ def runs(study: Study) -> list[Rule]:
             work=study.blocks * _time(study),
         ),
         Rule(
-            "stretch",
-            "Simulate the points of a stretch that are missing, damaged or out of date.",
-            "simulate the points of stretch {stretch}",
-            (STRETCH,),
-            each=[{"stretch": stretch} for stretch in parts],
+            "chunk",
+            "Simulate the points of a chunk that are missing, damaged or out of date.",
+            "simulate the points of chunk {chunk}",
+            (CHUNK,),
+            each=[{"chunk": chunk} for chunk in parts],
             stage="points",
             over="several",
-            log="stretch/{stretch}",
+            log="chunk/{chunk}",
             work=study.blocks * _time(study) * max(map(len, parts.values()), default=0),
         ),
         Rule(

@@ -11,11 +11,11 @@ from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.values import refusal, shown
 
 #: Limit on the values of a list and on the points of a study. Planning so many jobs takes Snakemake minutes; in
-#: stretches, seconds.
+#: chunks, seconds.
 MAXIMUM_POINTS = 100_000
 
 #: Names that a parameter of a grid cannot have, since file names or dimensions have them.
-_TAKEN = ("law", "initial", "solver", "stretch", "exponent")
+_TAKEN = ("law", "initial", "solver", "chunk", "exponent")
 
 
 def given_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:

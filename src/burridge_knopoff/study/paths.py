@@ -21,5 +21,5 @@ def point_file(parameters: Iterable[str]) -> str:
 POINT = point_file(["a"])
 #: Pattern of the name of a value in a file name.
 VALUE = r"-?\d+\.\d+"
-#: Path of the empty file that marks a finished stretch of points, in the results.
-STRETCH = "stretches/{stretch}.done"
+#: Path of the empty file that marks a finished chunk of points, in the results.
+CHUNK = "chunks/{chunk}.done"

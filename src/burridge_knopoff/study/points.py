@@ -36,7 +36,7 @@ def make_points(study: Study, points: Sequence[Mapping[str, str]], folder: Path)
     for first in range(0, len(wanted), TOGETHER):
         failed += _make_together(wanted[first : first + TOGETHER])
     if failed:
-        more = f"; {counted(len(failed) - 1, 'more point')} of this stretch failed" if len(failed) > 1 else ""
+        more = f"; {counted(len(failed) - 1, 'more point')} of this chunk failed" if len(failed) > 1 else ""
         raise RuntimeError(f"{failed[0]}{more}")
     return len(wanted) - len(failed)
 

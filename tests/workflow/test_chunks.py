@@ -1,4 +1,4 @@
-"""A study of several parameters through the real Snakefile: a job for each stretch, and a file for each point."""
+"""A study of several parameters through the real Snakefile: a job for each chunk, and a file for each point."""
 
 import os
 import signal
@@ -26,7 +26,7 @@ batches: 2
 RESULTS = "results/plane"
 POINTS = f"{RESULTS}/points/nonlinear/pair"
 A = ("0.0500", "0.3000")
-POINT, MARK = f"{POINTS}/a0.3000_v0.0500.nc", f"{RESULTS}/stretches/0000.done"
+POINT, MARK = f"{POINTS}/a0.3000_v0.0500.nc", f"{RESULTS}/chunks/0000.done"
 
 
 @pytest.fixture(scope="module")
@@ -113,7 +113,7 @@ def test_another_value_makes_its_points_only(copy):
 
 
 @pytest.mark.slow
-def test_a_killed_stretch_goes_on_where_it_stopped(tmp_path):
+def test_a_killed_chunk_resumes_where_it_stopped(tmp_path):
     study = Study(tmp_path / "killed", PLANE.replace("window: 200", "window: 60000"))
     command = study.command(MARK)
     with subprocess.Popen(command, cwd=study.folder, env=study.environment(), start_new_session=True) as run:

@@ -1,4 +1,4 @@
-"""A stretch: those of its points that are missing, damaged or out of date."""
+"""A chunk: those of its points that are missing, damaged or out of date."""
 
 import sys
 
@@ -8,8 +8,8 @@ from pathlib import Path
 
 from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.provenance.seal import canonical, identity
+from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.points import make_points
-from burridge_knopoff.study.stretches import stretches
 from burridge_knopoff.study.study import Study
 
 folder = Path(snakemake.params.folder)
@@ -17,4 +17,4 @@ record = read_study_record(folder)
 study = Study(record["config"], record["grid"])
 if identity(canonical(study.points)) != snakemake.params.points:
     raise ValueError(f"{folder}: was given to another config while this job waited; run snakemake again")
-make_points(study, stretches(study)[snakemake.wildcards.stretch], folder / "points")
+make_points(study, chunks(study)[snakemake.wildcards.chunk], folder / "points")
