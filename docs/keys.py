@@ -83,7 +83,11 @@ def _default(field: Field) -> str:
     """Return the default of a field as YAML; empty if it has none of its own."""
     if field.default in (REQUIRED, FOLLOWS):
         return ""
-    return yaml.safe_dump(field.default, default_flow_style=True, sort_keys=False, width=1000).removesuffix("...\n").strip()
+    return (
+        yaml.safe_dump(field.default, default_flow_style=True, sort_keys=False, width=1000)
+        .removesuffix("...\n")
+        .strip()
+    )
 
 
 def _with_symbols(text: str) -> str:

@@ -14,7 +14,7 @@ import pytest
 from burridge_knopoff import Chain, FormulaLaw, Settings, simulate
 from burridge_knopoff.cli import main
 from burridge_knopoff.laws import LAWS
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
 BK = str(Path(sys.executable).parent / "bk")
 SHORT = ["--transient", "10", "--window", "20", "--batches", "2"]
@@ -44,7 +44,7 @@ def test_a_point_is_what_python_simulates(tmp_path):
     assert (run.returncode, run.stderr) == (0, "")
     expected = simulate("linearized", 0.08, "plus", transient=10.0, window=20.0, batches=2)
     mean, error = expected.mean_distance, expected.mean_distance_error
-    assert run.stdout.startswith(f"{out}: <J> = {plain(with_error(mean, error))}, largest Lyapunov exponent ")
+    assert run.stdout.startswith(f"{out}: <J> = {to_ascii(with_error(mean, error))}, largest Lyapunov exponent ")
     assert run.stdout.endswith(f", {expected.event_count} stops and starts until tau = 30\n")
     with netCDF4.Dataset(out) as dataset:
         assert dataset["mean_distance"][...] == expected.mean_distance

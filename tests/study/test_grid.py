@@ -70,7 +70,7 @@ def test_a_number_of_a_law_is_a_parameter():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"a": [0.1]}, ["a: got [0.1] beside grid, expected one of them"]),
+        ({"a": [0.1]}, ["a: got [0.1] together with grid, expected one of them"]),
         ({"grid": None}, ["a: missing", "grid"]),
         ({"grid": {"v": [0.1, 0.2]}}, ["grid.a: missing"]),
         ({"grid": {"a": [0.1], "speed": [1]}}, ["speed", "a | v | coupling"]),

@@ -133,7 +133,7 @@ def test_a_killed_chunk_resumes_where_it_stopped(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("grid:", "a: [0.1]\ngrid:", ["study.yaml: a: got [0.1] beside grid, expected one of them"]),
+        ("grid:", "a: [0.1]\ngrid:", ["study.yaml: a: got [0.1] together with grid, expected one of them"]),
         ("v: [0.05, 0.1]", "speed: [1]", ["speed: not a parameter of this model, expected a | v"]),
         (
             "v: [0.05, 0.1]",

@@ -28,7 +28,7 @@ from burridge_knopoff.provenance.files import (
     nearest_folder,
 )
 from burridge_knopoff.provenance.record import check_owner, write_study_record
-from burridge_knopoff.provenance.seal import canonical, identity
+from burridge_knopoff.provenance.seal import canonical_json, identity
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.command_line import config_arguments, of_command_line

@@ -10,7 +10,7 @@ from burridge_knopoff.cli.options import add, add_model, add_state, command_of, 
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE, Status
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
 DESCRIPTION = """Record the slip events of one run and fit the slope of their magnitudes (docs/catalogues.md).
 An event is a set of slips of neighbouring blocks at the same time. Its magnitude is ln M, M the sum of the slips.
@@ -57,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
         names = ("slope", "slope_error", "slope_low", "slope_high", "slope_count", "slope_p_value")
         slope, error, low, high, fitted, p_value = (found[name].item() for name in names)
         where = f"{fitted} events from {low:g} to {high:g}"
-        fit = f"{plain(with_error(slope, error))}, {format_p_value(p_value)}, of" if slope == slope else "none:"
+        fit = f"{to_ascii(with_error(slope, error))}, {format_p_value(p_value)}, of" if slope == slope else "none:"
         print(f"slope       {fit} {where}")
     if options.out:
         write_summary(events.assign_attrs(history=command_of(options)), options.out)

@@ -9,7 +9,7 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
 DESCRIPTION = """Compute Lyapunov exponents of the motion from an initial state, and classify the motion. For a chain
 that is its own mirror image, also compute the transverse exponent: if negative, nearby mirror blocks synchronize."""
@@ -53,13 +53,13 @@ def run(options: argparse.Namespace) -> int:
     motion = motion.at_speed(model.v)
     found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
     print(f"\nmotion: {words_of(found, motion)}")
-    print(f"<J> = {plain(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
+    print(f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)
         value, error = transverse_exponent(
             model, start, max(options.transient, ALIGNMENT * model.chain.own_units.time), options.window
         )
-        print(f"transverse exponent of the nearby symmetric motion: {plain(with_error(value, error))}")
+        print(f"transverse exponent of the nearby symmetric motion: {to_ascii(with_error(value, error))}")
     if options.out:
         write_point(trajectory, options.out)
         print(f"written: {options.out}")

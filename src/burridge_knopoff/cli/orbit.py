@@ -75,10 +75,10 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
     """Describe an orbit in lines, with at most `most` of its events."""
     from burridge_knopoff.periodic_orbits.floquet import multipliers
     from burridge_knopoff.show.formatting import table
-    from burridge_knopoff.study.formatting import counted
+    from burridge_knopoff.study.formatting import format_count
 
     found = multipliers(orbit)
-    stability = f"unstable: {counted(found.unstable, 'multiplier')}" if found.unstable else "stable: no multiplier"
+    stability = f"unstable: {format_count(found.unstable, 'multiplier')}" if found.unstable else "stable: no multiplier"
     lines = [
         f"symmetry     {orbit.symmetry.name.lower()}",
         f"period       {orbit.period:.9f}",

@@ -12,7 +12,7 @@ from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
 if TYPE_CHECKING:
     from burridge_knopoff.model.initial import InitialState
@@ -97,8 +97,8 @@ def _time(seconds: float) -> str:
 
 def outcome(trajectory: Trajectory) -> str:
     """Describe the outcome of a completed run in a line."""
-    words = f"<J> = {plain(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}"
+    words = f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}"
     for exponent, error in zip(trajectory.lyapunov_exponent[:1], trajectory.lyapunov_error[:1], strict=True):
         if not math.isnan(error):
-            words += f", largest Lyapunov exponent {plain(with_error(float(exponent), float(error)))}"
+            words += f", largest Lyapunov exponent {to_ascii(with_error(float(exponent), float(error)))}"
     return f"{words}, {trajectory.event_count} stops and starts until tau = {trajectory.end_time:g}"

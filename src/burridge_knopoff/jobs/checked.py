@@ -9,7 +9,7 @@ from pathlib import Path
 
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import study_folder
-from burridge_knopoff.provenance.seal import BadFile, first_difference, of_config, read_seal, told_difference
+from burridge_knopoff.provenance.seal import BadFile, config_part, describe_difference, first_difference, read_seal
 from burridge_knopoff.study.chunks import incomplete_chunks
 from burridge_knopoff.study.recorded import recorded_study
 
@@ -28,7 +28,7 @@ def check_file(jobs: Jobs, results: Path, name: str, *, any_sources: bool = Fals
     if expected is None:
         return status
     if any_sources:
-        found, expected = of_config(found), of_config(expected)
+        found, expected = config_part(found), config_part(expected)
         # Another version may describe files by more, or less.
         both = {"file"} | found.keys() & expected.keys()
         found, expected = ({key: one[key] for key in one if key in both} for one in (found, expected))
@@ -36,7 +36,7 @@ def check_file(jobs: Jobs, results: Path, name: str, *, any_sources: bool = Fals
         for other in expected.get("inputs", {}) if key == "inputs" else ():
             if found["inputs"].get(other) != expected["inputs"][other] and (results / other).is_file():
                 check_file(jobs, results, other, any_sources=any_sources)
-        raise BadFile(path, told_difference(key, found, expected))
+        raise BadFile(path, describe_difference(key, found, expected))
     return status
 
 

@@ -15,7 +15,7 @@ from burridge_knopoff.figures.distance import FLOOR, linear_top
 from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_section
 from burridge_knopoff.figures.slip_events import draw_run
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled, write_figure
-from burridge_knopoff.provenance.seal import fit_together
+from burridge_knopoff.provenance.seal import is_consistent
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.catalogue import summarize
@@ -87,7 +87,7 @@ def _beside(result: Result, name: str) -> Result:
         known = f"summary/{name}.nc" in result.files
         reason = f": {error}" if path.exists() or known else ", which is not next to it"
         raise ValueError(f"{result.path}: its figure also needs {name}.nc{reason}") from None
-    if not fit_together(result.path, path):
+    if not is_consistent(result.path, path):
         raise ValueError(f"{result.path}: its figure also needs {name}.nc, but {path} is of another study")
     return other
 

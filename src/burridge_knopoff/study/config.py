@@ -35,7 +35,7 @@ A = Number(0.0, 100.0)
 
 
 def _values(one: Number, longest: float) -> Several:
-    """Return a list of numbers and of ranges, with the values from, from + step, … to; see `grid.values_of`."""
+    """Return the range of a list of numbers and of ranges {from, to, step}; see `grid.values_of`."""
     steps = {
         "from": Field(one, "first value"),
         "to": Field(one, "last value"),
@@ -77,7 +77,7 @@ class LawKeys(Range):
 
 
 def _part(kind: type, *without: str, **other: Field) -> dict[str, Field]:
-    """Return the settings of a class, without those in `without` and with those in `other` replaced."""
+    """Return the settings of a class except those in `without`, with those in `other` replaced."""
     return {name: other.get(name, field) for name, field in fields_of(kind).items() if name not in without}
 
 

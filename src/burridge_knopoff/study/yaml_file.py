@@ -1,4 +1,4 @@
-"""Reading YAML files: strictly, with a one-line error."""
+"""Reads YAML files strictly, with errors of one line."""
 
 from __future__ import annotations
 
@@ -15,19 +15,19 @@ from burridge_knopoff.values import joined
 _TAG = "tag:yaml.org,2002:"
 
 
-#: Limit on the values of a file: with aliases of aliases, a file of 500 bytes could fill any memory.
+#: Limit on the values of a file: nested aliases in a file of 500 bytes could fill any memory.
 MOST_VALUES = 10_000_000
 
 
 class ConfigError(ValueError):
-    """A config that is refused; the message is one line: file, key, value, expected values."""
+    """The error of a refused config; the message is one line: file, key, value, expected values."""
 
 
 class _Loader(yaml.SafeLoader):
-    """A loader with decimal numbers, and mappings whose keys are distinct texts.
+    """A loader that reads decimal numbers only, and mappings whose keys are distinct texts.
 
-    YAML reads 1e-6 as text, 010 as eight, 1:30 as ninety and 1_0 as ten. Here the first is a number and the others are
-    texts.
+    PyYAML reads 1e-6 as text, 010 as eight, 1:30 as ninety and 1_0 as ten. Here the first is a number and the others
+    are texts.
     """
 
     yaml_implicit_resolvers = {  # noqa: RUF012
@@ -43,7 +43,7 @@ class _Loader(yaml.SafeLoader):
             if key.tag not in (f"{_TAG}str", f"{_TAG}merge"):
                 raise ConfigError(f"got {joined('', str(key.value))} {place} as a key, expected text")
             if key.value in seen:
-                raise ConfigError(f"{joined('', key.value)}: stands twice {place}; once is allowed")
+                raise ConfigError(f"{joined('', key.value)}: given twice {place}, expected once")
             seen.add(key.value)
         return node
 
@@ -54,9 +54,9 @@ _Loader.add_implicit_resolver(f"{_TAG}float", re.compile(f"({_FLOAT})$"), list("
 
 
 def _size(node: yaml.Node, known: dict[yaml.Node, float]) -> float:
-    """Return the number of values in a node with its aliases expanded; known : of nodes visited before."""
+    """Return the number of values in a node with its aliases expanded; known : the numbers of nodes visited before."""
     if node not in known:
-        # Infinite until counted, in case the node contains itself.
+        # The node may contain itself: its number is infinite until it is counted.
         known[node] = math.inf
         inside = node.value if isinstance(node, yaml.CollectionNode) else ()
         parts = [part for item in inside for part in (item if isinstance(item, tuple) else (item,))]
@@ -95,7 +95,7 @@ def read_yaml(path: str | Path) -> Any:
         loader = _Loader(Path(path).read_text(encoding="utf-8-sig"))
         node = loader.get_single_node()
         if node is not None and _size(node, {}) > MOST_VALUES:
-            raise ConfigError(f"more than {MOST_VALUES} values, with its aliases written out")
+            raise ConfigError(f"more than {MOST_VALUES} values, with aliases expanded")
         return None if node is None else loader.construct_document(node)
     except ConfigError as error:
         reason = f"{error}"

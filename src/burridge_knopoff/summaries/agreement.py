@@ -21,7 +21,7 @@ from burridge_knopoff.motion.kind import (
     MotionKind,
     same_result,
 )
-from burridge_knopoff.study.formatting import counted
+from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
@@ -237,6 +237,6 @@ def _parting(row: xarray.Dataset) -> str:
             f"the last {apart[-1]:g}{kinds}."
         )
     if failed := int((verdict < 0).sum()):
-        values = f"{counted(failed, 'value')} of a {'is' if failed == 1 else 'are'} undetermined"
+        values = f"{format_count(failed, 'value')} of a {'is' if failed == 1 else 'are'} undetermined"
         text += f" {values}: a run did not complete, its kind is not clear, or <J> differs by about the tolerance."
     return text
