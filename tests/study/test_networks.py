@@ -86,7 +86,7 @@ def test_a_network_has_neither_phases_nor_other_lengths():
     study = load({"grid": [3, 1]})
     assert (study.single_length_key, study.is_mirror_symmetric) == ("grid", False)
     assert study.config["phases"]["a"] == []
-    assert not {"proof", "phases", "two_blocks"} & {*Jobs(study).there}
+    assert not {"proof", "phases", "two_blocks"} & {*Jobs(study).existing}
 
 
 def test_lists_are_as_long_as_a_command_can_be():

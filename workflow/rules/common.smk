@@ -15,8 +15,8 @@ def abouts(rule):
     """Return a function that tells what the files of a job must be made from, which they are sealed with."""
 
     def of_job(wildcards):
-        if rule.name not in JOBS.there:
-            raise ConfigError(rule.refused)
+        if rule.name not in JOBS.existing:
+            raise ConfigError(rule.refusal)
         return JOBS.abouts(rule, dict(wildcards))
 
     return of_job

@@ -6,7 +6,7 @@ RUNS = JOBS.rules["simulate"]
 rule points:
     """Simulate all points: each friction law from each initial state at each a, or at each point of the grid."""
     input:
-        made(JOBS.there.get("chunk", RUNS)),
+        made(JOBS.existing.get("chunk", RUNS)),
 
 
 rule simulate:
@@ -33,8 +33,8 @@ rule simulate:
         "{params.command} --out {output} > /dev/null 2> {log} || [ $? = 3 ]"
 
 
-if "simulate_solver" in JOBS.there:
-    AGAIN = JOBS.there["simulate_solver"]
+if "simulate_solver" in JOBS.existing:
+    AGAIN = JOBS.existing["simulate_solver"]
 
     use rule simulate as simulate_solver with:
         """Simulate one point again with another solver."""
@@ -57,8 +57,8 @@ if "simulate_solver" in JOBS.there:
             filled(AGAIN.message)
 
 
-if "chunk" in JOBS.there:
-    CHUNKS = JOBS.there["chunk"]
+if "chunk" in JOBS.existing:
+    CHUNKS = JOBS.existing["chunk"]
 
     rule chunk:
         """Simulate the points of a chunk that are missing, damaged or out of date."""

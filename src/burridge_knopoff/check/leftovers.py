@@ -20,7 +20,7 @@ def leftovers(results: Path, jobs: Jobs) -> list[Path]:
         for form in (*rule.files, f"logs/{rule.log_name}.log", f"benchmarks/{rule.log_name}.tsv"):
             # A point of another config may have other parameters.
             patterns.append(jobs.pattern(form.replace(point, "{law}/{initial}/{values}")))
-            known.update(form.format(**job) for job in rule.each if rule.name in jobs.there)
+            known.update(form.format(**job) for job in rule.each if rule.name in jobs.existing)
     # Each pattern has groups of the same names.
     pattern, whole = re.compile(re.sub(r"\?P<\w+>", "?:", "|".join(patterns))), results.resolve()
     names = {path: path.relative_to(results).as_posix() for path in sorted(results.rglob("*"))}
