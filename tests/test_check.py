@@ -144,7 +144,7 @@ def test_a_crashed_job_says_why_its_point_is_missing(results):
     log.write_text("Traceback (most recent call last):\n  File x\nMemoryError: no more\n")
     (finding,) = check_study(results).findings
     assert finding.reason == f"its job failed: MemoryError: no more (log {log})"
-    log.write_text("note: bk simulate: trajectory: 5000 is longer than the run: 300 were kept\n")
+    log.write_text("note: bk simulate: trajectory: 5000 is longer than the run; all 300 time units were recorded\n")
     (finding,) = check_study(results).findings
     assert finding.reason == "not made yet"
 

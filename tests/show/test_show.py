@@ -117,7 +117,7 @@ def test_what_cannot_be_drawn_is_said_in_a_line(study, tmp_path, capsys):
     alone = shutil.copy(study / "summary/basins.nc", tmp_path)
     assert "its figure also needs attractors.nc" in shown(capsys, alone, "--plot", "x.png", code=2)
     assert "x.doc: got '.doc', expected .png | .pdf | .svg" in shown(capsys, alone, "--plot", "x.doc", code=2)
-    assert "there is no folder no" in shown(capsys, alone, "--plot", "no/x.png", code=2)
+    assert "folder no does not exist" in shown(capsys, alone, "--plot", "no/x.png", code=2)
 
 
 def test_a_part_of_a_summary_is_described_and_not_drawn(small_studies, tmp_path, capsys):

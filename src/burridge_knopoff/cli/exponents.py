@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import argparse
 
-from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
+from burridge_knopoff.cli.options import add, add_model, add_state, model_line, model_of, settings_of, state_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
-DESCRIPTION = """Compute Lyapunov exponents of the motion from an initial state, and classify the motion. For a chain
-that is its own mirror image, also compute the transverse exponent: if negative, nearby mirror blocks synchronize."""
+DESCRIPTION = """Compute the Lyapunov exponents of the motion from an initial state, and classify the motion. For a
+mirror-symmetric chain, also compute the transverse exponent: if it is negative, mirror synchrony is stable."""
 
 EXAMPLES = """  bk exponents --law linearized --a 0.08 --initial plus
   bk exponents --law nonlinear --a 0.22 --transient 3000 --window 20000 --lyapunov-exponents 6 --out chaos.nc
@@ -41,10 +41,10 @@ def run(options: argparse.Namespace) -> int:
     state = state_of(options) or PAPER_STATES["minus"]
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
     if model.chain.is_mirror_symmetric:
-        # Refuse it before the run, not after.
+        # Refuse the window before the run, not after.
         window_range(model.chain).form(options.window, "window")
     trajectory = simulation.run(model, state, settings_of(Settings, options))
-    print(f"{said_of(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
+    print(f"{model_line(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
     exponents = zip(trajectory.lyapunov_exponent, trajectory.lyapunov_error, strict=True)
     rows = [(str(k), f"{value:z.6f}", f"{error:.6f}") for k, (value, error) in enumerate(exponents, 1)]
     print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-DESCRIPTION = """Delete files of a law, an initial state, a value of a or a stage that the config of the last run lacks,
-with their logs and benchmarks, and list them. Files with any other name stay."""
+DESCRIPTION = """Delete and list files of laws, initial states, values of a and stages that are no longer in the config
+of the last run, with their logs and benchmarks. Files with other names are kept."""
 
 EXAMPLES = """  bk prune --dry-run results/paper
   bk prune results/paper

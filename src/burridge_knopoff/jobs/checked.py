@@ -19,8 +19,8 @@ def check_file(jobs: Jobs, results: Path, name: str, *, any_sources: bool = Fals
 
     any_sources : accept a file made by other sources
 
-    Raises BadFile, one line with the difference, if the file is missing, damaged, or not the expected one. If a bad input
-    is the reason, the error names that input.
+    Raises BadFile, one line with the difference, if the file is missing, damaged, or not the expected one. If a bad
+    input is the reason, the error names that input.
     """
     path = results / name
     found, status = read_seal(path)

@@ -128,7 +128,7 @@ class Jobs:
         }
 
     def _sources_of(self, form: str, job: Wildcards) -> Iterator[tuple[Rule, Wildcards]]:
-        """Yield the jobs that make the files of a form that a job reads: those with equal values of common wildcards."""
+        """Yield the jobs that make the files of a form that a job reads: those with equal common wildcards."""
         rule = self._made_by[form]
         for other in rule.each:
             if all(other[name] == value for name, value in job.items() if name in other):
