@@ -49,7 +49,7 @@ def real_array(values: Any, key: str) -> np.ndarray:
     return filled
 
 
-def read_only(array: np.ndarray) -> np.ndarray:
+def read_only_copy(array: np.ndarray) -> np.ndarray:
     """Return a read-only copy of an array, for values that are computed once and shared."""
     array = np.array(array)
     array.setflags(write=False)
@@ -89,22 +89,22 @@ def each_instance_of(values: Any, kind: type[_T], key: str) -> list[_T]:
 
 def refusal(key: str, value: Any, allowed: object) -> ValueError:
     """Return the error of a refused value: `key: got X, expected Y`."""
-    return ValueError(f"{key}{': ' if key else ''}got {shown(value)}, expected {allowed}")
+    return ValueError(f"{key}{': ' if key else ''}got {format_value(value)}, expected {allowed}")
 
 
 def cut(text: str, longest: int = LONGEST) -> str:
     """Return a text as one printable line, cut if it is long."""
     # Only the head is read, however long the text is.
-    head = printable(" ".join(text[: 4 * longest].split()))
+    head = escape_unprintable(" ".join(text[: 4 * longest].split()))
     return head if len(head) <= longest and len(text) <= 4 * longest else f"{head[: longest - 3]}..."
 
 
-def printable(text: str) -> str:
+def escape_unprintable(text: str) -> str:
     """Return a text with escapes for unprintable characters, such as a line break in the name of a file."""
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
 
 
-def shown(value: Any) -> str:
+def format_value(value: Any) -> str:
     """Return any value as Python writes it, in one line and cut.
 
     Only the part that is shown is written: with aliases, a few bytes of YAML can describe a very long value.
@@ -117,10 +117,10 @@ def shown(value: Any) -> str:
     return cut(text)
 
 
-def joined(key: str, name: Any) -> str:
+def full_key(key: str, name: Any) -> str:
     """Return the full key of an entry; a name with unusual characters is quoted, and a long name is cut."""
     plain = isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9_.+-]+", name)
-    words = cut(name) if plain else cut(ascii(name[: LONGEST + 1])) if isinstance(name, str) else shown(name)
+    words = cut(name) if plain else cut(ascii(name[: LONGEST + 1])) if isinstance(name, str) else format_value(name)
     return f"{key}.{words}" if key else words
 
 

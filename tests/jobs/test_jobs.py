@@ -46,7 +46,7 @@ def test_what_is_left_out_has_no_values_of_a():
     """So that nobody who looks at the section alone takes it for wanted."""
     study = jobs_of(without=["attractors", "solvers"]).study
     assert (study.basin_maps, study.config["phases"]["a"], study.config["solvers"]["a"]) == ([], [], [])
-    assert study.left_out == ("attractors", "bifurcations", "edges", "basins", "phases", "solvers")
+    assert study.omitted_stages == ("attractors", "bifurcations", "edges", "basins", "phases", "solvers")
 
 
 def test_stages_that_are_left_out_take_with_them_what_needs_their_results():

@@ -12,7 +12,7 @@ import pytest
 from jsonschema import Draft7Validator
 
 from burridge_knopoff.study.config import CONFIG
-from burridge_knopoff.study.grid import given_grid
+from burridge_knopoff.study.grid import resolve_grid
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from tests.bad_configs import BAD_FILES
 from tests.fuzzing.test_configs import RANGE_OF, SCHEMA
@@ -29,7 +29,7 @@ BEYOND_A_SCHEMA = ("got nan", r"got 'x\n'", "low < high", "at least low", "canno
 def range_error(config):
     """Return the message with which a range of a key refuses a config; empty if only other rules may refuse it."""
     try:
-        CONFIG.form(given_grid(config), "")
+        CONFIG.form(resolve_grid(config), "")
     except ValueError as error:
         return str(error)
     return ""

@@ -40,11 +40,11 @@ def missing_files(results: Path, jobs: Jobs) -> dict[str, Path]:
 
     The job of a file without a log was not requested yet, or waits for other missing files.
     """
-    logs = {name: results / log_of(*made) for name, made in jobs.all_files.items()}
+    logs = {name: results / log_path(*made) for name, made in jobs.all_files.items()}
     return {name: log for name, log in logs.items() if log.exists() and not (results / name).exists()}
 
 
-def log_of(rule: Rule, job: Wildcards) -> str:
+def log_path(rule: Rule, job: Wildcards) -> str:
     """Return the log of a job."""
     return f"logs/{rule.log_name}.log".format(**job)
 
@@ -53,7 +53,7 @@ def run_files(jobs: Jobs) -> Iterator[tuple[str, Wildcards, str]]:
     """Yield the point file of each run, its wildcards, and its log."""
     for rule in jobs.runs():
         for job in rule.each:
-            yield rule.files[0].format(**job), job, log_of(rule, job)
+            yield rule.files[0].format(**job), job, log_path(rule, job)
 
 
 def delete(results: Path, paths: list[Path]) -> None:

@@ -113,8 +113,8 @@ def check_study(results: str | Path) -> Check:
     missing = missing_files(results, jobs)
     rest = [*(path.relative_to(results).as_posix() for path in named if path.is_file()), *missing]
     found = [
-        *(_of_point(path, *run) for path, run in points.items()),
-        *(_of_file(jobs, results, name, missing.get(name, Path())) for name in rest),
+        *(_point_finding(path, *run) for path, run in points.items()),
+        *(_file_finding(jobs, results, name, missing.get(name, Path())) for name in rest),
     ]
     return Check(
         results,
@@ -141,30 +141,30 @@ def _points(results: Path, jobs: Jobs) -> dict[Path, tuple[str, Path]]:
     return points
 
 
-def _of_point(path: Path, command: str, log: Path) -> Finding | None:
+def _point_finding(path: Path, command: str, log: Path) -> Finding | None:
     """Return the problem with the point file of a run, or None."""
     try:
         status = check_run(path, command)
     except BadFile as error:
-        return _problem(path, error, log)
+        return _error_finding(path, error, log)
     return None if status == "completed" else Finding("failed", path, f"ended with status {status}")
 
 
-def _of_file(jobs: Jobs, results: Path, name: str, log: Path) -> Finding | None:
+def _file_finding(jobs: Jobs, results: Path, name: str, log: Path) -> Finding | None:
     """Return the problem with another file, by its name in the results, or None."""
     path = results / name
     try:
         check_file(jobs, results, name)
         ended = open_summary(path).get("status") if path.suffix == ".nc" else None
     except BadFile as error:
-        return _problem(path, error, log)
+        return _error_finding(path, error, log)
     # A catalogue is the result of a single run, which has a status.
     if ended is None or ended.dims or ENDS[ended.item()] == "completed":
         return None
     return Finding("failed", path, f"ended with status {ENDS[ended.item()]}")
 
 
-def _problem(path: Path, error: BadFile, log: Path) -> Finding:
+def _error_finding(path: Path, error: BadFile, log: Path) -> Finding:
     reason = error.reason if error.path == path else f"was made from {error.path}, which is {error.kind}"
     if error.kind == "missing":
         words = failure_reason(log)

@@ -68,7 +68,7 @@ def build_parser(only: str | None = None) -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `bk`; return its exit code: 0, or 2 for wrong input (one line on stderr)."""
-    from burridge_knopoff.cli.options import check_out, join_signed
+    from burridge_knopoff.cli.options import check_output, join_signed
 
     if sys.stdout is None:
         # A standard stream is closed: the next file opened would take its place.
@@ -89,16 +89,16 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         for name in WRITTEN:
             if (path := getattr(options, name, None)) is not None:
-                check_out(path)
+                check_output(path)
         code = _module(options.command).run(options)
         sys.stdout.flush()
     except BrokenPipeError:
         _write_no_more()
         return READER_GONE
     except (ValueError, OSError, ImportError) as error:
-        from burridge_knopoff.values import printable
+        from burridge_knopoff.values import escape_unprintable
 
-        words = printable(f"{error}")
+        words = escape_unprintable(f"{error}")
         # Other errors name the file.
         if isinstance(error, OSError) and error.errno is not None and error.filename is None:
             words = f"standard output: cannot be written: {error.strerror}"

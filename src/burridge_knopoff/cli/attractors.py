@@ -9,8 +9,8 @@ import numpy as np
 
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.cli.options import (
-    add,
     add_model,
+    add_settings,
     add_state,
     command_of,
     model_line,
@@ -45,12 +45,12 @@ def add_search(parser: argparse.ArgumentParser, *more: str, **defaults: Any) -> 
     more : additional settings of the search; defaults : values that replace the settings' own defaults
     """
     search = parser.add_argument_group("search")
-    add(search, Settings, "start")
+    add_settings(search, Settings, "start")
     names = ("samples", *more, "seed", "transient", "window", "time_limit", "resolution")
-    add(search, SearchSettings, *names, **defaults)
-    add(search, SearchSettings, "perturbations", "lifetime")
-    add(search, SearchSettings, "position", "velocity", suffix="_box")
-    add(parser.add_argument_group("kinds of motion"), MotionSettings)
+    add_settings(search, SearchSettings, *names, **defaults)
+    add_settings(search, SearchSettings, "perturbations", "lifetime")
+    add_settings(search, SearchSettings, "position", "velocity", suffix="_box")
+    add_settings(parser.add_argument_group("kinds of motion"), MotionSettings)
 
 
 def search_of(options: argparse.Namespace) -> SearchSettings:

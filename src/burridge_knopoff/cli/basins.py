@@ -9,8 +9,8 @@ from dataclasses import asdict
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.cli.attractors import add_search, search_of
 from burridge_knopoff.cli.options import (
-    add,
     add_model,
+    add_settings,
     add_state,
     command_of,
     model_line,
@@ -20,7 +20,7 @@ from burridge_knopoff.cli.options import (
 )
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
-from burridge_knopoff.values import shown
+from burridge_knopoff.values import format_value
 
 DESCRIPTION = """Map the attractor reached from each state in a plane of initial states, over U_1(0) and U_N(0).
 The initial state gives all other positions and velocities. Attractors are searched for first, as by `bk attractors`."""
@@ -36,7 +36,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_state(parser, "minus")
     plane = parser.add_argument_group("map")
     # Fewer pixels and samples than in a study, like `basin_map`.
-    add(plane, BasinSettings, "pixels", "first_position", "last_position", "threads", pixels=64)
+    add_settings(plane, BasinSettings, "pixels", "first_position", "last_position", "threads", pixels=64)
     add_search(parser, samples=100)
     out = parser.add_argument_group("files")
     out.add_argument("--out", metavar="FILE", help="write the map as netCDF, in the form of basins.nc")
@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
     out, attractors_out = options.out, options.attractors_out
     if out and attractors_out and os.path.realpath(out) == os.path.realpath(attractors_out):
         raise ValueError(
-            f"--attractors-out: got {shown(attractors_out)}, expected another file: --out writes the map there"
+            f"--attractors-out: got {format_value(attractors_out)}, expected another file: --out writes the map there"
         )
     state = state_of(options) or PAPER_STATES["minus"]
     model = model_of(options, state)

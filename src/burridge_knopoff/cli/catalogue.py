@@ -7,8 +7,8 @@ import argparse
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.catalogue.slope import format_p_value
 from burridge_knopoff.cli.options import (
-    add,
     add_model,
+    add_settings,
     add_state,
     command_of,
     model_line,
@@ -37,11 +37,11 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "minus")
     run = parser.add_argument_group("run")
-    add(run, Settings, "start", "solver", "step")
-    add(run, CatalogueSettings, "loading", "transient", "window")
-    add(parser.add_argument_group("slope"), CatalogueSettings, "low", "high")
+    add_settings(run, Settings, "start", "solver", "step")
+    add_settings(run, CatalogueSettings, "loading", "transient", "window")
+    add_settings(parser.add_argument_group("slope"), CatalogueSettings, "low", "high")
     out = parser.add_argument_group("output")
-    add(out, CatalogueSettings, "profiles")
+    add_settings(out, CatalogueSettings, "profiles")
     out.add_argument("--out", metavar="FILE", help="write the events as netCDF; `bk show --plot` draws them")
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from burridge_knopoff.cli.options import add, add_model, add_state, model_line, model_of, settings_of, state_of
+from burridge_knopoff.cli.options import add_model, add_settings, add_state, model_line, model_of, settings_of, state_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settings import Settings
@@ -24,9 +24,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "minus")
     run = parser.add_argument_group("run")
-    add(run, Settings, "start", "transient", "window", "batches", "event_window")
-    add(run, Settings, "lyapunov_exponents", "lyapunov_alignment")
-    add(parser.add_argument_group("kinds of motion"), MotionSettings)
+    add_settings(run, Settings, "start", "transient", "window", "batches", "event_window")
+    add_settings(run, Settings, "lyapunov_exponents", "lyapunov_alignment")
+    add_settings(parser.add_argument_group("kinds of motion"), MotionSettings)
     parser.add_argument("--out", metavar="FILE", help="also write the run as a point file (netCDF)")
 
 

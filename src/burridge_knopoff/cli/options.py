@@ -20,7 +20,7 @@ from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.provenance.files import check_target
 from burridge_knopoff.running.command import CHAIN_OPTIONS
-from burridge_knopoff.values import shown
+from burridge_knopoff.values import format_value
 
 _T = TypeVar("_T")
 
@@ -35,40 +35,40 @@ def _reader(pattern: str, words: str, read: Callable[[str], Any] = str) -> Calla
         with contextlib.suppress(ValueError):
             if re.fullmatch(pattern, text):
                 return read(text)
-        raise argparse.ArgumentTypeError(f"got {shown(text)}, expected {words}")
+        raise argparse.ArgumentTypeError(f"got {format_value(text)}, expected {words}")
 
     return value
 
 
 # Python's own conversion also accepts 1_0 for ten, and digits of every script.
-number = _reader(r"[-+.0-9a-zA-Z]+", "a number", float)
-how_many = _reader(r"[0-9]{1,9}", "a whole number, 0 or more", int)
-count = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
-_numbers = _reader(
+read_number = _reader(r"[-+.0-9a-zA-Z]+", "a number", float)
+read_natural = _reader(r"[0-9]{1,9}", "a whole number, 0 or more", int)
+read_whole = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
+_read_numbers = _reader(
     r"[-+.0-9a-zA-Z,]+", "numbers with commas between them", lambda text: tuple(map(float, text.split(",")))
 )
-_counts = _reader(
+_read_wholes = _reader(
     r"[0-9]{1,9}(,[0-9]{1,9})*", "whole numbers with commas between them", lambda text: tuple(map(int, text.split(",")))
 )
-_named_number = _reader(
+_read_named_number = _reader(
     r"(?!(?:name|law|formula)=)[A-Za-z_][A-Za-z0-9_]*=.*",
     "NAME=NUMBER, such as sigma=0.01",
-    lambda text: (text.partition("=")[0], number(text.partition("=")[2])),
+    lambda text: (text.partition("=")[0], read_number(text.partition("=")[2])),
 )
 
 
-def _strength(text: str) -> str | float | tuple[float, ...]:
-    values = text if text == NEIGHBOURS or text.startswith("random=") else _numbers(text)
+def _read_strength(text: str) -> str | float | tuple[float, ...]:
+    values = text if text == NEIGHBOURS or text.startswith("random=") else _read_numbers(text)
     return values[0] if isinstance(values, tuple) and len(values) == 1 else values
 
 
 #: The converter for each kind of range; for other kinds the text is kept.
 _READERS: dict[type, Callable[[str], Any]] = {
-    Number: number,
-    Whole: count,
-    Several: _numbers,
-    Interval: _numbers,
-    Either: _strength,
+    Number: read_number,
+    Whole: read_whole,
+    Several: _read_numbers,
+    Interval: _read_numbers,
+    Either: _read_strength,
 }
 
 #: Names of option values in the help, if they are not the name of the option.
@@ -98,7 +98,7 @@ def join_signed(arguments: Sequence[str]) -> list[str]:
     return joined
 
 
-def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any) -> None:
+def add_settings(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any) -> None:
     """Add settings of a class as options: those with these names, or all.
 
     suffix : text appended to their names
@@ -114,7 +114,7 @@ def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any
         shown = ",".join(f"{item:g}" for item in default) if isinstance(default, tuple) else default
         option = group.add_argument(
             f"--{key.replace('_', '-')}",
-            type=_counts if name == "grid" else _READERS.get(type(field.range), str),
+            type=_read_wholes if name == "grid" else _READERS.get(type(field.range), str),
             default=default,
             metavar="LOW,HIGH" if isinstance(field.range, Interval) else _METAVARS.get(key),
             help=words if default is None else f"{words} (default: {shown})",
@@ -142,7 +142,7 @@ def add_model(parser: argparse.ArgumentParser) -> None:
     laws.add_argument("--formula", metavar="PHI", help="or a formula of u (the slip speed U'), a and other names")
     model.add_argument(
         "--number",
-        type=_named_number,
+        type=_read_named_number,
         action="append",
         default=[],
         metavar="NAME=NUMBER",
@@ -154,9 +154,9 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="name of the law in files (default: LAW)",
     )
-    model.add_argument("--a", required=True, type=number, help="friction parameter, 0 or more")
-    add(model, Chain, *CHAIN_OPTIONS)
-    add(model, Model, "v", "contact")
+    model.add_argument("--a", required=True, type=read_number, help="friction parameter, 0 or more")
+    add_settings(model, Chain, *CHAIN_OPTIONS)
+    add_settings(model, Model, "v", "contact")
 
 
 def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
@@ -173,8 +173,8 @@ def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
         f"{OWN} for a state given below)",
     )
     _complete(initial, PAPER_STATES)
-    state.add_argument("--blocks", type=count, help="number of blocks N (default: the number of positions)")
-    add(state, InitialState, "position", "velocity")
+    state.add_argument("--blocks", type=read_whole, help="number of blocks N (default: the number of positions)")
+    add_settings(state, InitialState, "position", "velocity")
 
 
 def state_of(options: argparse.Namespace) -> InitialState | None:
@@ -201,7 +201,7 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
         )
     elif name in PAPER_STATES and (given[0] is None) != (given[1] is None):
         raise ValueError(
-            f"initial: got {shown(name)} with numbers other than the paper's, expected another name or none"
+            f"initial: got {format_value(name)} with numbers other than the paper's, expected another name or none"
         )
     return initial_state(name, *given)
 
@@ -230,7 +230,7 @@ def model_of(options: argparse.Namespace, state: InitialState | None) -> Model:
     return Model(chain, simulated_law(options), options.v, options.contact)
 
 
-def check_out(path: str) -> None:
+def check_output(path: str) -> None:
     """Raise OSError, one line, if a file cannot be written, before the work starts."""
     folder = Path(path).parent
     if not folder.exists():

@@ -5,7 +5,16 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from burridge_knopoff.cli.options import add, add_model, add_state, how_many, model_line, model_of, number, state_of
+from burridge_knopoff.cli.options import (
+    add_model,
+    add_settings,
+    add_state,
+    model_line,
+    model_of,
+    read_natural,
+    read_number,
+    state_of,
+)
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.running.settings import LONGEST, Settings
 
@@ -36,16 +45,19 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "none: the synchronized orbit")
     motion = parser.add_argument_group("motion from this state")
-    add(motion, Settings, "start")
+    add_settings(motion, Settings, "start")
     parser.add_argument(
         "--events",
-        type=how_many,
+        type=read_natural,
         default=20,
         metavar="N",
         help="number of stops and starts printed (default: %(default)s)",
     )
     motion.add_argument(
-        "--settling", type=number, default=3000.0, help="time for which the motion settles first (default: %(default)g)"
+        "--settling",
+        type=read_number,
+        default=3000.0,
+        help="time for which the motion settles first (default: %(default)g)",
     )
 
 

@@ -7,7 +7,7 @@ import math
 import sys
 from typing import TYPE_CHECKING
 
-from burridge_knopoff.cli.options import add, add_model, add_state, model_of, settings_of, state_of
+from burridge_knopoff.cli.options import add_model, add_settings, add_state, model_of, settings_of, state_of
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
@@ -41,10 +41,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "minus")
     run = parser.add_argument_group("run")
-    add(run, Settings, *(name for name in fields_of(Settings) if name not in _KEPT))
+    add_settings(run, Settings, *(name for name in fields_of(Settings) if name not in _KEPT))
     kept = parser.add_argument_group("output")
     kept.add_argument("--out", required=True, metavar="FILE", help="point file to write (netCDF)")
-    add(kept, Settings, *_KEPT)
+    add_settings(kept, Settings, *_KEPT)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -67,7 +67,7 @@ class Jobs:
             makers = [self._made_by[form] for forms in reads.values() for form in forms]
             possible = (
                 declared.over in ("any", "several" if self.study.is_plane else "a")
-                and declared.stage not in self.study.left_out
+                and declared.stage not in self.study.omitted_stages
                 and (declared.optional_reads or reads == inputs)
             )
             rule = replace(

@@ -26,7 +26,7 @@ def catalogue_keys(study: Study) -> dict[str, Any]:
     return {key: value for key, value in study.config["catalogue"].items() if key not in others}
 
 
-def catalogue_run(study: Study, law: str) -> dict[str, Any]:
+def catalogue_run_config(study: Study, law: str) -> dict[str, Any]:
     """Return start, solver and step of the points, with which catalogues are recorded."""
     settings = study.settings(law)
     return {"start": settings.start, "solver": settings.solver, "step": settings.step}
@@ -49,13 +49,13 @@ def other_length_config(study: Study, laws: Collection[str] | None = None) -> di
     return {**config, "chain": {name: value for name, value in config["chain"].items() if name != "blocks"}}
 
 
-def refused_length(study: Study) -> str:
+def length_refusal(study: Study) -> str:
     """Return the reason why a study can have no chains of other lengths; empty if it can."""
     if key := study.single_length_key:
         return f"chain.{key}: got {study.config['chain'][key]}, expected one number for chains of other lengths"
     return ""
 
 
-def of_laws(study: Study) -> list[dict[str, str]]:
+def law_jobs(study: Study) -> list[dict[str, str]]:
     """Return the wildcards of a job for each law."""
     return [{"law": law} for law in study.laws]

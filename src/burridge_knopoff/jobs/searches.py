@@ -6,7 +6,7 @@ from collections.abc import Callable
 from math import prod
 from typing import Any
 
-from burridge_knopoff.jobs.params import basin_keys, keys, model_config, motion_config, of_laws
+from burridge_knopoff.jobs.params import basin_keys, keys, law_jobs, model_config, motion_config
 from burridge_knopoff.jobs.rule import Rule, Shown, Wildcards
 from burridge_knopoff.study.study import Study
 
@@ -23,7 +23,7 @@ def attractors(study: Study) -> list[Rule]:
             ("attractors/{law}.nc", "refined/{law}.nc", "returns/{law}.nc"),
             "summaries.attractors_of_law:make",
             params=lambda job: {**settings, "grid": grid, "model": model_config(study, [job["law"]])},
-            each=of_laws(study),
+            each=law_jobs(study),
             stage="attractors",
             cores=0,
             memory=300,
@@ -140,7 +140,7 @@ def bifurcations(study: Study) -> list[Rule]:
                 "model": model_config(study, [job["law"]]),
                 "a": min(study.grid.values()),
             },
-            each=of_laws(study),
+            each=law_jobs(study),
             stage="bifurcations",
             cores=0,
             memory=350,
@@ -167,7 +167,7 @@ def bifurcations(study: Study) -> list[Rule]:
                 "edges": {key: value for key, value in config.items() if key != "a"},
                 "model": model_config(study, [job["law"]]),
             },
-            each=of_laws(study),
+            each=law_jobs(study),
             stage="edges",
             exists=bool(config["a"]),
             cores=0,
@@ -219,7 +219,7 @@ def phases(study: Study) -> list[Rule]:
                 "phases": of_phases,
                 "model": model_config(study, [job["law"]]),
             },
-            each=of_laws(study),
+            each=law_jobs(study),
             stage="phases",
             exists=bool(config["a"]),
             cores=0,

@@ -18,7 +18,7 @@ def summaries(study: Study) -> list[Rule]:
     """Summaries of points, and of models without points: one netCDF file per question, by the module of its name."""
     of_paper = {name for figure in figure_descriptions() if figure.paper for name in figure.inputs}
 
-    def of_points(
+    def point_summary(
         name: str,
         purpose: str,
         *used: str,
@@ -51,7 +51,7 @@ def summaries(study: Study) -> list[Rule]:
             group="summaries",
         )
 
-    def of_models(name: str, purpose: str) -> Rule:
+    def model_summary(name: str, purpose: str) -> Rule:
         return Rule(
             name,
             purpose,
@@ -71,42 +71,42 @@ def summaries(study: Study) -> list[Rule]:
         )
 
     return [
-        of_points(
+        point_summary(
             "mean_distance",
             "Average the distance J between the end blocks over each run.",
             "synchronization_threshold",
         ),
-        of_points(
+        point_summary(
             "bifurcation_diagram",
             "Collect the section points of all runs for the bifurcation diagrams.",
             memory=1000,
         ),
-        of_points(
+        point_summary(
             "lyapunov",
             "Estimate the Lyapunov exponents of each run and determine its kind of motion.",
             *("lyapunov_exponents", "synchronization_threshold", "motion"),
         ),
-        of_points(
+        point_summary(
             "agreement",
             "Determine where each friction law agrees with the first.",
             *("synchronization_threshold", "agreement"),
             read=("lyapunov", "attractors"),
             texts={"csv": "table of the agreement", "txt": "agreement in words"},
         ),
-        of_points(
+        point_summary(
             "stick_slip",
             "Measure the stick-slip cycles of each block in each run.",
             *("transient", "window", "batches"),
         ),
-        of_models(
+        model_summary(
             "orbits",
             "Continue the synchronized orbit in a to its loss of stability, and the orbit that branches off there.",
         ),
-        of_models(
+        model_summary(
             "equilibrium",
             "Find uniform sliding and the eigenvalues of its perturbations.",
         ),
-        of_points(
+        point_summary(
             "grid",
             "Collect the results of all runs over the study's parameters.",
             *("lyapunov_exponents", "synchronization_threshold", "motion"),

@@ -8,12 +8,12 @@ from burridge_knopoff.attractors.settings import OF_GIVEN_STATES
 from burridge_knopoff.jobs import searches
 from burridge_knopoff.jobs.params import (
     catalogue_keys,
-    catalogue_run,
+    catalogue_run_config,
     keys,
+    length_refusal,
     model_config,
     motion_config,
     other_length_config,
-    refused_length,
 )
 from burridge_knopoff.jobs.rule import Rule, Shown
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
@@ -78,7 +78,7 @@ def solvers(study: Study) -> list[Rule]:
             ("summary/solvers.nc",),
             "summaries.solvers:make",
             reads={"others": f"solvers/{{solver}}/{study.point_file}"},
-            points=lambda job: {**study.points, "parameters": {"a": study.compared}},
+            points=lambda job: {**study.points, "parameters": {"a": study.compared_values}},
             params=lambda job: {
                 "others": {
                     solver: {law: asdict(study.settings(law, solver)) for law in laws}
@@ -130,7 +130,7 @@ def catalogue(study: Study) -> list[Rule]:
                 "model": model_config(study, [job["law"]]),
                 "a": study.value(job["a"]),
                 "state": state,
-                "run": catalogue_run(study, job["law"]),
+                "run": catalogue_run_config(study, job["law"]),
                 "catalogue": catalogue_keys(study),
             },
             each=[{"law": law, "a": a} for law in study.laws for a in study.catalogue_a],
@@ -183,7 +183,7 @@ def two_blocks(study: Study) -> list[Rule]:
             },
             stage="two_blocks",
             exists=study.has_several_laws and not study.single_length_key,
-            refusal=refused_length(study),
+            refusal=length_refusal(study),
             cores=0,
             memory=300,
             minutes=30,
@@ -216,7 +216,7 @@ def chains(study: Study) -> list[Rule]:
             each=[{"blocks": str(number)} for number in sorted(study.chain_lengths, reverse=True)],
             stage="chains",
             exists=not study.single_length_key,
-            refusal=refused_length(study),
+            refusal=length_refusal(study),
             requested="blocks" in config,
             minutes=30,
             priority=1,
@@ -231,7 +231,7 @@ def chains(study: Study) -> list[Rule]:
             reads={"parts": "chains/blocks{blocks}.nc"},
             stage="chains",
             exists=not study.single_length_key,
-            refusal=refused_length(study),
+            refusal=length_refusal(study),
             group="summaries",
         ),
     ]

@@ -14,7 +14,7 @@ from typing import Any
 
 from burridge_knopoff.provenance.files import display_path, write_text
 from burridge_knopoff.provenance.sources import PACKAGE, SOFTWARE
-from burridge_knopoff.values import printable
+from burridge_knopoff.values import escape_unprintable
 
 NAME = "study.json"
 
@@ -76,14 +76,13 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
     except OSError:
-        raise ValueError(
-            f"{printable(str(results))}: not the results of a study: it has no {NAME}, which `snakemake` writes"
-        ) from None
+        folder = escape_unprintable(str(results))
+        raise ValueError(f"{folder}: not the results of a study: no {NAME} in it, which `snakemake` writes") from None
     except (ValueError, RecursionError):
         record = None
     # Records of earlier versions have more keys.
     if not isinstance(record, dict) or {key: type(record.get(key)) for key in _TYPES} != _TYPES:
-        raise ValueError(f"{printable(str(path))}: not a valid record; run snakemake again to rewrite it")
+        raise ValueError(f"{escape_unprintable(str(path))}: not a valid record; run snakemake again to rewrite it")
     return record
 
 

@@ -22,12 +22,12 @@ from typing import Any
 from burridge_knopoff.provenance.difference import difference
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.record import remake_command
-from burridge_knopoff.values import printable
+from burridge_knopoff.values import escape_unprintable
 
 _MARK = b"\n#seal "
 _SEAL = re.compile(rb"\n#seal (.+) ([a-z_]+) ([0-9a-f]{64})\n\Z")
 #: Suffixes of the files that contain their seals: netCDF files and cached results.
-_INSIDE = (".nc", "")
+_SEALED_INSIDE = (".nc", "")
 #: Keys of a description that depend on the sources, as the digests of inputs do.
 SOURCE_KEYS = ("make", "of_points", "sources")
 #: Keys whose difference is reported last, since it may follow from others.
@@ -46,7 +46,7 @@ class BadFile(ValueError):
 
     def __init__(self, path: str | Path, reason: str, kind: str = "stale") -> None:
         self.path, self.reason, self.kind = Path(path), reason, kind
-        super().__init__(f"{printable(str(path))}: {reason}{REMEDY}{remake_command(path)}")
+        super().__init__(f"{escape_unprintable(str(path))}: {reason}{REMEDY}{remake_command(path)}")
 
 
 def identity(*parts: str) -> str:
@@ -62,7 +62,7 @@ def canonical_json(about: Any) -> str:
 def seal_path(path: str | Path) -> Path:
     """Return the file that contains the seal: the file itself or, for a text or a picture, one next to it."""
     path = Path(path)
-    return path if path.suffix in _INSIDE else path.with_name(f".{path.name}.seal")
+    return path if path.suffix in _SEALED_INSIDE else path.with_name(f".{path.name}.seal")
 
 
 def write_sealed(
@@ -79,7 +79,7 @@ def write_sealed(
     def write_and_seal(name: str) -> None:
         nonlocal line
         write(name)
-        line = _line(Path(name).read_bytes(), head)
+        line = _seal_line(Path(name).read_bytes(), head)
         if seal_path(path) == Path(path):
             with open(name, "ab") as file:
                 file.write(line)
@@ -89,7 +89,7 @@ def write_sealed(
         write_whole(seal_path(path), lambda name: Path(name).write_bytes(line))
 
 
-def _line(content: bytes, head: bytes) -> bytes:
+def _seal_line(content: bytes, head: bytes) -> bytes:
     head = _MARK.rstrip() + head
     return head + hashlib.sha256(content + head).hexdigest().encode() + b"\n"
 
@@ -204,10 +204,10 @@ def describe_difference(key: str, found: Mapping[str, Any], expected: Mapping[st
             one, other = list(one), list(other)
     if place[0] == "inputs" and len(place) > 1:
         return f"was made from another {place[1]}"
-    values = f"got {_words(one)}, expected {_words(other)}"
+    values = f"got {_format_value(one)}, expected {_format_value(other)}"
     return f"is another file: {values}" if place == ["file"] else f"was made with {'.'.join(place)}: {values}"
 
 
-def _words(value: Any) -> str:
+def _format_value(value: Any) -> str:
     text = "nothing" if value is None else value if isinstance(value, str) else json.dumps(value)
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"

@@ -64,7 +64,7 @@ def sources_of(*entries: str | Path) -> tuple[Path, ...]:
         path = waiting.pop()
         if path not in found:
             found.add(path)
-            waiting += _needs(path)
+            waiting += _imported_files(path)
     return tuple(sorted(found, key=str))
 
 
@@ -108,15 +108,15 @@ def _code(path: Path) -> str:
 def code_of(text: str) -> str:
     """Return Python code without comments, docstrings, empty lines and trailing blanks."""
     text = _WORD.sub(lambda word: "" if word[0][0] == "#" else word[0], text)
-    return _without_blanks(_DOCSTRING.sub(r"\1", text))
+    return _strip_blank_lines(_DOCSTRING.sub(r"\1", text))
 
 
 def code_of_cpp(text: str) -> str:
     """Return C++ code without comments, empty lines and trailing blanks."""
-    return _without_blanks(_CPP.sub(lambda word: " " if word["comment"] else word[0], text))
+    return _strip_blank_lines(_CPP.sub(lambda word: " " if word["comment"] else word[0], text))
 
 
-def _without_blanks(text: str) -> str:
+def _strip_blank_lines(text: str) -> str:
     return "\n".join(line.rstrip() for line in text.splitlines() if line.strip())
 
 
@@ -125,7 +125,7 @@ CODE = {".py": code_of, ".cpp": code_of_cpp, ".h": code_of_cpp}
 
 
 @cache
-def _needs(path: Path) -> list[Path]:
+def _imported_files(path: Path) -> list[Path]:
     """Return the files of the package's modules that a file imports, except plumbing."""
     modules = set()
     for start, names in _IMPORT.findall(_code(path) if path.suffix == ".py" else ""):

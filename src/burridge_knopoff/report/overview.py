@@ -51,7 +51,8 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
     models = {law: study.model(law, **first) for law in study.laws}
     there = " at the first point" if study.is_plane else ""
     chain = next(iter(models.values())).chain
-    without = [("Left out by the config", ", ".join(study.left_out))] if study.left_out and not study.is_plane else []
+    omitted = () if study.is_plane else study.omitted_stages
+    without = [("Left out by the config", ", ".join(omitted))] if omitted else []
     return [
         ("Blocks", f"N = {chain.blocks}"),
         (f"Chain{there}", chain_text(chain)),

@@ -19,7 +19,7 @@ from burridge_knopoff.provenance.seal import is_consistent
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.catalogue import summarize
-from burridge_knopoff.values import cut, shown
+from burridge_knopoff.values import cut, format_value
 
 #: Name of the module that makes the catalogue file of a run.
 CATALOGUE_FILE = "slip_events"
@@ -33,7 +33,9 @@ WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
 def check_format(path: str | Path) -> None:
     """Raise ValueError, one line, if the suffix of a picture's name is not a known format."""
     if Path(path).suffix not in FORMATS:
-        raise ValueError(f"{cut(str(path), 200)}: got {shown(Path(path).suffix)}, expected {' | '.join(FORMATS)}")
+        raise ValueError(
+            f"{cut(str(path), 200)}: got {format_value(Path(path).suffix)}, expected {' | '.join(FORMATS)}"
+        )
 
 
 def write_picture(result: Result, path: str | Path) -> str:

@@ -28,7 +28,7 @@ from burridge_knopoff.running.section import SECTION_KEYS
 from burridge_knopoff.running.settings import SOLVERS, TIME, Settings
 from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS, PAPER_PHASES
 from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES
-from burridge_knopoff.values import joined
+from burridge_knopoff.values import full_key
 
 NUMBER = Number(-HUGE, HUGE)
 A = Number(0.0, 100.0)
@@ -70,13 +70,13 @@ class LawKeys(Range):
         if not isinstance(value, Mapping):
             return None
         known = {name: field.range for name, field in self.fields.items()}
-        return {name: known.get(name, self.number).form(item, joined(key, name)) for name, item in value.items()}
+        return {name: known.get(name, self.number).form(item, full_key(key, name)) for name, item in value.items()}
 
     def __str__(self) -> str:
         return "law or formula, and parameters; {} for a built-in law with its defaults"
 
 
-def _part(kind: type, *without: str, **other: Field) -> dict[str, Field]:
+def _settings_of(kind: type, *without: str, **other: Field) -> dict[str, Field]:
     """Return the settings of a class except those in `without`, with those in `other` replaced."""
     return {name: other.get(name, field) for name, field in fields_of(kind).items() if name not in without}
 
@@ -90,7 +90,7 @@ def _optional_section(description: str, fields: Mapping[str, Field]) -> Field:
     return Field(Keys(fields), f"{description}; without this key there are none", FOLLOWS)
 
 
-def _as_in_study(field: Field) -> Field:
+def _study_default(field: Field) -> Field:
     return replace(field, description=f"{field.description}; by default the study's", default=FOLLOWS)
 
 
@@ -138,7 +138,7 @@ BASINS = {
         "initial state that gives the other positions and all velocities of the plane; by default the study's first",
         FOLLOWS,
     ),
-    **_part(BasinSettings, "pixels"),
+    **_settings_of(BasinSettings, "pixels"),
 }
 PHASES = {
     "a": Field(
@@ -147,7 +147,7 @@ PHASES = {
         f"for the paper's chain, those of {', '.join(map(str, PAPER_PHASES))} that are on the grid",
         FOLLOWS,
     ),
-    **_part(PhaseSettings),
+    **_settings_of(PhaseSettings),
 }
 EDGES = {
     "a": Field(
@@ -155,7 +155,7 @@ EDGES = {
         "values of a on the grid at which the boundaries between basins are followed to edge states; by default all",
         FOLLOWS,
     ),
-    **_part(EdgeSettings),
+    **_settings_of(EdgeSettings),
 }
 CATALOGUE = {
     "a": Field(
@@ -164,7 +164,7 @@ CATALOGUE = {
         FOLLOWS,
     ),
     "initial": Field(Text(), "initial state of these runs; by default the study's first", FOLLOWS),
-    **_part(CatalogueSettings, **{name: _as_in_study(_CATALOGUE[name]) for name in ("transient", "window")}),
+    **_settings_of(CatalogueSettings, **{name: _study_default(_CATALOGUE[name]) for name in ("transient", "window")}),
 }
 TWO_BLOCKS = {
     "a": Field(VALUES, "friction parameters at which the laws are compared", [{"from": 0.01, "to": 0.4, "step": 0.01}]),
@@ -184,7 +184,7 @@ CHAINS = {
     "samples": _SAMPLE["samples"],
     "symmetric_samples": replace(_SAMPLE["symmetric_samples"], range=SAMPLES),
     **{key: _SAMPLE[key] for key in ("seed", "position", "velocity")},
-    **_part(Watch, "synchronization_threshold"),
+    **_settings_of(Watch, "synchronization_threshold"),
     "two_blocks": _section("comparison of the laws for two blocks", TWO_BLOCKS),
 }
 
@@ -213,9 +213,9 @@ CONFIG = Keys(
             [],
         ),
         "laws": Field(Named(LAW_NAME, LawKeys(), 1), "friction laws by name", {law: {} for law in PAPER_LAWS}),
-        "chain": _section("blocks and springs, by default the paper's", _part(Chain)),
-        **_part(Model),
-        **_part(
+        "chain": _section("blocks and springs, by default the paper's", _settings_of(Chain)),
+        **_settings_of(Model),
+        **_settings_of(
             Settings,
             solver=Field(
                 Either((_SOLVER, Named(LAW_NAME, _SOLVER))),
@@ -229,13 +229,13 @@ CONFIG = Keys(
         "synchronization_threshold": fields_of(MotionSettings)["synchronization_threshold"],
         "motion": _section(
             "criteria by which kinds of motion are distinguished",
-            _part(MotionSettings, "synchronization_threshold", "section"),
+            _settings_of(MotionSettings, "synchronization_threshold", "section"),
         ),
         "agreement": _section("comparison of each law with the first", AGREEMENT),
         "solvers": _section("comparison of the solvers", COMPARED),
         "figures": _section("runs in the figures of single runs", FIGURES),
-        "attractors": _section("search for attractors", _part(SearchSettings)),
-        "refine": _section("changes of the attractors between the values of a", _part(Refine)),
+        "attractors": _section("search for attractors", _settings_of(SearchSettings)),
+        "refine": _section("changes of the attractors between the values of a", _settings_of(Refine)),
         "basins": _section("maps of basins of attraction", BASINS),
         "phases": _section("initial states defined by the phases of their blocks", PHASES),
         "edges": _optional_section("edge states on the boundaries between basins", EDGES),

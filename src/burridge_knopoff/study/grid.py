@@ -8,7 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 from burridge_knopoff.model.parameters import plain_name
-from burridge_knopoff.values import refusal, shown
+from burridge_knopoff.values import format_value, refusal
 
 #: Limit on the values of a list and on the points of a study. Snakemake plans so many jobs in minutes, or in seconds if
 #: each job makes a chunk of points.
@@ -18,7 +18,7 @@ MAXIMUM_POINTS = 100_000
 _RESERVED = ("law", "initial", "solver", "chunk", "exponent")
 
 
-def given_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:
+def resolve_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return a config as given, with either `a` or `grid`; a grid of a alone becomes `a`.
 
     Raises ValueError, one line, if it has both or neither, or a grid without a.
@@ -30,7 +30,7 @@ def given_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:
         return config
     # A complete config has an empty list.
     if config.get("a", []) != []:
-        raise ValueError(f"a: got {shown(config['a'])} together with grid, expected one of them")
+        raise ValueError(f"a: got {format_value(config['a'])} together with grid, expected one of them")
     if "a" not in grid:
         raise ValueError("grid.a: missing, expected friction parameters; a single one is enough")
     plain = [plain_name(f"{name}") for name in grid]

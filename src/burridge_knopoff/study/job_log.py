@@ -37,7 +37,7 @@ def failure_reason(log: str | Path) -> str:
 
     The command that recreates a bad file is cut off: all jobs that read the file name it, and `remedies` collects it.
     """
-    words = _last_words(log).partition(REMEDY)[0]
+    words = _last_error(log).partition(REMEDY)[0]
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
 
 
@@ -45,13 +45,13 @@ def remedies(logs: Iterable[str | Path]) -> list[str]:
     """Return the commands that recreate the bad files at which jobs stopped: one for all files of a study."""
     files: dict[str, dict[str, None]] = {}
     for log in logs:
-        if command := _last_words(log).partition(REMEDY)[2]:
+        if command := _last_error(log).partition(REMEDY)[2]:
             head, option, file = command.rpartition(" -R ")
             files.setdefault(head + option, {})[file] = None
     return [head + " ".join(named) for head, named in files.items()]
 
 
-def _last_words(log: str | Path) -> str:
+def _last_error(log: str | Path) -> str:
     try:
         text = Path(log).read_bytes()[-_TAIL:].decode("utf-8", errors="replace")
     except OSError:

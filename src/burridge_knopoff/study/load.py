@@ -17,7 +17,7 @@ from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.running.loading import is_quasistatic
 from burridge_knopoff.study import rules
 from burridge_knopoff.study.config import CONFIG
-from burridge_knopoff.study.grid import given_grid, parameters_of
+from burridge_knopoff.study.grid import parameters_of, resolve_grid
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.study.yaml_file import ConfigError
 from burridge_knopoff.values import refusal
@@ -35,11 +35,11 @@ def load_study(config: Mapping[str, Any], file: str, written: Mapping[str, Any] 
     try:
         return _study(config, folder)
     except ValueError as error:
-        place = file if written in (None, config) or _fault(written, folder) == str(error) else "--config"
+        place = file if written in (None, config) or _config_error(written, folder) == str(error) else "--config"
         raise ConfigError(f"{place}: {error}") from error
 
 
-def _fault(config: Mapping[str, Any], folder: Path) -> str:
+def _config_error(config: Mapping[str, Any], folder: Path) -> str:
     try:
         _study(config, folder)
     except ValueError as error:
@@ -55,7 +55,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     # A name that cannot be printed is refused below.
     if isinstance(chain_keys, Mapping) and is_new and f"{springs}".isprintable():
         config = {**config, "chain": {**chain_keys, "springs": display_path(folder / f"{springs}")}}
-    config = given_grid(config)
+    config = resolve_grid(config)
     # Use the types of YAML: lists instead of tuples.
     filled = json.loads(json.dumps(CONFIG.form(config, "")))
     # Ranges stay as the user wrote them; `parameters` has the values.
@@ -69,7 +69,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     rules.fill_chains(filled)
     rules.fill_names(filled)
     rules.check_size(filled, study.parameters)
-    others = study.others
+    others = study.other_values
     rules.check_models(filled, values, others)
     chains = [study.model(study.laws[0], values[0], **each).chain for each in others]
     chain = chains[0]
@@ -93,10 +93,10 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
         loading = settings_from(CatalogueSettings, filled.get("catalogue", {})).loading
         for law, name in product(study.laws, study.catalogue_a):
             is_quasistatic(loading, study.model(law, study.grid[name]), filled["solver"][law])
-    for law in study.laws if has_springs and "solvers" not in study.left_out else ():
+    for law in study.laws if has_springs and "solvers" not in study.omitted_stages else ():
         for solver in study.other_solvers(law):
             with rules.error_prefix("solvers."):
                 study.settings(law, solver).check_chain(chain)
-    rules.check_jobs(filled, study.blocks, study.left_out)
-    rules.leave_out(filled, study.left_out)
+    rules.check_jobs(filled, study.blocks, study.omitted_stages)
+    rules.leave_out(filled, study.omitted_stages)
     return study

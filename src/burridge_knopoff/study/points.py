@@ -34,14 +34,14 @@ def make_points(study: Study, points: Sequence[Mapping[str, str]], folder: Path)
         except BadFile:
             wanted.append((path, command, run))
     for first in range(0, len(wanted), TOGETHER):
-        failed += _make_together(wanted[first : first + TOGETHER])
+        failed += _simulate_together(wanted[first : first + TOGETHER])
     if failed:
         more = f"; {format_count(len(failed) - 1, 'more point')} of this chunk failed" if len(failed) > 1 else ""
         raise RuntimeError(f"{failed[0]}{more}")
     return len(wanted) - len(failed)
 
 
-def _make_together(wanted: Sequence[tuple[Path, str, tuple[Model, InitialState, Settings]]]) -> list[str]:
+def _simulate_together(wanted: Sequence[tuple[Path, str, tuple[Model, InitialState, Settings]]]) -> list[str]:
     """Simulate points, given by their files, commands and runs; return a line for each failure, with the reason."""
     failed, prepared = [], []
     for path, command, run in wanted:

@@ -66,7 +66,7 @@ class Study:
         return len(self.parameters) > 1
 
     @property
-    def others(self) -> list[dict[str, float]]:
+    def other_values(self) -> list[dict[str, float]]:
         """The combinations of the values of all parameters except a."""
         names = [name for name in self.parameters if name != "a"]
         return [
@@ -110,7 +110,7 @@ class Study:
     @property
     def chain_description(self) -> dict[str, Any]:
         """The arguments of `Chain`; those of the first point if the chain varies."""
-        chain, first = self.config["chain"], self.model(self.laws[0], self.shown_a, **self.others[0]).chain
+        chain, first = self.config["chain"], self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain
         varied = {(single_of(name) or (name,))[0] for name in self.parameters}
         return {key: getattr(first, key) if key in varied else value for key, value in chain.items()}
 
@@ -122,7 +122,7 @@ class Study:
     @property
     def is_mirror_symmetric(self) -> bool:
         """Whether the chain is its own mirror image."""
-        return self.model(self.laws[0], self.shown_a, **self.others[0]).chain.is_mirror_symmetric
+        return self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain.is_mirror_symmetric
 
     @property
     def has_synchronized_orbit(self) -> bool:
@@ -135,7 +135,7 @@ class Study:
         return [law for law in self.laws if is_covered(self.model(law, self.shown_a))]
 
     @property
-    def left_out(self) -> tuple[str, ...]:
+    def omitted_stages(self) -> tuple[str, ...]:
         """Stages that the config leaves out and those that use their results; all stages if several parameters vary."""
         without = STAGES if self.is_plane else self.config["without"]
         return tuple(stage for stage, needed in STAGES.items() if stage in without or needed in without)
@@ -154,7 +154,7 @@ class Study:
     @property
     def catalogue_a(self) -> list[str]:
         """Names of the values of a with a catalogue of slip events."""
-        chosen = [] if "catalogue" in self.left_out else self.config.get("catalogue", {}).get("a", [])
+        chosen = [] if "catalogue" in self.omitted_stages else self.config.get("catalogue", {}).get("a", [])
         return [name for name, value in self.grid.items() if value in chosen]
 
     @property
@@ -186,7 +186,7 @@ class Study:
         return others
 
     @property
-    def compared(self) -> dict[str, float]:
+    def compared_values(self) -> dict[str, float]:
         """The values of a at which solvers are compared, by their names in file names."""
         return {name: value for name, value in self.grid.items() if value in self.config["solvers"]["a"]}
 
@@ -259,7 +259,7 @@ def all_points(study: Study) -> list[dict[str, str]]:
 
 def solver_points(study: Study) -> list[dict[str, str]]:
     """Return the wildcards of every run that repeats a point with another solver."""
-    points = [point for point in all_points(study) if point["a"] in study.compared]
+    points = [point for point in all_points(study) if point["a"] in study.compared_values]
     return [{**point, "solver": solver} for point in points for solver in study.other_solvers(point["law"])]
 
 
@@ -267,6 +267,6 @@ def remarks(study: Study, given: Mapping[str, Any]) -> list[str]:
     """Return a line for each part that a user may expect and the study lacks; given : its config as written."""
     if study.blocks == 1:
         return ["one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks"]
-    if given.get("basins") and "basins" not in study.left_out and not study.basin_maps:
+    if given.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
         return ["basins: no map, since no default value of basins.a is on the grid; set basins.a"]
     return []

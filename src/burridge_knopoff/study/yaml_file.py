@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from burridge_knopoff.provenance.files import display_path
-from burridge_knopoff.values import joined
+from burridge_knopoff.values import full_key
 
 _TAG = "tag:yaml.org,2002:"
 
@@ -41,9 +41,9 @@ class _Loader(yaml.SafeLoader):
         for key, _ in node.value:
             place = f"(line {key.start_mark.line + 1})"
             if key.tag not in (f"{_TAG}str", f"{_TAG}merge"):
-                raise ConfigError(f"got {joined('', str(key.value))} {place} as a key, expected text")
+                raise ConfigError(f"got {full_key('', str(key.value))} {place} as a key, expected text")
             if key.value in seen:
-                raise ConfigError(f"{joined('', key.value)}: given twice {place}, expected once")
+                raise ConfigError(f"{full_key('', key.value)}: given twice {place}, expected once")
             seen.add(key.value)
         return node
 
@@ -79,7 +79,7 @@ def read_config(path: str | Path) -> dict[str, Any]:
     """Return the content of a study's config file, not validated; raises ConfigError as `read_yaml` does."""
     content = read_yaml(path)
     if not isinstance(content, dict):
-        found = "nothing" if content is None else joined("", content)
+        found = "nothing" if content is None else full_key("", content)
         raise ConfigError(f"{display_path(path)}: got {found}, expected keys with values")
     return content
 
