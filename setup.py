@@ -13,7 +13,7 @@ from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
 
 sys.path.insert(0, "src")
-# A build for another environment changes nothing in the tree, which may run a study meanwhile.
+# A build for another environment must not change the tree, from which a study may be running.
 sys.dont_write_bytecode = True
 
 from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, NANOBIND_FLAGS, vector_flags
@@ -21,15 +21,15 @@ from burridge_knopoff.provenance.kernel_build import RECORD, current_build, reco
 
 KERNEL = Path("src/burridge_knopoff/kernel")
 NANOBIND = f"{nanobind.source_dir()}/nb_combined.cpp"
-#: Where all is made before it goes to its place; removed when this process ends.
+#: Folder of intermediate files, removed when this process ends.
 WORK = tempfile.TemporaryDirectory(prefix="burridge-knopoff-", ignore_cleanup_errors=True)
 
 
 def core(folder: str, flags: tuple[str, ...]) -> Extension:
-    """Return the compiled module for some vectors; `folder` is where in the kernel it lies."""
+    """Return the compiled module for some vectors; folder : its place in the kernel."""
     return Extension(
         ".".join(filter(None, ("burridge_knopoff.kernel", folder, "_core"))),
-        # The longest to compile come first.
+        # Files that take longest to compile come first.
         [source.as_posix() for source in sorted(KERNEL.glob("*.cpp"), reverse=True)],
         include_dirs=[nanobind.include_dir(), f"{nanobind.source_dir()}/../ext/robin_map/include"],
         define_macros=[("NB_COMPACT_ASSERTIONS", None)],
@@ -39,7 +39,7 @@ def core(folder: str, flags: tuple[str, ...]) -> Extension:
 
 
 def require_compiler(compiler: list[str], include: list[str]) -> None:
-    """End with one line, where pip would print dozens, if a C++20 file with Python's headers cannot be compiled.
+    """End with one line, instead of dozens from pip, if a C++20 file with Python's headers cannot be compiled.
 
     compiler : its command; include : folders of headers
     """
@@ -55,29 +55,29 @@ def require_compiler(compiler: list[str], include: list[str]) -> None:
         said = done.stderr.splitlines() or [f"{compiler[0]}: exit code {done.returncode}"]
         reason = next((line for line in said if "error" in line), said[-1])
     sys.exit(
-        f"no C++20 compiler that works ({reason}): install g++ 11 or newer and Python's headers "
+        f"no working C++20 compiler ({reason}): install g++ 11 or newer and Python's headers "
         "(Debian, Ubuntu: apt install g++ python3-dev), or name another compiler in CXX"
     )
 
 
 class CheckedCompiler(build_ext):
-    """Compiles nothing, but finds out whether the kernel could be compiled."""
+    """Checks, without compiling the kernel, that it could be compiled."""
 
     def build_extensions(self) -> None:
-        """End with one line if not."""
+        """End with one line if it could not."""
         require_compiler(self.compiler.compiler_so_cxx, self.compiler.include_dirs)
 
 
 class RecordedBuild(build_ext):
-    """Compiles the kernel, and records beside it what it was compiled from."""
+    """Compiles the kernel, and records its sources next to it."""
 
     def run(self) -> None:
-        """Compile all of it."""
+        """Compile the kernel and write the record."""
         super().run()
         write_record(Path(self.get_ext_fullpath("burridge_knopoff.kernel._core")).parent)
 
     def build_extensions(self) -> None:
-        """Compile the files of a module side by side, which setuptools compiles one after the other."""
+        """Compile the files of a module in parallel, which setuptools compiles one after the other."""
         require_compiler(self.compiler.compiler_so_cxx, self.compiler.include_dirs)
         compile_files = self.compiler.compile
 
@@ -86,7 +86,7 @@ class RecordedBuild(build_ext):
             return compile_files([source], **{**options, **own})
 
         def compile_together(sources: list[str], **options: object) -> list[str]:
-            # Only here, since setuptools wants the sources of a module in the tree.
+            # Setuptools requires that the sources of a module are in the tree, so this one is added here.
             files = [NANOBIND, *sources]
             with ThreadPoolExecutor(os.cpu_count()) as pool:
                 return list(chain.from_iterable(pool.map(compile_file, files, repeat(options))))
@@ -95,8 +95,8 @@ class RecordedBuild(build_ext):
         super().build_extensions()
 
     def copy_extensions_to_source(self) -> None:
-        """Replace the kernel of the tree, in an editable installation."""
-        # What is killed on the way must not leave parts of two kernels that pass for one.
+        """Replace the kernel in the tree, for an editable installation."""
+        # A build that is killed must not leave parts of two kernels with a valid record.
         if recorded_build() != current_build():
             (KERNEL / RECORD).unlink(missing_ok=True)
         for folder in vector_flags():

@@ -45,12 +45,12 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "template": (f"__use_yte__: true\n{GOOD}", ["__use_yte__: unknown key"]),
     "merged": (f"base: &b {{minus: {{}}}}\nstudy: x\n{GRID}initial: {{<<: *b}}\n", ["base: unknown key"]),
     # Keys.
-    "twice": (f"{GOOD}a: [0.2]\n", ["a: stands twice (line 4)", "once is allowed"]),
-    "twice_quoted": (f"study: x\n{GRID}initial: {{minus: {{}}, 'minus': {{}}}}\n", ["minus: stands twice (line 3)"]),
-    "twice_at_once": (f"study: y\n{GOOD}", ["study: stands twice (line 2)"]),
+    "twice": (f"{GOOD}a: [0.2]\n", ["a: given twice (line 4)", "expected once"]),
+    "twice_quoted": (f"study: x\n{GRID}initial: {{minus: {{}}, 'minus': {{}}}}\n", ["minus: given twice (line 3)"]),
+    "twice_at_once": (f"study: y\n{GOOD}", ["study: given twice (line 2)"]),
     "twice_inside": (
         f"study: x\na:\n  - {{from: 0, to: 1, from: 0.5, step: 0.5}}\n{STATES}",
-        ["from: stands twice (line 3)"],
+        ["from: given twice (line 3)"],
     ),
     "unknown": (f"{GOOD}windows: 7000\n", ["windows: unknown key", "window"]),
     "upper_case": (f"{GOOD}Window: 7000\n", ["Window: unknown key", "window"]),

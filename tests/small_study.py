@@ -114,9 +114,9 @@ class SmallStudy:
     def do(self, names: Collection[str]) -> None:
         """Do the jobs of some stages or rules, after those that they wait for."""
         jobs = self.jobs
-        for rule in jobs.there.values():
-            # Stretches are of points that have been run one by one here.
-            for job in rule.each if {rule.stage, rule.name} & {*names} and rule.name != "stretch" else ():
+        for rule in jobs.existing.values():
+            # Chunks are of points that have been run one by one here.
+            for job in rule.each if {rule.stage, rule.name} & {*names} and rule.name != "chunk" else ():
                 if rule.make:
                     inputs = {
                         name: [self.folder / file for file in files] for name, files in jobs.inputs(rule, job).items()

@@ -93,8 +93,8 @@ def test_a_sound_study(results, capsys):
     [
         (lambda path: path.unlink(), "missing", "not made yet"),
         (lambda path: path.write_bytes(b""), "corrupt", "is empty"),
-        (lambda path: path.write_bytes(path.read_bytes()[:5000]), "corrupt", "has no seal at its end"),
-        (lambda path: path.write_bytes(path.read_bytes().replace(b"1.0", b"1.1", 1)), "corrupt", "has other bytes"),
+        (lambda path: path.write_bytes(path.read_bytes()[:5000]), "corrupt", "is truncated, or"),
+        (lambda path: path.write_bytes(path.read_bytes().replace(b"1.0", b"1.1", 1)), "corrupt", "was changed after"),
         (lambda path: shutil.copy(path.with_name("a0.0800.nc"), path), "stale", "--a 0.08 instead of --a 0.05"),
     ],
 )
@@ -144,7 +144,7 @@ def test_a_crashed_job_says_why_its_point_is_missing(results):
     log.write_text("Traceback (most recent call last):\n  File x\nMemoryError: no more\n")
     (finding,) = check_study(results).findings
     assert finding.reason == f"its job failed: MemoryError: no more (log {log})"
-    log.write_text("note: bk simulate: trajectory: 5000 is longer than the run: 300 were kept\n")
+    log.write_text("note: bk simulate: trajectory: 5000 is longer than the run; all 300 time units were recorded\n")
     (finding,) = check_study(results).findings
     assert finding.reason == "not made yet"
 
@@ -274,7 +274,7 @@ def test_a_changed_config_and_points_of_no_grid(results, capsys):
     capsys.readouterr()
     assert main(["check", str(results)]) == 1
     said = capsys.readouterr().out
-    assert "small.yaml: has changed since the last run, whose config is checked" in said
+    assert "small.yaml: has changed since the last run; the config of the last run is checked" in said
     left = point(results, a="0.0600")
     assert f"leftover {left}: not part of this study\n" in said
     assert f"left over, with logs and benchmarks: 1 file; delete: bk prune {results}\n" in said
@@ -296,7 +296,7 @@ def test_a_study_is_checked_from_anywhere(results, capsys, monkeypatch, tmp_path
     assert said[-1] == f"remake: cd {tmp_path / 'study'} && {remake}"
     (tmp_path / "study/small.yaml").unlink()
     assert main(["check", str(whole)]) == 0
-    assert "note     small.yaml: is not there; what is checked is the config" in capsys.readouterr().out
+    assert "note     small.yaml: does not exist; the config of the last run" in capsys.readouterr().out
 
 
 def test_solvers_that_nobody_asked_for_are_not_missing(results, capsys):
@@ -304,7 +304,7 @@ def test_solvers_that_nobody_asked_for_are_not_missing(results, capsys):
     assert main(["check", str(results)]) == 0
     said = capsys.readouterr().out.splitlines()
     assert said[0].startswith(f"{results}: 4 points and 1 other file: 0 missing")
-    assert said[1] == "not counted: 3 runs of other solvers, none of which was asked for yet"
+    assert said[1] == "not counted: 3 runs of other solvers, none of which was requested yet"
 
 
 def test_a_folder_of_another_name_is_said_to_be_that_study(results, capsys):
@@ -312,7 +312,7 @@ def test_a_folder_of_another_name_is_said_to_be_that_study(results, capsys):
     moved = results.rename(results.with_name("moved"))
     assert main(["check", str(moved)]) == 0
     said = capsys.readouterr().out
-    assert f"this is study {name} under another name: Snakemake looks for it in a folder {name}\n" in said
+    assert f"this is study {name} under another name: Snakemake expects it in a folder {name}\n" in said
 
 
 #: Of another state, law, a or number of blocks than those of the study, or where none is computed.
@@ -463,7 +463,7 @@ def test_a_record_that_was_changed_by_hand_is_refused_in_a_line_that_names_it(re
 
 def test_a_record_nested_without_end_is_refused(results):
     (results / "study.json").write_text("[" * 100_000)
-    with pytest.raises(ValueError, match="study.json: not the record of a study"):
+    with pytest.raises(ValueError, match="study.json: not a valid record"):
         recorded_study(results)
 
 

@@ -14,7 +14,7 @@ import pytest
 from burridge_knopoff import Chain, FormulaLaw, Settings, simulate
 from burridge_knopoff.cli import main
 from burridge_knopoff.laws import LAWS
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
 BK = str(Path(sys.executable).parent / "bk")
 SHORT = ["--transient", "10", "--window", "20", "--batches", "2"]
@@ -44,7 +44,7 @@ def test_a_point_is_what_python_simulates(tmp_path):
     assert (run.returncode, run.stderr) == (0, "")
     expected = simulate("linearized", 0.08, "plus", transient=10.0, window=20.0, batches=2)
     mean, error = expected.mean_distance, expected.mean_distance_error
-    assert run.stdout.startswith(f"{out}: <J> = {plain(with_error(mean, error))}, largest Lyapunov exponent ")
+    assert run.stdout.startswith(f"{out}: <J> = {to_ascii(with_error(mean, error))}, largest Lyapunov exponent ")
     assert run.stdout.endswith(f", {expected.event_count} stops and starts until tau = 30\n")
     with netCDF4.Dataset(out) as dataset:
         assert dataset["mean_distance"][...] == expected.mean_distance
@@ -114,8 +114,8 @@ def test_what_is_longer_than_the_run_is_said(tmp_path, capsys):
     assert main([*RUN, "--trajectory", "5000", "--event-window", "25", "--out", str(tmp_path / "x.nc")]) == 0
     said = capsys.readouterr().err.splitlines()
     assert said == [
-        "note: bk simulate: trajectory: 5000 is longer than the run: 30 were kept",
-        "note: bk simulate: event_window: 25 is longer than the window: 20 were kept",
+        "note: bk simulate: trajectory: 5000 is longer than the run; all 30 time units were recorded",
+        "note: bk simulate: event_window: 25 is longer than the window; all 20 time units were recorded",
     ]
 
 
@@ -126,8 +126,8 @@ def test_what_a_long_chain_costs_is_said_before_it_starts(tmp_path):
         said = process.stderr.readline()
         process.send_signal(signal.SIGINT)
     assert said == (
-        "note: bk simulate: 100000 blocks: about 5 min for a unit of time, 35 days for the run if they go on slipping; "
-        "0.45 GB besides the events kept\n"
+        "note: bk simulate: 100000 blocks: about 5 min per time unit, 35 days for the run if they keep slipping; "
+        "0.45 GB in addition to the recorded events\n"
     )
 
 
@@ -222,8 +222,8 @@ def test_no_events(tmp_path):
         ([*RUN, "--out", "/dev/null"], "/dev/null: cannot be written: it is not a regular file"),
         ([*RUN, "--initial", "two words", "--out", "x.nc"], "got 'two words', expected"),
         ([*RUN, "--position", "", "--out", "x.nc"], "numbers with commas"),
-        ([*RUN, "--out", "no/folder/x.nc"], "no/folder/x.nc: cannot be written: there is no folder no/folder"),
-        ([*RUN, "--initial", "plus", "--position", "1,1,1", "--out", "x.nc"], "initial: got 'plus' with other numbers"),
+        ([*RUN, "--out", "no/folder/x.nc"], "no/folder/x.nc: cannot be written: folder no/folder does not exist"),
+        ([*RUN, "--initial", "plus", "--position", "1,1,1", "--out", "x.nc"], "initial: got 'plus' with numbers other"),
         (["attractors", "--law", "linearized", "--a", "0.08", "--samples", "-1"], "samples: got -1, expected"),
         (
             ["attractors", "--law", "linearized", "--a", "0.08", "--position-box", "1,0"],
@@ -238,7 +238,7 @@ def test_no_events(tmp_path):
             ["basins", *RUN[1:5], "--out", "x.nc", "--attractors-out", "./x.nc"],
             "got './x.nc', expected another file: --out",
         ),
-        (["orbit", *RUN[1:5], "--v", "0.1", "--v=0.2"], "--v: got it 2 times, expected once"),
+        (["orbit", *RUN[1:5], "--v", "0.1", "--v=0.2"], "--v: given 2 times, expected once"),
         (["orbit", *RUN[1:3], "--a", "3"], "on the way to a = 3.0"),
         (["orbit", *RUN[1:5], "--threshold", "1,2,3"], "got one that is not its own mirror image"),
         (["show", "x.nc"], "x.nc: is missing"),

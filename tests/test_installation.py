@@ -67,7 +67,7 @@ def test_without_a_compiler_make_says_in_one_line_what_to_install(repository, tm
     run = subprocess.run(command, cwd=repository, env=environment, capture_output=True, text=True)
     assert run.returncode == 2
     line, end = run.stderr.splitlines()
-    assert line.startswith("no C++20 compiler that works (")
+    assert line.startswith("no working C++20 compiler (")
     assert reason in line
     assert "apt install g++ python3-dev" in line
     assert end.startswith("make: ***")

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from burridge_knopoff import FormulaLaw
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
-from burridge_knopoff.values import LONGEST, cut, joined, refusal, shown
+from burridge_knopoff.values import LONGEST, cut, format_value, full_key, refusal
 from tests.fuzzing import examples
 from tests.refused import refused
 
@@ -54,7 +54,7 @@ def endless():
 @given(VALUES)
 @examples(500)
 def test_a_short_value_is_as_python_writes_it_and_a_long_one_begins_so(value):
-    text, whole = shown(value), " ".join(repr(value).split())
+    text, whole = format_value(value), " ".join(repr(value).split())
     assert text.isprintable()
     assert len(text) <= LONGEST
     assert text == whole if len(whole) <= LONGEST else whole.startswith(text[: LONGEST - 3])
@@ -64,7 +64,7 @@ def test_a_short_value_is_as_python_writes_it_and_a_long_one_begins_so(value):
 @given(st.text(), st.text())
 @examples(300)
 def test_a_key_is_one_line(key, name):
-    text = joined("laws", name)
+    text = full_key("laws", name)
     assert text.isprintable()
     assert len(text) <= LONGEST + 10
     assert str(refusal("laws", name, "a number")).isprintable()
@@ -96,7 +96,7 @@ def test_no_more_is_written_than_is_shown(make):
     value = make()
     tracemalloc.start()
     begin = time.process_time()
-    text = shown(value)
+    text = format_value(value)
     assert time.process_time() - begin < 1.0
     assert tracemalloc.get_traced_memory()[1] < 2_000_000
     tracemalloc.stop()
@@ -143,4 +143,4 @@ def test_aliases_that_fill_any_memory_when_they_are_written_out(tmp_path, form):
     ],
 )
 def test_numbers_of_numpy_are_shown_as_plain_numbers(value, text):
-    assert shown(value) == text
+    assert format_value(value) == text

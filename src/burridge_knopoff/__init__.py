@@ -1,37 +1,40 @@
-"""Stick-slip dynamics of spring-coupled blocks on rough ground (the Burridge-Knopoff model).
+"""Stick-slip dynamics of spring-coupled blocks on a rough surface (the Burridge-Knopoff model).
 
-The library is what is imported from here; `help` of each name has its shapes, units, errors and an example.
+Import the public names from here. `help` of each name gives shapes, units, errors and an example.
 
-The model: `Model`, a `Chain` under a `Law` (`law_of` for those that are built in, `FormulaLaw` for one of one's own);
-an `InitialState` to begin from, a `ChainState` on the way.
+Model: `Model` is a `Chain` under a friction `Law`. `law_of` returns the built-in laws, and `FormulaLaw` is a law given
+by a formula. A run begins at an `InitialState`; a `ChainState` is the state at a later time.
 
-Runs: `simulate` makes a `Run`, a `Trajectory`, by `Settings`, seen on a `Section`; `sweep` makes many of them over any
-parameters; `open_study` reads those of a study, and `in_words` says what the numbers of a flag mean.
+Runs: `simulate` returns a `Run`, whose `Trajectory` is computed with `Settings` and seen on a `Section`. `sweep`
+computes many runs over any parameters. `open_study` opens the results of a study, and `in_words` translates the values
+of a flag.
 
-Slip events: `record_events` and `Run.catalogue` make a `Catalogue`, the `SlipEvents` of a run; `fit_slope` fits the
-`Slope` of their magnitudes. `event_exponents` returns the `EventExponents` of the map from event to event, and
-`event_multipliers` its multipliers.
+Slip events: `record_events` and `Run.catalogue` return a `Catalogue` with the `SlipEvents` of a run. `fit_slope` fits
+the `Slope` of their magnitudes. `event_multipliers` and `event_exponents` return the multipliers and the
+`EventExponents` of the map from event to event.
 
-Attractors and basins: `find_attractors` by `SearchSettings` and `MotionSettings` returns each `Attractor` with its
-`SteadyMotion`, `MotionKind` and `Symmetry`; `label_states` tells which of them states reach, `basin_map` those of a
-plane. `edge_state` follows the boundary between two basins, by `EdgeSettings`, to its `EdgeState`.
+Attractors and basins: `find_attractors` returns the `Attractor`s of a model, each with its `SteadyMotion`, `MotionKind`
+and `Symmetry`; `SearchSettings` and `MotionSettings` control the search. `label_states` determines the attractor that
+each state reaches, and `basin_map` those of a plane of states. `edge_state` follows the boundary between two basins to
+its `EdgeState`, with `EdgeSettings`.
 
-Orbits: `limit_cycle`, `find_periodic_orbit` and `synchronized_orbit` return a `PeriodicOrbit` or raise `OrbitError`.
-Its stability: `multipliers` returns `Multipliers`.
+Periodic orbits: `limit_cycle`, `find_periodic_orbit` and `synchronized_orbit` return a `PeriodicOrbit` or raise
+`OrbitError`. `multipliers` returns its Floquet `Multipliers`.
 
-Exponents: Lyapunov exponents come with a `Trajectory`; `transverse_exponent` is that of synchrony.
+Exponents: a `Trajectory` contains its Lyapunov exponents. `transverse_exponent` is the exponent of synchrony.
 
-Locking: `block_frequencies` returns the frequency of each block, of which locked blocks keep the ratio if one of them
-differs.
+Locking: `block_frequencies` returns the mean frequency of each block; locked blocks keep their ratio of frequencies
+when one of the blocks is changed.
 
-Bifurcations: `follow` continues a branch in any parameter with `ContinuationSettings`, each orbit a `BranchOrbit`;
-`locate_bifurcations` finds every `Bifurcation` on it, and its `BifurcationKind`; `follow_bifurcation` continues one in
-two parameters and returns a `BifurcationCurve`.
+Bifurcations: `follow` continues a periodic orbit in any parameter, with `ContinuationSettings`, and returns its
+branch as `BranchOrbit`s. `locate_bifurcations` finds each `Bifurcation` on the branch and its `BifurcationKind`.
+`follow_bifurcation` continues a bifurcation in two parameters and returns a `BifurcationCurve`.
 """
 
 import lazy_loader
 
 from burridge_knopoff.version import __version__ as __version__
 
-# Public names are in __init__.pyi. Each is imported on first use: a command that reads a config loads no kernel.
+# The public names are in __init__.pyi. Each is imported on first use, so that a command that reads a config loads no
+# kernel.
 __getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -1,4 +1,4 @@
-# The public names, and where each is defined.
+# The public names and the modules that define them.
 from .attractors.attractor import Attractor as Attractor
 from .attractors.labels import label_states as label_states
 from .attractors.settings import SearchSettings as SearchSettings

@@ -1,4 +1,4 @@
-"""Input checks: which values are numbers, and the one line that refuses a value."""
+"""Input checks: which values are numbers, and the one-line error for a refused value."""
 
 from __future__ import annotations
 
@@ -13,21 +13,21 @@ import numpy as np
 
 _T = TypeVar("_T")
 
-#: Numbers that a run or a job keeps of one kind at most: 800 MB.
+#: Most numbers of one kind that a run or a job keeps: 800 MB.
 MOST_NUMBERS = 1e8
-#: Characters of a value in a message.
+#: Most characters of a value in a message.
 LONGEST = 60
-#: Of whole numbers that are written in decimals: Python refuses those of 4300 digits and more.
+#: Most bits of a whole number that is written in decimals; Python refuses 4300 digits and more.
 MOST_BITS = 10_000
 
 
 def scalar(value: Any) -> Any:
-    """Return an array without dimensions, of any kind, as what is in it, anything else as it is."""
+    """Return the element of an array without dimensions; any other value as it is."""
     return np.asanyarray(value)[()] if getattr(value, "ndim", None) == 0 else value
 
 
 def real_number(value: Any) -> float:
-    """Return a real number as a float; NaN for non-numbers, as True, a complex number or a time of numpy."""
+    """Return a real number as a float; NaN for anything else, such as True, a complex number or a time of numpy."""
     value = scalar(value)
     if isinstance(value, bool | np.timedelta64) or not isinstance(value, int | float | np.integer | np.floating):
         return math.nan
@@ -38,7 +38,7 @@ def real_number(value: Any) -> float:
 
 
 def real_array(values: Any, key: str) -> np.ndarray:
-    """Return real numbers of any shape, NaN where they are masked; raises ValueError, one line, for any others."""
+    """Return real numbers of any shape, NaN where masked; raises ValueError, one line, for anything else."""
     try:
         array = np.ma.asarray(values)
     except ValueError:
@@ -49,15 +49,15 @@ def real_array(values: Any, key: str) -> np.ndarray:
     return filled
 
 
-def read_only(array: np.ndarray) -> np.ndarray:
-    """Return an array of its own memory that nobody can write to: for what is computed once and handed to all."""
+def read_only_copy(array: np.ndarray) -> np.ndarray:
+    """Return a read-only copy of an array, for values that are computed once and shared."""
     array = np.array(array)
     array.setflags(write=False)
     return array
 
 
 def own_attributes(value: Any) -> dict[str, Any]:
-    """Return the attributes of an object without its cached properties, which follow from the others."""
+    """Return the attributes of an object except its cached properties, which follow from the others."""
     kind = type(value)
     return {
         name: item
@@ -67,21 +67,21 @@ def own_attributes(value: Any) -> dict[str, Any]:
 
 
 class Unchanging:
-    """An object whose copies and pickles compute its cached properties anew: copied arrays could be written to."""
+    """An object whose copies and pickles recompute its cached properties, since copied arrays would be writable."""
 
     def __getstate__(self) -> dict[str, Any]:
         return own_attributes(self)
 
 
 def instance_of(value: Any, kind: type[_T], key: str) -> _T:
-    """Return a value that is of a class; raises ValueError, one line, for any other."""
+    """Return a value if it is an instance of a class; raises ValueError, one line, otherwise."""
     if not isinstance(value, kind):
         raise refusal(key, value, f"{'an' if kind.__name__[0] in 'AEIOU' else 'a'} {kind.__name__}")
     return value
 
 
 def each_instance_of(values: Any, kind: type[_T], key: str) -> list[_T]:
-    """Return values that are all of a class as a list; raises ValueError, one line, for any others."""
+    """Return a list of values if all are instances of a class; raises ValueError, one line, otherwise."""
     if isinstance(values, str | Mapping) or not isinstance(values, Iterable):
         raise refusal(key, values, f"a list, each {kind.__name__}")
     return [instance_of(value, kind, f"{key}[{number}]") for number, value in enumerate(values)]
@@ -89,25 +89,25 @@ def each_instance_of(values: Any, kind: type[_T], key: str) -> list[_T]:
 
 def refusal(key: str, value: Any, allowed: object) -> ValueError:
     """Return the error of a refused value: `key: got X, expected Y`."""
-    return ValueError(f"{key}{': ' if key else ''}got {shown(value)}, expected {allowed}")
+    return ValueError(f"{key}{': ' if key else ''}got {format_value(value)}, expected {allowed}")
 
 
 def cut(text: str, longest: int = LONGEST) -> str:
-    """Return a text in one line of letters that can be printed, cut if it is long."""
-    # What is left out is not looked at, however much it is.
-    head = printable(" ".join(text[: 4 * longest].split()))
+    """Return a text as one printable line, cut if it is long."""
+    # Only the head is read, however long the text is.
+    head = escape_unprintable(" ".join(text[: 4 * longest].split()))
     return head if len(head) <= longest and len(text) <= 4 * longest else f"{head[: longest - 3]}..."
 
 
-def printable(text: str) -> str:
-    """Return a text with escapes for what cannot be printed, as a line break in the name of a file."""
+def escape_unprintable(text: str) -> str:
+    """Return a text with escapes for unprintable characters, such as a line break in the name of a file."""
     return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in text)
 
 
-def shown(value: Any) -> str:
-    """Return any value as Python writes it, in one line and cut: no more of it is written than is shown.
+def format_value(value: Any) -> str:
+    """Return any value as Python writes it, in one line and cut.
 
-    A value of few bytes may be long when it is written whole, as YAML whose parts are named and repeated.
+    Only the part that is shown is written: with aliases, a few bytes of YAML can describe a very long value.
     """
     text = ""
     for part in _parts(value):
@@ -117,10 +117,10 @@ def shown(value: Any) -> str:
     return cut(text)
 
 
-def joined(key: str, name: Any) -> str:
-    """Return the key of an entry: a name that is not plain words is quoted, in ASCII, and a long one is cut."""
+def full_key(key: str, name: Any) -> str:
+    """Return the full key of an entry; a name with unusual characters is quoted, and a long name is cut."""
     plain = isinstance(name, str) and re.fullmatch(r"[A-Za-z0-9_.+-]+", name)
-    words = cut(name) if plain else cut(ascii(name[: LONGEST + 1])) if isinstance(name, str) else shown(name)
+    words = cut(name) if plain else cut(ascii(name[: LONGEST + 1])) if isinstance(name, str) else format_value(name)
     return f"{key}.{words}" if key else words
 
 
@@ -155,8 +155,8 @@ def _parts(value: Any) -> Iterator[str]:
 
 def _written(value: Any) -> str:
     try:
-        # A number of numpy is shown as the plain number that it is.
+        # A number of numpy is shown as a plain number.
         return str(value) if isinstance(value, np.number | np.bool) and value.dtype.kind != "m" else repr(value)
-    # Whatever is given may be what cannot write itself.
+    # The `repr` of any object may fail.
     except Exception:
         return f"a {type(value).__name__}"

@@ -1,3 +1,3 @@
-"""The version of the package, which its files and `bk --version` say."""
+"""The version of the package, recorded in its files and printed by `bk --version`."""
 
 __version__ = "0.1.0"

@@ -16,7 +16,7 @@ from typing import Any
 from snakemake_interface_logger_plugins.base import LogHandlerBase
 from snakemake_interface_logger_plugins.common import LogEvent
 
-from burridge_knopoff.study.job_log import failure, interrupted
+from burridge_knopoff.study.job_log import failure_line, is_interrupted
 from burridge_knopoff.study.yaml_file import ConfigError
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.display import Lines, Picture, beginning, cost, first_figures
@@ -81,7 +81,7 @@ class LogHandler(LogHandlerBase):
     def _tell_wordless(self) -> None:
         """Tell of the jobs that left no word as failed, unless it was Ctrl-C that ended them."""
         for job, logs in [] if self._run.stopping else self._wordless:
-            self._say(failure(job, logs))
+            self._say(failure_line(job, logs))
         self._wordless.clear()
 
     def _instead(self, record: Any) -> str | None:
@@ -91,12 +91,12 @@ class LogHandler(LogHandlerBase):
             # Snakemake's own block lists all input, which may be 10,000 files; version 9.22 tells of a failure twice.
             whole = self._everything or self.common_settings.show_failed_logs
             logs = record.log or []
-            if job.state == FAILED or (not whole and interrupted(logs)):
+            if job.state == FAILED or (not whole and is_interrupted(logs)):
                 return ""
-            if not whole and interrupted(logs, stopping=True):
+            if not whole and is_interrupted(logs, stopping=True):
                 self._wordless.append((job.name, logs))
                 return ""
-            return None if whole else failure(job.name, logs)
+            return None if whole else failure_line(job.name, logs)
         words = "" if event in _ROUTINE else reworded(record.getMessage()) if event in (None, LogEvent.ERROR) else None
         return None if words == "" and self._everything else words
 

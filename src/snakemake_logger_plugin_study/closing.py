@@ -11,8 +11,8 @@ import numpy as np
 
 from burridge_knopoff.claims.formats import untestable
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, READING
-from burridge_knopoff.study.formatting import counted
-from burridge_knopoff.study.job_log import failure, interrupted, remedies
+from burridge_knopoff.study.formatting import format_count
+from burridge_knopoff.study.job_log import failure_line, is_interrupted, remedies
 from snakemake_logger_plugin_study.display import elapsed
 from snakemake_logger_plugin_study.run import DONE, FAILED, Run
 
@@ -27,15 +27,15 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
     """
     results, ended, done = Path(run.results), run.of(FAILED), run.of(DONE)
     missed = len(run.jobs) - len(ended) - len(done)
-    failed = [job for job in ended if not interrupted(job.log, stopping=run.stopping)]
+    failed = [job for job in ended if not is_interrupted(job.log, stopping=run.stopping)]
     made = _made(results, [path for job in done for path in job.output])
     if ended or missed or stopped:
         counts = ((len(failed), "failed"), (len(ended) - len(failed), "interrupted"), (missed, "did not run"))
-        reasons = ", ".join(f"{counted(count, 'job')} {what}" for count, what in counts if count)
+        reasons = ", ".join(f"{format_count(count, 'job')} {what}" for count, what in counts if count)
         told = sorted((job.name, job.log) for job in failed)
         return [
             f"study {results.name}: stopped after {elapsed(seconds)}: {reasons or 'not at its end'}",
-            *(failure(*job) for job in told[:MOST_FAILED]),
+            *(failure_line(*job) for job in told[:MOST_FAILED]),
             *([f"failed: and {len(told) - MOST_FAILED} more"] if len(told) > MOST_FAILED else []),
             made,
             *(_continuing(remedies(path for job in failed for path in job.log))),

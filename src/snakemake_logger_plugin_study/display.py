@@ -15,7 +15,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
-from burridge_knopoff.study.formatting import counted
+from burridge_knopoff.study.formatting import format_count
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Run
 
 #: Seconds between two lines at least, and after which there is one even if no such share of all jobs was done.
@@ -51,7 +51,7 @@ def cost(run: Run) -> str:
     expected, jobs = run.expected(), run.jobs.values()
     cpu, size = sum(expected[job.rule] for job in jobs), sum(run.durations.shipped(job.rule)[1] for job in jobs)
     disk = f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{max(round(size / 1e6), 1)} MB"
-    cores = counted(int(run.cores), "core")
+    cores = format_count(int(run.cores), "core")
     return f"a run takes {about(run.forecast(0.0))} on {cores}: {about(cpu)} of CPU time, and {disk} of disk"
 
 
@@ -59,7 +59,7 @@ def beginning(run: Run, now: float) -> str:
     """Return what a run says first: its jobs, and the time that they take."""
     *stages, (_, jobs) = run.counts()
     words = ", ".join(f"{stage} {states.total()}" for stage, states in stages)
-    return f"{counted(jobs.total(), 'job')}: {words}; {outlook(run, now)}"
+    return f"{format_count(jobs.total(), 'job')}: {words}; {outlook(run, now)}"
 
 
 def progress(run: Run, now: float) -> str:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from burridge_knopoff.provenance.files import check_folder, display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
-from burridge_knopoff.values import shown
+from burridge_knopoff.values import format_value
 
 #: What Snakemake takes for the name of a key.
 _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
@@ -118,6 +118,6 @@ def checked_cores(arguments: Sequence[str]) -> int:
         if not (equals and _NAME.fullmatch(name)):
             short = f"; {name} has its place in the config file" if len(name) == 1 else ""
             raise ConfigError(
-                f"--config: got {shown(entry)}, expected key=value, the key of two letters or more{short}"
+                f"--config: got {format_value(entry)}, expected key=value, the key of two letters or more{short}"
             )
     return int(options.cores) if options.cores.isdecimal() else 0

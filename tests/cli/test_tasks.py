@@ -16,7 +16,7 @@ from burridge_knopoff.motion.kind import motion_of_run, words_of
 from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.show.attractors import attractor_table
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
 MODEL = Model(Chain(3), law_of("linearized", 0.08))
 GIVEN = ["--law", "linearized", "--a", "0.08"]
@@ -52,7 +52,7 @@ def test_attractors(capsys, tmp_path):
     means = np.array([written[f"mean_distance{end}"].values[0, 0] for end in ("", "_error")])
     for slot, name in enumerate(written["branch_name"].values):
         row = next(line for line in rows if line.startswith(f"{name}  "))
-        assert f"  {plain(with_error(*means[:, slot].tolist()))}  " in row
+        assert f"  {to_ascii(with_error(*means[:, slot].tolist()))}  " in row
         assert f"  {100 * written['basin_fraction'].values[0, 0, slot]:.1f} (" in row
     reached = found[labels[-1]].motion.mean_distance
     name = written["branch_name"].values[np.abs(written["mean_distance"].values[0, 0] - reached).argmin()]

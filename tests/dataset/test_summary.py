@@ -93,7 +93,7 @@ def test_what_is_no_summary_of_now_is_refused(tmp_path):
     with pytest.raises(BadFile, match=r"other.nc: was made by other sources \(burridge_knopoff.*lyapunov 0{16}, now"):
         open_summary(tmp_path / "other.nc")
     bare.to_netcdf(tmp_path / "bare.nc")
-    for name, reason in (("bare.nc", "has no seal at its end"), ("missing.nc", "is missing")):
+    for name, reason in (("bare.nc", "is truncated, or was not written by this program"), ("missing.nc", "is missing")):
         with pytest.raises(BadFile, match=reason):
             open_summary(tmp_path / name)
     write_summary(made(), tmp_path / "cut.nc")

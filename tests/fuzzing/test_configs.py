@@ -14,6 +14,7 @@ import pytest
 import yaml
 from hypothesis import given
 from hypothesis import strategies as st
+from jsonschema import Draft7Validator
 
 from burridge_knopoff.cli import build_parser
 from burridge_knopoff.cli.options import simulated_law
@@ -26,6 +27,7 @@ from tests.fuzzing import check_refusal, examples
 ROOT = Path(__file__).parents[2]
 PARSER = build_parser()
 EVERY_KEY = Path(__file__).with_name("every_key.yaml").read_text()
+SCHEMA = Draft7Validator(yaml.safe_load((ROOT / "workflow/schemas/config.schema.yaml").read_text()))
 README = (ROOT / "config" / "README.md").read_text().split("```yaml\n")[1].split("```")[0]
 FILES = [path.read_text() for path in sorted((ROOT / "config").rglob("*.yaml"))]
 VALID = [*FILES, EVERY_KEY, README]
@@ -168,7 +170,8 @@ def test_every_key_is_among_those_that_are_changed():
 
 
 def check_study(study, written):
-    """Require that an accepted study is one that config/README.md allows, and what the file says."""
+    """Require that an accepted study is one that config/README.md and the schema allow, and what the file says."""
+    SCHEMA.validate(written)
     values, given = flat(study.config), flat(written)
     assert set(given) <= KNOWN, set(given) - KNOWN
     for key, value in given.items():

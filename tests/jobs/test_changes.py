@@ -33,9 +33,9 @@ def told(jobs):
     """Return {(rule, files of a job): what these must be made from}."""
     return {
         (rule.name, tuple(form.format(**job) for form in rule.files)): jobs.expected(rule.files[0].format(**job))
-        for rule in jobs.there.values()
+        for rule in jobs.existing.values()
         for job in rule.each
-        if rule.asked
+        if rule.requested
     }
 
 
@@ -53,11 +53,11 @@ def after(*roots):
     """Return {rule: number of its jobs} of some rules and of all that need their output."""
     found, more = {}, {*roots}
     while more:
-        found |= {name: len(BEFORE.there[name].each) for name in more}
-        files = {file for name in found for file in BEFORE.there[name].files}
+        found |= {name: len(BEFORE.existing[name].each) for name in more}
+        files = {file for name in found for file in BEFORE.existing[name].files}
         more = {
             rule.name
-            for rule in BEFORE.there.values()
+            for rule in BEFORE.existing.values()
             if files & {file for read in rule.inputs.values() for file in read} or ("simulate" in found and rule.points)
         } - {*found}
     return found
@@ -177,5 +177,5 @@ def test_a_solver_remakes_its_law_alone():
 )
 def test_a_source_belongs_to_what_depends_on_it(name, roots):
     """And a single-purpose module to nothing else."""
-    of = {rule.name for rule in BEFORE.there.values() if PACKAGE / name in sources_of(*rule.sources)}
+    of = {rule.name for rule in BEFORE.existing.values() if PACKAGE / name in sources_of(*rule.sources)}
     assert roots <= of if len(of) > 3 else roots == of

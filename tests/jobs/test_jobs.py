@@ -38,7 +38,7 @@ PLANE = {"study": "plane", "grid": {"a": [0.05], "v": [0.1, 0.2]}, "initial": ST
     ],
 )
 def test_the_stages_of_a_study(config, missing):
-    there = jobs_of(**config).there
+    there = jobs_of(**config).existing
     assert {name for name in STAGES if name not in there} == missing
 
 
@@ -46,20 +46,20 @@ def test_what_is_left_out_has_no_values_of_a():
     """So that nobody who looks at the section alone takes it for wanted."""
     study = jobs_of(without=["attractors", "solvers"]).study
     assert (study.basin_maps, study.config["phases"]["a"], study.config["solvers"]["a"]) == ([], [], [])
-    assert study.left_out == ("attractors", "bifurcations", "edges", "basins", "phases", "solvers")
+    assert study.omitted_stages == ("attractors", "bifurcations", "edges", "basins", "phases", "solvers")
 
 
 def test_stages_that_are_left_out_take_with_them_what_needs_their_results():
     """What `study.stages` says for configs is what the rules say."""
     for stage in STAGES:
-        gone = {rule.stage for rule in ALL.there.values()} - {
-            rule.stage for rule in jobs_of(catalogue={}, edges={}, without=[stage]).there.values()
+        gone = {rule.stage for rule in ALL.existing.values()} - {
+            rule.stage for rule in jobs_of(catalogue={}, edges={}, without=[stage]).existing.values()
         }
         assert gone - {"chains"} == {stage, *(other for other, needed in STAGES.items() if needed == stage)}
 
 
 def test_figures_of_a_study_without_attractors():
-    there = jobs_of(without=["attractors"]).there
+    there = jobs_of(without=["attractors"]).existing
     assert {"figure_mean_distance", "figure_bifurcation_diagram", "figure_distance"} <= there.keys()
     assert not {"figure_bifurcations", "figure_branches_reached", "figure_bifurcation_diagram_refined"} & there.keys()
 
@@ -71,25 +71,25 @@ def test_longer_chains_are_made_by_name_or_by_the_config():
     assert not files & {*by_name.files()}
     assert files <= {*by_config.files()}
     for jobs, is_read in ((by_name, False), (by_config, True)):
-        read = jobs.inputs(jobs.there["report"], {})
+        read = jobs.inputs(jobs.existing["report"], {})
         assert ("summary/chains.nc" in read["summaries"], "figures/chains.png" in read["figures"]) == (is_read, is_read)
-    assert len(by_name.there["watch_chain"].each) == 9
+    assert len(by_name.existing["watch_chain"].each) == 9
     refused = jobs_of(chain={"mass": [1, 2, 1]})
     assert not files & refused.all_files.keys()
-    assert "expected one number for chains of another length" in refused.defined["watch_chain"].refused
+    assert "expected one number for chains of other lengths" in refused.defined["watch_chain"].refusal
 
 
 def test_several_parameters():
     jobs = Jobs(load_study(PLANE, "plane.yaml"))
     assert jobs.files("summary/") == ["summary/grid.nc"]
-    assert {rule.stage for rule in jobs.there.values()} == {"points", "summary", "figures", "report"}
-    assert jobs.point_files(jobs.there["grid"], {}) == ["stretches/0000.done"]
-    assert "stretch" not in ALL.there
+    assert {rule.stage for rule in jobs.existing.values()} == {"points", "summary", "figures", "report"}
+    assert jobs.point_files(jobs.existing["grid"], {}) == ["chunks/0000.done"]
+    assert "chunk" not in ALL.existing
 
 
 def test_every_function_takes_what_the_rule_gives():
     """Also of rules that load a module by its name."""
-    jobs = [*ALL.there.values(), Jobs(load_study(PLANE, "plane.yaml")).there["grid"]]
+    jobs = [*ALL.existing.values(), Jobs(load_study(PLANE, "plane.yaml")).existing["grid"]]
     made = [rule for rule in jobs if rule.make]
     assert len(made) > 45
     for rule in made:
@@ -102,15 +102,15 @@ def test_every_function_takes_what_the_rule_gives():
 
 def test_files_have_one_rule_and_jobs_wait_for_their_inputs_alone():
     made = ALL.all_files
-    assert len(made) == sum(len(rule.files) * len(rule.each) for rule in ALL.there.values() if rule.make)
-    rule = ALL.there["basin_tile"]
+    assert len(made) == sum(len(rule.files) * len(rule.each) for rule in ALL.existing.values() if rule.make)
+    rule = ALL.existing["basin_tile"]
     job = {"law": "nonlinear", "a": "0.0800", "tile": "0"}
     assert ALL.inputs(rule, job) == {"attractors": ["summary/attractors.nc"], "returns": ["returns/nonlinear.nc"]}
-    assert len(ALL.inputs(ALL.there["attractors"], {})["grid"]) == 2
+    assert len(ALL.inputs(ALL.existing["attractors"], {})["grid"]) == 2
     # The longest jobs of a study are about no statement of the paper.
-    assert not {"summary/basins.nc", "summary/catalogue.nc"} & {*ALL.inputs(ALL.there["claims"], {})["summaries"]}
+    assert not {"summary/basins.nc", "summary/catalogue.nc"} & {*ALL.inputs(ALL.existing["claims"], {})["summaries"]}
     jobs = jobs_of(solvers={"a": [0.08]})
-    points = jobs.point_files(jobs.there["solvers"], {})
+    points = jobs.point_files(jobs.existing["solvers"], {})
     assert points == [f"points/{law}/{state}/a0.0800.nc" for law in ("linearized", "nonlinear") for state in STATES]
 
 
@@ -153,7 +153,7 @@ def test_a_key_changes_what_depends_on_it_and_nothing_else(change, rules):
     while more:
         after |= more
         files = {file for name in after for file in ALL.rules[name].files}
-        more = {rule.name for rule in ALL.there.values() for read in rule.inputs.values() if files & {*read}} - after
+        more = {rule.name for rule in ALL.existing.values() for read in rule.inputs.values() if files & {*read}} - after
     assert changed == (after | {"report"})
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from burridge_knopoff.provenance.compilation import vector_flags
-from burridge_knopoff.provenance.processor import compiled_to, lacking
+from burridge_knopoff.provenance.processor import missing_instructions, required_instructions
 
 RUNS = """
 import hashlib
@@ -56,8 +56,8 @@ def test_every_module_of_a_wheel_without_optimisation_makes_the_bits_of_the_kern
     monkeypatch.setenv("BURRIDGE_KNOPOFF_LANES", "all")
     _, *expected = output((), sys.executable)
     for folder, flags in vector_flags().items():
-        needed = compiled_to(flags)
-        if not lacking(needed):
+        needed = required_instructions(flags)
+        if not missing_instructions(needed):
             path, *found = output(needed, installed.python, "-I")
             assert Path(path).parent.name == (folder or "kernel")
             assert found == expected

@@ -12,7 +12,7 @@ from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, law_of
 from burridge_knopoff.kernel._core import Catalogue, Exponents
 from burridge_knopoff.provenance.compilation import COMPILER_FLAGS, LEVELS
 from burridge_knopoff.provenance.kernel_build import KERNEL
-from burridge_knopoff.provenance.processor import compiled_to, lacking
+from burridge_knopoff.provenance.processor import missing_instructions, required_instructions
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.kernel_model import kernel_model
 from burridge_knopoff.running.runner import Runner, new_observer, run_together
@@ -148,7 +148,7 @@ def test_what_reads_the_cases_compiles():
 @pytest.mark.parametrize("clang", setting("BK_CLANG").split(os.pathsep))
 def test_clang_makes_the_same_bits(clang, lanes, tmp_path, monkeypatch):
     # Where the processor lacks so wide instructions, narrower ones do.
-    own = [flag for flag in LEVELS.values() if not lacking(compiled_to([flag]))]
+    own = [flag for flag in LEVELS.values() if not missing_instructions(required_instructions([flag]))]
     flag = LEVELS[lanes] if LEVELS[lanes] in own else own[-1]
     check([clang, flag, f"-DBK_LANES={lanes}"], [], tmp_path, monkeypatch)
 

@@ -88,7 +88,7 @@ POINT = "points/linearized/plus/a0.0500.nc"
     ("name", "damage", "reason"),
     [
         (POINT, lambda path: path.write_bytes(b""), "is empty"),
-        (POINT, lambda path: path.write_bytes(b"no netCDF"), "has no seal at its end"),
+        (POINT, lambda path: path.write_bytes(b"no netCDF"), "is truncated, or was not written by this program"),
         (POINT, lambda path: shutil.copy(path.with_name("a0.0800.nc"), path), "is another run: --a 0.08 instead of"),
         (SUMMARY, lambda path: path.write_bytes(b""), "is empty"),
         (SUMMARY, lambda path: resealed(path, file=None), f"is another file: got nothing, expected {SUMMARY}"),

@@ -27,7 +27,7 @@ def test_a_failed_write_leaves_what_was_there(tmp_path):
             file.write("half")
         raise RuntimeError("NetCDF: HDF error")
 
-    with pytest.raises(OSError, match=r"result\.txt: cannot be written: NetCDF: HDF error \(not for want of space"):
+    with pytest.raises(OSError, match=r"result\.txt: cannot be written: NetCDF: HDF error \(the disk is not full"):
         write_whole(path, fail)
     assert path.read_text() == "old"
     assert [item.name for item in tmp_path.iterdir()] == ["result.txt"]
@@ -108,7 +108,7 @@ def test_a_writer_that_never_makes_its_file(tmp_path):
 def test_folders_that_cannot_be_written_to(tmp_path):
     (tmp_path / "file").touch()
     (tmp_path / "link").symlink_to("nowhere")
-    for path, words in (("file", "file is not a folder"), ("link", "link is a link to nowhere, which is not there")):
+    for path, words in (("file", "file is not a folder"), ("link", "link is a link to nowhere, which does not exist")):
         for below in (path, f"{path}/study"):
             for check in (nearest_folder, check_folder, partial(check_folder, inside=True)):
                 with pytest.raises(OSError, match=f"^{re.escape(str(tmp_path))}/{words}$"):

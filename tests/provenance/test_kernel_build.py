@@ -81,7 +81,7 @@ def test_a_missing_source_is_seen(package):
 def test_a_build_that_was_not_finished_is_refused(package, content):
     path = package / "kernel" / kernel_build.RECORD
     path.unlink() if content is None else path.write_text(content)
-    assert "build.json: cannot be read; the kernel was not compiled whole" in refusal(package)
+    assert "build.json: cannot be read; the kernel was not compiled completely" in refusal(package)
 
 
 def test_an_uncompiled_kernel_is_refused(package):

@@ -26,13 +26,13 @@ def machine(tmp_path, monkeypatch):
 
 def test_native_code_moves_to_a_newer_processor_only(machine):
     machine(OLD)
-    for_old = processor.compiled_to(["-O3", "-march=native"])
+    for_old = processor.required_instructions(["-O3", "-march=native"])
     machine(NEW)
-    for_new = processor.compiled_to(["-O3", "-march=native"])
-    assert processor.lacking(for_old) == processor.lacking(for_new) == []
+    for_new = processor.required_instructions(["-O3", "-march=native"])
+    assert processor.missing_instructions(for_old) == processor.missing_instructions(for_new) == []
     machine(OLD)
-    assert processor.lacking(for_old) == []
-    assert "avx512f" in processor.lacking(for_new)
+    assert processor.missing_instructions(for_old) == []
+    assert "avx512f" in processor.missing_instructions(for_new)
     assert "vaes" not in for_new
 
 
@@ -40,27 +40,32 @@ def test_native_code_moves_to_a_newer_processor_only(machine):
 def test_the_lanes_asked_for_decide_and_not_the_machine(machine, lanes, lacks):
     """x86-64-v2, v3 and v4, wherever they are compiled."""
     machine(NEW)
-    needed = processor.compiled_to([LEVELS[lanes]])
-    assert processor.lacking(needed) == []
+    needed = processor.required_instructions([LEVELS[lanes]])
+    assert processor.missing_instructions(needed) == []
     machine(OLD)
-    assert processor.compiled_to([LEVELS[lanes]]) == needed
-    assert (lacks in processor.lacking(needed)) if lacks else (processor.lacking(needed) == [])
+    assert processor.required_instructions([LEVELS[lanes]]) == needed
+    assert (
+        (lacks in processor.missing_instructions(needed)) if lacks else (processor.missing_instructions(needed) == [])
+    )
 
 
 @pytest.mark.parametrize(("flags", "chosen"), [(NEW, "8"), (OLD, "2"), ("sse2", "2"), (None, "2")])
 def test_of_several_builds_the_widest_that_runs_is_chosen(machine, flags, chosen):
     """Where the processor is not told, the narrowest: a wider one could end Python by a signal."""
     machine(flags)
-    assert processor.widest({lanes: processor.compiled_to([flag]) for lanes, flag in LEVELS.items()}) == chosen
+    assert (
+        processor.best_build({lanes: processor.required_instructions([flag]) for lanes, flag in LEVELS.items()})
+        == chosen
+    )
 
 
 @pytest.mark.parametrize("flags", [None, ""])
 def test_where_the_processor_is_not_told_nothing_is_refused(machine, flags):
     machine(flags)
-    assert processor.compiled_to(["-march=native"]) == []
-    assert processor.lacking(["avx512f"]) == []
+    assert processor.required_instructions(["-march=native"]) == []
+    assert processor.missing_instructions(["avx512f"]) == []
 
 
 def test_without_flags_for_a_processor_any_will_do(machine):
     machine(NEW)
-    assert processor.compiled_to(["-O3", "-g0"]) == []
+    assert processor.required_instructions(["-O3", "-g0"]) == []

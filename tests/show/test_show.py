@@ -19,7 +19,7 @@ from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.provenance.seal import digest_of
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.show.summary import summary_lines
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
 BK = str(Path(sys.executable).parent / "bk")
 
@@ -64,7 +64,7 @@ def test_a_point_in_words(point, capsys):
         assert words in said
     with netCDF4.Dataset(point) as dataset:
         mean, error = (dataset[name][...].item() for name in ("mean_distance", "mean_distance_error"))
-        assert f"<J>               {plain(with_error(mean, error))}\n" in said
+        assert f"<J>               {to_ascii(with_error(mean, error))}\n" in said
         assert f"{dataset['event_count'][...]} stops and starts in the whole run\n" in said
         assert f"{dataset.history} --out FILE\n" in said
     assert "other sources" not in said
@@ -117,7 +117,7 @@ def test_what_cannot_be_drawn_is_said_in_a_line(study, tmp_path, capsys):
     alone = shutil.copy(study / "summary/basins.nc", tmp_path)
     assert "its figure also needs attractors.nc" in shown(capsys, alone, "--plot", "x.png", code=2)
     assert "x.doc: got '.doc', expected .png | .pdf | .svg" in shown(capsys, alone, "--plot", "x.doc", code=2)
-    assert "there is no folder no" in shown(capsys, alone, "--plot", "no/x.png", code=2)
+    assert "folder no does not exist" in shown(capsys, alone, "--plot", "no/x.png", code=2)
 
 
 def test_a_part_of_a_summary_is_described_and_not_drawn(small_studies, tmp_path, capsys):
@@ -157,13 +157,13 @@ def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
     inside.write_bytes(whole[:-100])
     root = study.parents[1]
     for path, words in (
-        (tmp_path / "cut.nc", "has no seal at its end: it is cut off, or another program wrote it"),
-        (tmp_path / "changed.nc", "has other bytes than were written"),
-        (tmp_path / "text.nc", "has no seal"),
-        (tmp_path / "foreign.nc", "has no seal"),
+        (tmp_path / "cut.nc", "is truncated, or was not written by this program"),
+        (tmp_path / "changed.nc", "was changed after it was written"),
+        (tmp_path / "text.nc", "not written by this program"),
+        (tmp_path / "foreign.nc", "not written by this program"),
         (tmp_path / "none.nc", "is missing"),
         (tmp_path, "cannot be read"),
-        (study / "study.json", "has no seal beside it (shown are points"),
+        (study / "study.json", "has no seal in .study.json.seal (shown are points"),
         (inside, f"remake it: cd {shlex.quote(str(root))} && snakemake -c2 -R {inside.relative_to(root)}"),
     ):
         said = shown(capsys, path, code=2)

@@ -2,12 +2,12 @@
 
 import pytest
 
-from burridge_knopoff.study.formatting import counted, plain, with_error
+from burridge_knopoff.study.formatting import format_count, to_ascii, with_error
 
 
 @pytest.mark.parametrize(("number", "words"), [(0, "0 files"), (1, "1 file"), (2, "2 files")])
 def test_a_number_with_its_noun(number, words):
-    assert counted(number, "file") == words
+    assert format_count(number, "file") == words
 
 
 @pytest.mark.parametrize(
@@ -45,5 +45,5 @@ def test_a_value_has_the_decimals_of_its_error(value, error, shown):
 
 
 def test_terminals_read_the_same_digits():
-    assert plain(with_error(-0.25, 0.01)) == "-0.250 +- 0.010"
-    assert [plain(with_error(value)) for value in (float("-inf"), float("nan"))] == ["-infinity", "nan"]
+    assert to_ascii(with_error(-0.25, 0.01)) == "-0.250 +- 0.010"
+    assert [to_ascii(with_error(value)) for value in (float("-inf"), float("nan"))] == ["-infinity", "nan"]

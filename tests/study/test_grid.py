@@ -7,10 +7,10 @@ import pytest
 from burridge_knopoff.check.leftovers import leftovers
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.study.chunks import MOST, chunks
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.points import make_points
 from burridge_knopoff.study.recorded import recorded_study
-from burridge_knopoff.study.stretches import MOST, stretches
 from burridge_knopoff.study.study import Study, all_points
 from burridge_knopoff.study.yaml_file import ConfigError
 from tests.refused import refused
@@ -70,7 +70,7 @@ def test_a_number_of_a_law_is_a_parameter():
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"a": [0.1]}, ["a: got [0.1] beside grid, expected one of them"]),
+        ({"a": [0.1]}, ["a: got [0.1] together with grid, expected one of them"]),
         ({"grid": None}, ["a: missing", "grid"]),
         ({"grid": {"v": [0.1, 0.2]}}, ["grid.a: missing"]),
         ({"grid": {"a": [0.1], "speed": [1]}}, ["speed", "a | v | coupling"]),
@@ -98,15 +98,15 @@ def test_a_wrong_grid_gets_one_line(changes, words):
 
 
 @pytest.mark.parametrize("values", [3, 40, 1500, pytest.param(24_000, marks=pytest.mark.slow)])
-def test_stretches_are_all_points_in_order(values):
+def test_chunks_are_all_points_in_order(values):
     study = load(grid={"a": [0.2], "v": [{"from": 0.001, "to": values / 1000, "step": 0.001}]})
-    parts = stretches(study)
+    parts = chunks(study)
     assert list(chain(*parts.values())) == all_points(study)
     assert sorted(parts) == list(parts)
     sizes = [len(part) for part in parts.values()]
     assert max(sizes) <= MOST
     assert all(size == sizes[0] >= last for size, last in pairwise(sizes))
-    assert not stretches(load(grid=None, a=[0.1, 0.2]))
+    assert not chunks(load(grid=None, a=[0.1, 0.2]))
 
 
 def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_path):
@@ -122,9 +122,9 @@ def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_pat
         "points/linearized/pair/a0.2000_coupling-0.5000_v0.1000.nc": True,
         "points/linearized/pair/notes.nc": False,
         "logs/simulate/linearized/pair/a0.2000_v0.3000.log": True,
-        "stretches/0000.done": False,
-        "stretches/0001.done": True,
-        "logs/stretch/0001.log": True,
+        "chunks/0000.done": False,
+        "chunks/0001.done": True,
+        "logs/chunk/0001.log": True,
         "summary/grid.nc": False,
         "summary/mean_distance.nc": True,
         "figures/grid_kinds.png": False,

@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from burridge_knopoff.running.processes import shared_out
-from burridge_knopoff.study.job_log import SILENT, failure, last_words, remedies
+from burridge_knopoff.study.job_log import SILENT, failure_line, failure_reason, remedies
 
 TRACEBACK = """Traceback (most recent call last):
   File "a.py", line 3, in <module>
@@ -31,7 +31,7 @@ TRACEBACK = """Traceback (most recent call last):
 )
 def test_last_words(tmp_path, text, words):
     (tmp_path / "log").write_text(text)
-    last = last_words(tmp_path / "log")
+    last = failure_reason(tmp_path / "log")
     assert last.startswith(words)
     assert bool(last) == bool(words)
     assert "\n" not in last
@@ -41,7 +41,7 @@ def test_the_command_that_remakes_a_bad_file_is_no_part_of_the_reason(tmp_path):
     """Seven jobs may stop at one file: their reasons are listed one by one, the command once."""
     (tmp_path / "log").write_text(TRACEBACK + "ValueError: a.nc: is empty; remake it: snakemake -c2 -R a.nc\n")
     (tmp_path / "other").write_text(TRACEBACK + "ValueError: wrong\n")
-    assert last_words(tmp_path / "log") == "ValueError: a.nc: is empty"
+    assert failure_reason(tmp_path / "log") == "ValueError: a.nc: is empty"
     assert remedies([tmp_path / "log"] * 7 + [tmp_path / "other"]) == ["snakemake -c2 -R a.nc"]
 
 
@@ -50,16 +50,16 @@ def test_what_a_long_job_has_done_is_not_why_it_failed(tmp_path, caplog):
     with shared_out(1, tmp_path / "kept") as each:
         each("doubled", abs, [1, 2])
     (tmp_path / "log").write_text(f"{caplog.messages[0]}\n")
-    assert last_words(tmp_path / "log") == ""
+    assert failure_reason(tmp_path / "log") == ""
 
 
 def test_no_log(tmp_path):
-    assert last_words(tmp_path / "log") == ""
+    assert failure_reason(tmp_path / "log") == ""
 
 
 @pytest.mark.parametrize(("free", "words"), [(0, "no space left on its disk"), (10**9, "it was killed")])
 def test_a_job_that_said_nothing(tmp_path, monkeypatch, free, words):
     monkeypatch.setattr(shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(10**9, 10**9 - free, free))
     log = tmp_path / "not there" / "log"
-    assert words in failure("simulate", [log])
-    assert failure("simulate", []) == f"failed: simulate: {SILENT} (log none)"
+    assert words in failure_line("simulate", [log])
+    assert failure_line("simulate", []) == f"failed: simulate: {SILENT} (log none)"

@@ -86,10 +86,10 @@ def test_a_network_has_neither_phases_nor_other_lengths():
     study = load({"grid": [3, 1]})
     assert (study.single_length_key, study.is_mirror_symmetric) == ("grid", False)
     assert study.config["phases"]["a"] == []
-    assert not {"proof", "phases", "two_blocks"} & {*Jobs(study).there}
+    assert not {"proof", "phases", "two_blocks"} & {*Jobs(study).existing}
 
 
 def test_lists_are_as_long_as_a_command_can_be():
-    with refused("chain.mass: got [1.0, 1.0,", "expected at most 1024 numbers in a list, or drawn numbers"):
+    with refused("chain.mass: got [1.0, 1.0,", "expected at most 1024 numbers in a list, or random numbers"):
         load({"blocks": 2000, "mass": 2000 * [1]})
     assert load({"mass": 2}, {"one": {"position": -0.5, "velocity": 0}}).blocks == 1

@@ -58,7 +58,7 @@ TARGETS = {
     "nothing.nc": ["nothing.nc: unknown target"],
     "point": ["point: unknown target"],
     f"{POINTS}/plus/a0.0810.nc": ["a0.0810: not a point of study tiny", "grid"],
-    f"{POINTS}/plus/a0.08.nc": ["a0.08: not a point of study tiny: the name of this a is a0.0800"],
+    f"{POINTS}/plus/a0.08.nc": ["a0.08: not a point of study tiny; write a0.0800"],
     f"{POINTS}/middle/a0.0800.nc": ["middle/a0.0800.nc: unknown target"],
     "results/tiny/points/linear/plus/a0.0800.nc": ["linear/plus/a0.0800.nc: unknown target"],
     "results/other/points/linearized/plus/a0.0800.nc": [

@@ -71,13 +71,13 @@ def other_run(path: Path, a: float = 0.2, initial: str = "minus", **settings) ->
 DAMAGES = {
     "missing": (Path.unlink, "is missing"),
     "emptied": (lambda path: path.write_bytes(b""), "is empty"),
-    "truncated": (lambda path: rewrite(path, cut), "cut off"),
-    "last byte lost": (lambda path: rewrite(path, lambda content: content[:-1]), "cut off"),
-    "noise": (lambda path: path.write_bytes(noise(5000)), "has no seal"),
-    "noise inside": (lambda path: rewrite(path, noise_inside), "other bytes"),
-    "appended": (lambda path: rewrite(path, lambda content: content + b"\0"), "seal"),
-    "unsealed": (lambda path: rewrite(path, unsealed), "has no seal"),
-    "a text": (lambda path: path.write_text("no netCDF file\n"), "has no seal"),
+    "truncated": (lambda path: rewrite(path, cut), "truncated"),
+    "last byte lost": (lambda path: rewrite(path, lambda content: content[:-1]), "truncated"),
+    "noise": (lambda path: path.write_bytes(noise(5000)), "not written by this program"),
+    "noise inside": (lambda path: rewrite(path, noise_inside), "was changed"),
+    "appended": (lambda path: rewrite(path, lambda content: content + b"\0"), "not written by this program"),
+    "unsealed": (lambda path: rewrite(path, unsealed), "not written by this program"),
+    "a text": (lambda path: path.write_text("no netCDF file\n"), "not written by this program"),
     "another a": (lambda path: shutil.copy(path.with_name("a0.2200.nc"), path), "another run"),
     "another initial state": (lambda path: shutil.copy(path.parents[1] / "plus" / path.name, path), "another run"),
     "another law": (lambda path: shutil.copy(path.parents[2] / "nonlinear/minus" / path.name, path), "another run"),
@@ -203,7 +203,7 @@ def test_a_bad_file_as_old_as_it_was(copy, path, rule):
     reasons = failures(run.stderr).values()
     assert reasons
     for reason in reasons:
-        assert reason == f"results/tiny/{path}: has other bytes than were written"
+        assert reason == f"results/tiny/{path}: was changed after it was written"
     (command,) = remedies(run.stderr)
     assert command.endswith(f" -R results/tiny/{path}")
 
@@ -270,7 +270,7 @@ def test_damaged_texts_and_pictures_are_made_again(copy, finished):
     found = {finding.path.name: finding.kind for finding in check_study(results).findings}
     assert found == dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt")
     said = copy.ok()
-    assert "results/tiny/figures/orbits.png: has other bytes than were written: it is made again" in said
+    assert "results/tiny/figures/orbits.png: was changed after it was written: it is made again" in said
     assert not check_study(results).findings
     check_end(copy, finished)
 

@@ -212,4 +212,4 @@ def test_something_else_in_the_place_of_results(study):
     results.unlink()
     results.mkdir()
     (results / "tiny").symlink_to("nowhere")
-    stops_at_once(study, "results/tiny is a link to nowhere, which is not there")
+    stops_at_once(study, "results/tiny is a link to nowhere, which does not exist")

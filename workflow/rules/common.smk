@@ -7,7 +7,7 @@ def inputs(rule, name):
 
 
 def points_of(rule):
-    """Return a function that gives the points that a job reads, or the marks of their stretches."""
+    """Return a function that gives the points that a job reads, or the marks of their chunks."""
     return lambda wildcards: paths(JOBS.point_files(rule, dict(wildcards)))
 
 
@@ -15,8 +15,8 @@ def abouts(rule):
     """Return a function that tells what the files of a job must be made from, which they are sealed with."""
 
     def of_job(wildcards):
-        if rule.name not in JOBS.there:
-            raise ConfigError(rule.refused)
+        if rule.name not in JOBS.existing:
+            raise ConfigError(rule.refusal)
         return JOBS.abouts(rule, dict(wildcards))
 
     return of_job

@@ -53,7 +53,7 @@ rule summary:
 
 
 # The figures of the paper, which the display announces first.
-PLAN.first = [rule.name for rule in JOBS.of_paper()]
+PLAN.first = [rule.name for rule in JOBS.paper_figures()]
 
 
 rule figures:
@@ -65,7 +65,7 @@ rule figures:
 rule curves:
     """Draw the figures of the paper."""
     input:
-        made(*JOBS.of_paper()),
+        made(*JOBS.paper_figures()),
     message:
         f"the figures of the paper are in {RESULTS}/figures"
 

@@ -1,12 +1,12 @@
 # Points: one simulation for each friction law, initial state and value of a, or of several parameters. A study of a has
-# a job for each point; one of several parameters has a job for each stretch of points.
+# a job for each point; one of several parameters has a job for each chunk of points.
 RUNS = JOBS.rules["simulate"]
 
 
 rule points:
     """Simulate all points: each friction law from each initial state at each a, or at each point of the grid."""
     input:
-        made(JOBS.there.get("stretch", RUNS)),
+        made(JOBS.existing.get("chunk", RUNS)),
 
 
 rule simulate:
@@ -33,8 +33,8 @@ rule simulate:
         "{params.command} --out {output} > /dev/null 2> {log} || [ $? = 3 ]"
 
 
-if "simulate_solver" in JOBS.there:
-    AGAIN = JOBS.there["simulate_solver"]
+if "simulate_solver" in JOBS.existing:
+    AGAIN = JOBS.existing["simulate_solver"]
 
     use rule simulate as simulate_solver with:
         """Simulate one point again with another solver."""
@@ -57,19 +57,19 @@ if "simulate_solver" in JOBS.there:
             filled(AGAIN.message)
 
 
-if "stretch" in JOBS.there:
-    STRETCHES = JOBS.there["stretch"]
+if "chunk" in JOBS.existing:
+    CHUNKS = JOBS.existing["chunk"]
 
-    rule stretch:
-        """Simulate the points of a stretch that are missing, damaged or out of date."""
+    rule chunk:
+        """Simulate the points of a chunk that are missing, damaged or out of date."""
         output:
-            touch(f"{RESULTS}/{STRETCHES.files[0]}"),
+            touch(f"{RESULTS}/{CHUNKS.files[0]}"),
         log:
-            f"{RESULTS}/logs/{STRETCHES.log_name}.log",
+            f"{RESULTS}/logs/{CHUNKS.log_name}.log",
         benchmark:
-            f"{RESULTS}/benchmarks/{STRETCHES.log_name}.tsv"
+            f"{RESULTS}/benchmarks/{CHUNKS.log_name}.tsv"
         wildcard_constraints:
-            stretch=r"\d+",
+            chunk=r"\d+",
         priority: 3
         resources:
             mem_mb=250,
@@ -77,8 +77,8 @@ if "stretch" in JOBS.there:
         params:
             folder=lambda wildcards: RESULTS,
             points=identity(canonical(STUDY.points)),
-            sources=source_fingerprint(ROOT / "workflow/scripts/stretch.py"),
+            sources=source_fingerprint(ROOT / "workflow/scripts/chunk.py"),
         message:
-            filled(STRETCHES.message)
+            filled(CHUNKS.message)
         script:
-            "../scripts/stretch.py"
+            "../scripts/chunk.py"

@@ -19,8 +19,8 @@ except KernelError as error:
 
 from burridge_knopoff.claims.claim import read_claims
 from burridge_knopoff.figures.description import picture_names
-from burridge_knopoff.jobs.checked import damaged
-from burridge_knopoff.jobs.jobs import Jobs, made as made_files
+from burridge_knopoff.jobs.checked import damaged_files
+from burridge_knopoff.jobs.jobs import Jobs, files_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.provenance.files import (
     check_folder,
@@ -28,7 +28,7 @@ from burridge_knopoff.provenance.files import (
     nearest_folder,
 )
 from burridge_knopoff.provenance.record import check_owner, write_study_record
-from burridge_knopoff.provenance.seal import canonical, identity
+from burridge_knopoff.provenance.seal import canonical_json, identity
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
@@ -116,7 +116,7 @@ def prepare_results():
     ):
         sys.exit(refusal)
     # Programs that submit jobs tell by it what their jobs would make, and from what.
-    made_from = [source_fingerprint(*rule.sources) for rule in JOBS.there.values()]
+    made_from = [source_fingerprint(*rule.sources) for rule in JOBS.existing.values()]
     decides = identity(json.dumps([STUDY.config, made_from]))
     os.environ.update(BK_STUDY=f"{RESULTS} {decides}")
     try:
@@ -136,7 +136,7 @@ def prepare_results():
 def remove_damaged():
     """Remove files that are damaged and that no job would read before they are kept; the run makes them again."""
     dry = workflow.output_settings.dryrun
-    for path, reason in damaged(JOBS, Path(RESULTS)):
+    for path, reason in damaged_files(JOBS, Path(RESULTS)):
         print(
             f"{path}: {reason}: it {'would be' if dry else 'is'} made again",
             file=sys.stderr,
@@ -157,7 +157,7 @@ def paths(names):
 
 def made(*rules):
     """Return the paths of the files that all jobs of some rules make."""
-    return [path for rule in rules for path in paths(made_files(rule))]
+    return [path for rule in rules for path in paths(files_of(rule))]
 
 
 def filled(words):

@@ -215,7 +215,10 @@ def _settle(track: EdgeTrack, duration: float) -> PeriodicOrbit | None:
     """Follow the boundary until it leads to a saddle orbit, and return the orbit; None if it leads to none in time."""
 
     def accepted(orbit: PeriodicOrbit, first: float, last: float, _: float) -> bool:
-        return last <= max(CLOSE_FACTOR * SEPARATED_DISTANCE, first / CLOSE_FACTOR) and multipliers(orbit).unstable_count == 1
+        return (
+            last <= max(CLOSE_FACTOR * SEPARATED_DISTANCE, first / CLOSE_FACTOR)
+            and multipliers(orbit).unstable_count == 1
+        )
 
     part = duration / FIRST_PART
     while part <= duration:

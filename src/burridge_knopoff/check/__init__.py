@@ -1,1 +1,1 @@
-"""Checks of the files of a study: wrong files, and files that do not belong to it."""
+"""Checks of the files of a study: bad files, and files that do not belong to it."""

@@ -1,4 +1,4 @@
-"""The files of a study by name: missing, and left over from an earlier config."""
+"""Files of a study that are missing, and files left over from an earlier config, by their names."""
 
 from __future__ import annotations
 
@@ -12,15 +12,15 @@ from burridge_knopoff.provenance.seal import seal_path
 
 
 def leftovers(results: Path, jobs: Jobs) -> list[Path]:
-    """Return results, logs and benchmarks of the jobs that another config has, and the study has not."""
+    """Return results, logs and benchmarks of jobs that the study no longer has."""
     point = jobs.study.point_file.removesuffix(".nc")
     patterns: list[str] = []
     known: set[str] = set()
     for rule in jobs.rules.values():
         for form in (*rule.files, f"logs/{rule.log_name}.log", f"benchmarks/{rule.log_name}.tsv"):
-            # A point of another study may be one of other parameters.
+            # A point of another config may have other parameters.
             patterns.append(jobs.pattern(form.replace(point, "{law}/{initial}/{values}")))
-            known.update(form.format(**job) for job in rule.each if rule.name in jobs.there)
+            known.update(form.format(**job) for job in rule.each if rule.name in jobs.existing)
     # Each pattern has groups of the same names.
     pattern, whole = re.compile(re.sub(r"\?P<\w+>", "?:", "|".join(patterns))), results.resolve()
     names = {path: path.relative_to(results).as_posix() for path in sorted(results.rglob("*"))}
@@ -35,16 +35,16 @@ def leftovers(results: Path, jobs: Jobs) -> list[Path]:
     ]
 
 
-def unmade(results: Path, jobs: Jobs) -> dict[str, Path]:
-    """Return {file: log} of missing files besides runs, by name, whose job has started, as its log shows.
+def missing_files(results: Path, jobs: Jobs) -> dict[str, Path]:
+    """Return {name: log} of the missing files, except those of runs, whose job has started.
 
-    A file without a log was not requested yet, or waits for other missing files.
+    The job of a file without a log was not requested yet, or waits for other missing files.
     """
-    logs = {name: results / log_of(*made) for name, made in jobs.all_files.items()}
+    logs = {name: results / log_path(*made) for name, made in jobs.all_files.items()}
     return {name: log for name, log in logs.items() if log.exists() and not (results / name).exists()}
 
 
-def log_of(rule: Rule, job: Wildcards) -> str:
+def log_path(rule: Rule, job: Wildcards) -> str:
     """Return the log of a job."""
     return f"logs/{rule.log_name}.log".format(**job)
 
@@ -53,11 +53,11 @@ def run_files(jobs: Jobs) -> Iterator[tuple[str, Wildcards, str]]:
     """Yield the point file of each run, its wildcards, and its log."""
     for rule in jobs.runs():
         for job in rule.each:
-            yield rule.files[0].format(**job), job, log_of(rule, job)
+            yield rule.files[0].format(**job), job, log_path(rule, job)
 
 
 def delete(results: Path, paths: list[Path]) -> None:
-    """Delete files of a study, and folders that this leaves empty; raises OSError if a file cannot be deleted."""
+    """Delete files of a study and the folders that become empty; raises OSError if a file cannot be deleted."""
     for path in paths:
         path.unlink(missing_ok=True)
         seal_path(path).unlink(missing_ok=True)

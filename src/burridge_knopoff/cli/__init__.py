@@ -1,6 +1,6 @@
 """`bk`: one module for each command, with DESCRIPTION, EXAMPLES, `add_options` and `run`.
 
-Only the module of the called command is imported, since a study starts `bk simulate` once for every point.
+Only the module of the called command is imported, since a study starts `bk simulate` for every point.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from types import ModuleType
 
-# A run uses one thread. The linear-algebra library would otherwise start a busy thread on every core.
+# A run uses one thread. Otherwise the linear-algebra library would start a busy thread on every core.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from burridge_knopoff.version import __version__
@@ -24,25 +24,25 @@ DESCRIPTION = "Stick-slip dynamics of spring-coupled blocks on a rough surface (
 COMMANDS = {
     "simulate": "run one simulation",
     "exponents": "Lyapunov exponents of one run, and whether synchrony is stable",
-    "orbit": "the synchronized orbit, or the periodic orbit reached from a state, and its multipliers",
+    "orbit": "the synchronized orbit, or the periodic orbit reached from a state, with its multipliers",
     "attractors": "find the attractors reached from sampled initial states",
     "basins": "map the attractor reached from each state in a plane",
     "catalogue": "record the slip events of one run and the slope of their magnitudes",
     "show": "describe and plot a point file or a summary",
-    "check": "find points of a study that are missing, corrupt, stale or failed",
+    "check": "find files of a study that are missing, corrupt, stale or failed",
     "prune": "delete results that no longer belong to a study",
-    "completion": "print the completion of commands and options for a shell",
+    "completion": "print a script that completes commands and options in a shell",
 }
 
-#: Options that name an output file; they are checked before the work starts.
+#: Options that name an output file, which is checked before the work starts.
 WRITTEN = ("out", "attractors_out", "plot")
 
-#: Exit code if the reader of the output has closed it, as `head` does.
+#: Exit code if the reader of the output, such as `head`, has closed it.
 READER_GONE = 141
 
 
 class _Parser(argparse.ArgumentParser):
-    """A parser that answers wrong input with one line and exit code 2."""
+    """A parser that reports wrong input in one line, with exit code 2."""
 
     def error(self, message: str) -> None:  # type: ignore[override]
         self.exit(2, f"{self.prog}: {message}\n")
@@ -68,7 +68,7 @@ def build_parser(only: str | None = None) -> argparse.ArgumentParser:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `bk`; return its exit code: 0, or 2 for wrong input (one line on stderr)."""
-    from burridge_knopoff.cli.options import check_out, join_signed
+    from burridge_knopoff.cli.options import check_output, join_signed
 
     if sys.stdout is None:
         # A standard stream is closed: the next file opened would take its place.
@@ -76,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # File names may contain characters that the terminal cannot encode.
         sys.stdout.reconfigure(errors="backslashreplace")
-    # Pictures go to files. A notebook names a backend that need not be installed here; matplotlib would not load.
+    # Pictures are written to files. A notebook may name a backend that is not installed, and matplotlib would not load.
     os.environ.pop("MPLBACKEND", None)
     given = join_signed(sys.argv[1:] if arguments is None else arguments)
     parser = build_parser(next((word for word in given if not word.startswith("-")), ""))
@@ -85,28 +85,28 @@ def main(arguments: Sequence[str] | None = None) -> int:
     names = [word.partition("=")[0] for word in given if word.startswith("--")]
     for name in names:
         if names.count(name) > 1 and name != "--number":
-            parser.error(f"{name}: got it {names.count(name)} times, expected once")
+            parser.error(f"{name}: given {names.count(name)} times, expected once")
     try:
         for name in WRITTEN:
             if (path := getattr(options, name, None)) is not None:
-                check_out(path)
+                check_output(path)
         code = _module(options.command).run(options)
         sys.stdout.flush()
     except BrokenPipeError:
         _write_no_more()
         return READER_GONE
     except (ValueError, OSError, ImportError) as error:
-        from burridge_knopoff.values import printable
+        from burridge_knopoff.values import escape_unprintable
 
-        words = printable(f"{error}")
-        # Errors about files already name the file.
+        words = escape_unprintable(f"{error}")
+        # Other errors name the file.
         if isinstance(error, OSError) and error.errno is not None and error.filename is None:
             words = f"standard output: cannot be written: {error.strerror}"
             _write_no_more()
         print(f"bk {options.command}: {words}", file=sys.stderr)
         return 2
     except MemoryError:
-        print(f"bk {options.command}: not enough memory for the numbers to keep or compute", file=sys.stderr)
+        print(f"bk {options.command}: not enough memory", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         from burridge_knopoff.study.job_log import INTERRUPTED
@@ -117,7 +117,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _write_no_more() -> None:
-    """Discard the output that is left, so that Python does not write it at exit."""
+    """Discard the remaining output, so that Python does not write it at exit."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 

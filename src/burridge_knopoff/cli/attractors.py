@@ -9,12 +9,12 @@ import numpy as np
 
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.cli.options import (
-    add,
     add_model,
+    add_settings,
     add_state,
     command_of,
+    model_line,
     model_of,
-    said_of,
     settings_of,
     state_of,
 )
@@ -34,25 +34,27 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "sampled states only")
     add_search(parser, "fraction_width")
-    parser.add_argument("--out", metavar="FILE", help="also write them as netCDF, in the form of attractors.nc")
+    parser.add_argument(
+        "--out", metavar="FILE", help="also write the attractors as netCDF, in the form of attractors.nc"
+    )
 
 
 def add_search(parser: argparse.ArgumentParser, *more: str, **defaults: Any) -> None:
-    """Add the settings of the search and of kinds of motion, and the choice of `start`.
+    """Add the settings of the search and of the kinds of motion, and the choice of `start`.
 
     more : additional settings of the search; defaults : values that replace the settings' own defaults
     """
     search = parser.add_argument_group("search")
-    add(search, Settings, "start")
+    add_settings(search, Settings, "start")
     names = ("samples", *more, "seed", "transient", "window", "time_limit", "resolution")
-    add(search, SearchSettings, *names, **defaults)
-    add(search, SearchSettings, "perturbations", "lifetime")
-    add(search, SearchSettings, "position", "velocity", suffix="_box")
-    add(parser.add_argument_group("kinds of motion"), MotionSettings)
+    add_settings(search, SearchSettings, *names, **defaults)
+    add_settings(search, SearchSettings, "perturbations", "lifetime")
+    add_settings(search, SearchSettings, "position", "velocity", suffix="_box")
+    add_settings(parser.add_argument_group("kinds of motion"), MotionSettings)
 
 
 def search_of(options: argparse.Namespace) -> SearchSettings:
-    """Return the settings of a search; raises ValueError for values out of range."""
+    """Return the settings of a search; raises ValueError if a value is out of range."""
     return settings_of(SearchSettings, options, position=options.position_box, velocity=options.velocity_box)
 
 
@@ -67,7 +69,7 @@ def run(options: argparse.Namespace) -> int:
     starts = [] if state is None else [state]
     found, _ = coexisting_attractors(model, search, motion, starts=starts, start=options.start)
     count, drawn = int((found["branch"] >= 0).sum()), int(found["sample_count"].sum())
-    print(f"{said_of(model)}: {'one attractor' if count == 1 else f'{count} attractors'}\n")
+    print(f"{model_line(model)}: {'one attractor' if count == 1 else f'{count} attractors'}\n")
     names = ("", "_low", "_high")
     shares = np.stack([100.0 * found[f"basin_fraction{name}"].values[0, 0][:count] for name in names], axis=1)
     column = [f"{share:.1f} ({low:.1f} to {high:.1f}) %" for share, low, high in shares]

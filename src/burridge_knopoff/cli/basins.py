@@ -9,21 +9,21 @@ from dataclasses import asdict
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.cli.attractors import add_search, search_of
 from burridge_knopoff.cli.options import (
-    add,
     add_model,
+    add_settings,
     add_state,
     command_of,
+    model_line,
     model_of,
-    said_of,
     settings_of,
     state_of,
 )
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
-from burridge_knopoff.values import shown
+from burridge_knopoff.values import format_value
 
 DESCRIPTION = """Map the attractor reached from each state in a plane of initial states, over U_1(0) and U_N(0).
-The initial state gives the other positions and velocities. Attractors are searched for first, as by `bk attractors`."""
+The initial state gives all other positions and velocities. Attractors are searched for first, as by `bk attractors`."""
 
 EXAMPLES = """  bk basins --law linearized --a 0.08 --pixels 32 --out basins.nc --attractors-out attractors.nc
   bk basins --law linearized --a 0.08 --pixels 16 --first-position -1,0 --last-position -1,0 --samples 40
@@ -35,15 +35,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "minus")
     plane = parser.add_argument_group("map")
-    # Fewer pixels and samples than in a study, as in `basin_map`.
-    add(plane, BasinSettings, "pixels", "first_position", "last_position", "threads", pixels=64)
+    # Fewer pixels and samples than in a study, like `basin_map`.
+    add_settings(plane, BasinSettings, "pixels", "first_position", "last_position", "threads", pixels=64)
     add_search(parser, samples=100)
     out = parser.add_argument_group("files")
     out.add_argument("--out", metavar="FILE", help="write the map as netCDF, in the form of basins.nc")
     out.add_argument(
         "--attractors-out",
         metavar="FILE",
-        help="also write the attractors; `bk show --plot` finds them as attractors.nc beside the map",
+        help="also write the attractors; `bk show --plot` of the map reads attractors.nc in the same folder",
     )
 
 
@@ -56,7 +56,7 @@ def run(options: argparse.Namespace) -> int:
     out, attractors_out = options.out, options.attractors_out
     if out and attractors_out and os.path.realpath(out) == os.path.realpath(attractors_out):
         raise ValueError(
-            f"--attractors-out: got {shown(attractors_out)}, expected another file: --out writes the map there"
+            f"--attractors-out: got {format_value(attractors_out)}, expected another file: --out writes the map there"
         )
     state = state_of(options) or PAPER_STATES["minus"]
     model = model_of(options, state)
@@ -70,7 +70,7 @@ def run(options: argparse.Namespace) -> int:
     shares = [f"{100 * ((branch == number) & (side == of)).mean():.2f} %" for number, of in reached]
     first, last = ("{:g} to {:g}".format(*getattr(options, f"{end}_position")) for end in ("first", "last"))
     pixels = options.pixels
-    print(f"{said_of(model)}: {pixels} x {pixels} states, U_1(0) {first}, U_{model.blocks}(0) {last}\n")
+    print(f"{model_line(model)}: {pixels} x {pixels} states, U_1(0) {first}, U_{model.blocks}(0) {last}\n")
     print("\n".join(attractor_table(attractors, {"of the plane": shares})))
     print(f"\nundetermined: {100 * (branch < 0).mean():.2f} % of the plane")
     for path, dataset in ((out, basins), (attractors_out, attractors)):

@@ -6,15 +6,24 @@ import argparse
 
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.catalogue.slope import format_p_value
-from burridge_knopoff.cli.options import add, add_model, add_state, command_of, model_of, said_of, settings_of, state_of
+from burridge_knopoff.cli.options import (
+    add_model,
+    add_settings,
+    add_state,
+    command_of,
+    model_line,
+    model_of,
+    settings_of,
+    state_of,
+)
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE, Status
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
 DESCRIPTION = """Record the slip events of one run and fit the slope of their magnitudes (docs/catalogues.md).
-An event is a set of slips of neighbouring blocks at the same time. Its magnitude is ln M, M the sum of the slips.
-Exit code: 3 if the run hit a limit or diverged; its events until then are written all the same."""
+An event is a set of simultaneous slips of neighbouring blocks. Its magnitude is ln M, where M is the sum of the slips.
+Exit code 3: the run hit a limit or diverged; the events until then are still written."""
 
 EXAMPLES = (
     "  bk catalogue --law carlson_langer --a 3 --v 0.01 --coupling 9 --pulling 1 --blocks 50 --start tested "
@@ -28,16 +37,16 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "minus")
     run = parser.add_argument_group("run")
-    add(run, Settings, "start", "solver", "step")
-    add(run, CatalogueSettings, "loading", "transient", "window")
-    add(parser.add_argument_group("slope"), CatalogueSettings, "low", "high")
+    add_settings(run, Settings, "start", "solver", "step")
+    add_settings(run, CatalogueSettings, "loading", "transient", "window")
+    add_settings(parser.add_argument_group("slope"), CatalogueSettings, "low", "high")
     out = parser.add_argument_group("output")
-    add(out, CatalogueSettings, "profiles")
+    add_settings(out, CatalogueSettings, "profiles")
     out.add_argument("--out", metavar="FILE", help="write the events as netCDF; `bk show --plot` draws them")
 
 
 def run(options: argparse.Namespace) -> int:
-    """Run the model, and print how many events there are of which sizes."""
+    """Run the model, and print the number of events, their range of sizes and the slope."""
     from burridge_knopoff.catalogue.slip_events import catalogue_of_run
     from burridge_knopoff.dataset.summary import write_summary
     from burridge_knopoff.summaries.catalogue import summarize
@@ -48,7 +57,7 @@ def run(options: argparse.Namespace) -> int:
     found = summarize([events], [model.law.name], [model.a], settings.low, settings.high).isel(law=0, a=0)
     status = Status(found["status"].item())
     count = found["event_count"].item()
-    print(f"{said_of(model)}, from {state.name}: {status.name.lower()}\n")
+    print(f"{model_line(model)}, from {state.name}: {status.name.lower()}\n")
     print(f"events      {count} from tau = {settings.transient:g} to {settings.end:g}")
     if count:
         magnitude, blocks = events["magnitude"].values, events["blocks"].values
@@ -57,7 +66,7 @@ def run(options: argparse.Namespace) -> int:
         names = ("slope", "slope_error", "slope_low", "slope_high", "slope_count", "slope_p_value")
         slope, error, low, high, fitted, p_value = (found[name].item() for name in names)
         where = f"{fitted} events from {low:g} to {high:g}"
-        fit = f"{plain(with_error(slope, error))}, {format_p_value(p_value)}, of" if slope == slope else "none:"
+        fit = f"{to_ascii(with_error(slope, error))}, {format_p_value(p_value)}, of" if slope == slope else "none:"
         print(f"slope       {fit} {where}")
     if options.out:
         write_summary(events.assign_attrs(history=command_of(options)), options.out)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 
 DESCRIPTION = """List the points and catalogues of studies that are missing, corrupt, stale or failed, damaged
-summaries, missing files of jobs that have started, and files that do not belong to the study. Exit code: 0 if nothing
-is wrong, 1 if something is missing, corrupt or stale, 3 if runs have failed but nothing else is wrong."""
+summaries, missing files of jobs that have started, and files that do not belong to the study. Exit code 0: no problems;
+1: files are missing, corrupt or stale; 3: runs have failed, without other problems."""
 
 EXAMPLES = """  bk check results/paper
   bk check --paths results/*/
@@ -14,9 +14,9 @@ EXAMPLES = """  bk check results/paper
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Add the options of a check."""
+    """Add the folders to check, and the option for paths alone."""
     parser.add_argument("results", metavar="FOLDER", nargs="+", help="results of a study: results/<study>")
-    parser.add_argument("--paths", action="store_true", help="print only the paths of the files to remake")
+    parser.add_argument("--paths", action="store_true", help="print only the paths of the files to recreate")
 
 
 def run(options: argparse.Namespace) -> int:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator
 
-DESCRIPTION = """Print a script that completes the commands and options of bk in a shell, by shtab. To switch it on:
+DESCRIPTION = """Print a script that completes the commands and options of bk in a shell (by shtab). To enable it:
   bash        source <(bk completion bash)
   zsh         bk completion zsh > a file _bk in a folder of fpath
   fish        bk completion fish | source"""

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import argparse
 
-from burridge_knopoff.cli.options import add, add_model, add_state, model_of, said_of, settings_of, state_of
+from burridge_knopoff.cli.options import add_model, add_settings, add_state, model_line, model_of, settings_of, state_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
-DESCRIPTION = """Compute Lyapunov exponents of the motion from an initial state, and classify the motion. For a chain
-that is its own mirror image, also compute the transverse exponent: if negative, nearby mirror blocks synchronize."""
+DESCRIPTION = """Compute the Lyapunov exponents of the motion from an initial state, and classify the motion. For a
+mirror-symmetric chain, also compute the transverse exponent: if it is negative, mirror synchrony is stable."""
 
 EXAMPLES = """  bk exponents --law linearized --a 0.08 --initial plus
   bk exponents --law nonlinear --a 0.22 --transient 3000 --window 20000 --lyapunov-exponents 6 --out chaos.nc
@@ -24,9 +24,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "minus")
     run = parser.add_argument_group("run")
-    add(run, Settings, "start", "transient", "window", "batches", "event_window")
-    add(run, Settings, "lyapunov_exponents", "lyapunov_alignment")
-    add(parser.add_argument_group("kinds of motion"), MotionSettings)
+    add_settings(run, Settings, "start", "transient", "window", "batches", "event_window")
+    add_settings(run, Settings, "lyapunov_exponents", "lyapunov_alignment")
+    add_settings(parser.add_argument_group("kinds of motion"), MotionSettings)
     parser.add_argument("--out", metavar="FILE", help="also write the run as a point file (netCDF)")
 
 
@@ -41,10 +41,10 @@ def run(options: argparse.Namespace) -> int:
     state = state_of(options) or PAPER_STATES["minus"]
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
     if model.chain.is_mirror_symmetric:
-        # Refuse it before the run, not after.
+        # Refuse the window before the run, not after.
         window_range(model.chain).form(options.window, "window")
     trajectory = simulation.run(model, state, settings_of(Settings, options))
-    print(f"{said_of(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
+    print(f"{model_line(model)}, from {state.name}: {trajectory.status} at tau = {trajectory.end_time:g}\n")
     exponents = zip(trajectory.lyapunov_exponent, trajectory.lyapunov_error, strict=True)
     rows = [(str(k), f"{value:z.6f}", f"{error:.6f}") for k, (value, error) in enumerate(exponents, 1)]
     print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
@@ -53,13 +53,13 @@ def run(options: argparse.Namespace) -> int:
     motion = motion.at_speed(model.v)
     found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
     print(f"\nmotion: {words_of(found, motion)}")
-    print(f"<J> = {plain(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
+    print(f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)
         value, error = transverse_exponent(
             model, start, max(options.transient, ALIGNMENT * model.chain.own_units.time), options.window
         )
-        print(f"transverse exponent of the nearby symmetric motion: {plain(with_error(value, error))}")
+        print(f"transverse exponent of the nearby symmetric motion: {to_ascii(with_error(value, error))}")
     if options.out:
         write_point(trajectory, options.out)
         print(f"written: {options.out}")

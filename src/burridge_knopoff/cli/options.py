@@ -1,4 +1,4 @@
-"""Options: made from the fields of settings, and converted from the texts of a command line."""
+"""Options of commands: made from the fields of settings, and converted from the text of a command line."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.provenance.files import check_target
 from burridge_knopoff.running.command import CHAIN_OPTIONS
-from burridge_knopoff.values import shown
+from burridge_knopoff.values import format_value
 
 _T = TypeVar("_T")
 
@@ -29,49 +29,49 @@ Group = argparse._ActionsContainer
 
 
 def _reader(pattern: str, words: str, read: Callable[[str], Any] = str) -> Callable[[str], Any]:
-    """Return a converter for the text of an option, which refuses a text that does not match with these words."""
+    """Return a converter for the text of an option; it refuses a text that does not match, and says what it expects."""
 
     def value(text: str) -> Any:
         with contextlib.suppress(ValueError):
             if re.fullmatch(pattern, text):
                 return read(text)
-        raise argparse.ArgumentTypeError(f"got {shown(text)}, expected {words}")
+        raise argparse.ArgumentTypeError(f"got {format_value(text)}, expected {words}")
 
     return value
 
 
 # Python's own conversion also accepts 1_0 for ten, and digits of every script.
-number = _reader(r"[-+.0-9a-zA-Z]+", "a number", float)
-how_many = _reader(r"[0-9]{1,9}", "a whole number, 0 or more", int)
-count = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
-_numbers = _reader(
+read_number = _reader(r"[-+.0-9a-zA-Z]+", "a number", float)
+read_natural = _reader(r"[0-9]{1,9}", "a whole number, 0 or more", int)
+read_whole = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
+_read_numbers = _reader(
     r"[-+.0-9a-zA-Z,]+", "numbers with commas between them", lambda text: tuple(map(float, text.split(",")))
 )
-_counts = _reader(
+_read_wholes = _reader(
     r"[0-9]{1,9}(,[0-9]{1,9})*", "whole numbers with commas between them", lambda text: tuple(map(int, text.split(",")))
 )
-_named_number = _reader(
+_read_named_number = _reader(
     r"(?!(?:name|law|formula)=)[A-Za-z_][A-Za-z0-9_]*=.*",
-    "NAME=NUMBER, as sigma=0.01",
-    lambda text: (text.partition("=")[0], number(text.partition("=")[2])),
+    "NAME=NUMBER, such as sigma=0.01",
+    lambda text: (text.partition("=")[0], read_number(text.partition("=")[2])),
 )
 
 
-def _strength(text: str) -> str | float | tuple[float, ...]:
-    values = text if text == NEIGHBOURS or text.startswith("random=") else _numbers(text)
+def _read_strength(text: str) -> str | float | tuple[float, ...]:
+    values = text if text == NEIGHBOURS or text.startswith("random=") else _read_numbers(text)
     return values[0] if isinstance(values, tuple) and len(values) == 1 else values
 
 
-#: The converter for each range of a setting; for other ranges the text is kept.
+#: The converter for each kind of range; for other kinds the text is kept.
 _READERS: dict[type, Callable[[str], Any]] = {
-    Number: number,
-    Whole: count,
-    Several: _numbers,
-    Interval: _numbers,
-    Either: _strength,
+    Number: read_number,
+    Whole: read_whole,
+    Several: _read_numbers,
+    Interval: _read_numbers,
+    Either: _read_strength,
 }
 
-#: Names of option values in the help, if not the name of the option.
+#: Names of option values in the help, if they are not the name of the option.
 _METAVARS = {
     "coupling": "K1,K2,...",
     "pulling": "D1,D2,...",
@@ -87,7 +87,7 @@ _METAVARS = {
 
 
 def join_signed(arguments: Sequence[str]) -> list[str]:
-    """Write `--position -1,2` as `--position=-1,2`, since argparse takes a negative number or formula for an option."""
+    """Write `--position -1,2` as `--position=-1,2`, since argparse would take a number below 0 for an option."""
     joined: list[str] = []
     for argument in arguments:
         option = re.fullmatch("--[a-z-]+", joined[-1]) if joined else None
@@ -98,10 +98,10 @@ def join_signed(arguments: Sequence[str]) -> list[str]:
     return joined
 
 
-def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any) -> None:
-    """Add settings of a class as options: the named ones, or all.
+def add_settings(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any) -> None:
+    """Add settings of a class as options: those with these names, or all.
 
-    suffix : appended to their names
+    suffix : text appended to their names
     defaults : values that replace the settings' own defaults
     """
     for name in names or fields_of(kind):
@@ -114,7 +114,7 @@ def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any
         shown = ",".join(f"{item:g}" for item in default) if isinstance(default, tuple) else default
         option = group.add_argument(
             f"--{key.replace('_', '-')}",
-            type=_counts if name == "grid" else _READERS.get(type(field.range), str),
+            type=_read_wholes if name == "grid" else _READERS.get(type(field.range), str),
             default=default,
             metavar="LOW,HIGH" if isinstance(field.range, Interval) else _METAVARS.get(key),
             help=words if default is None else f"{words} (default: {shown})",
@@ -124,7 +124,7 @@ def add(group: Group, kind: type, *names: str, suffix: str = "", **defaults: Any
 
 
 def _complete(option: argparse.Action, words: Iterable[str]) -> None:
-    """Let a shell complete the value of an option. The range checks it, since its messages say more than argparse's."""
+    """Let a shell complete the value of an option. The range checks it, with better messages than those of argparse."""
     option.words = tuple(words)  # type: ignore[attr-defined]
 
 
@@ -139,14 +139,14 @@ def add_model(parser: argparse.ArgumentParser) -> None:
     model = parser.add_argument_group("model")
     laws = model.add_mutually_exclusive_group(required=True)
     _complete(laws.add_argument("--law", metavar="LAW", help=f"friction law: {' | '.join(LAWS)}"), LAWS)
-    laws.add_argument("--formula", metavar="PHI", help="or a formula in u (the slip speed U'), a and other names")
+    laws.add_argument("--formula", metavar="PHI", help="or a formula of u (the slip speed U'), a and other names")
     model.add_argument(
         "--number",
-        type=_named_number,
+        type=_read_named_number,
         action="append",
         default=[],
         metavar="NAME=NUMBER",
-        help="a number of the law; may be repeated",
+        help="a parameter of the law; may be repeated",
     )
     model.add_argument(
         "--law-name",
@@ -154,9 +154,9 @@ def add_model(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="name of the law in files (default: LAW)",
     )
-    model.add_argument("--a", required=True, type=number, help="friction parameter, 0 or more")
-    add(model, Chain, *CHAIN_OPTIONS)
-    add(model, Model, "v", "contact")
+    model.add_argument("--a", required=True, type=read_number, help="friction parameter, 0 or more")
+    add_settings(model, Chain, *CHAIN_OPTIONS)
+    add_settings(model, Model, "v", "contact")
 
 
 def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
@@ -169,12 +169,12 @@ def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
         "--initial",
         type=_reader(STATE_NAME.pattern, STATE_NAME.words),
         metavar="NAME",
-        help=f"{' | '.join(PAPER_STATES)} (the paper's), or a name for the numbers given below (default: {usual}; "
-        f"{OWN} for numbers)",
+        help=f"{' | '.join(PAPER_STATES)} (the paper's states), or a name for the state given below (default: {usual}; "
+        f"{OWN} for a state given below)",
     )
     _complete(initial, PAPER_STATES)
-    state.add_argument("--blocks", type=count, help="number of blocks N (default: the number of positions)")
-    add(state, InitialState, "position", "velocity")
+    state.add_argument("--blocks", type=read_whole, help="number of blocks N (default: the number of positions)")
+    add_settings(state, InitialState, "position", "velocity")
 
 
 def state_of(options: argparse.Namespace) -> InitialState | None:
@@ -182,17 +182,17 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
 
     If only positions or only velocities are given, the others are those of the paper's states.
 
-    Raises ValueError as `initial_state` does, and if one of the paper's names is given other numbers.
+    Raises ValueError as `initial_state` does, and if a name of the paper's states is given other numbers.
     """
     name, given = options.initial, (options.position, options.velocity)
     if name is None:
         if given == (None, None):
             return None
         usual = PAPER_STATES["minus"]
-        told = given[1] if given[0] is None else given[0]
-        if None in given and not (isinstance(told, tuple) and len(told) == usual.blocks):
+        known = given[1] if given[0] is None else given[0]
+        if None in given and not (isinstance(known, tuple) and len(known) == usual.blocks):
             missing = "position" if given[0] is None else "velocity"
-            raise ValueError(f"{missing}: missing, expected numbers, one a block, unless there are three blocks")
+            raise ValueError(f"{missing}: missing, expected one number per block; only three blocks have defaults")
         name = OWN
         position, velocity = given
         given = (
@@ -201,7 +201,7 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
         )
     elif name in PAPER_STATES and (given[0] is None) != (given[1] is None):
         raise ValueError(
-            f"initial: got {shown(name)} with other numbers than the paper's, expected another name, or none"
+            f"initial: got {format_value(name)} with numbers other than the paper's, expected another name or none"
         )
     return initial_state(name, *given)
 
@@ -225,28 +225,28 @@ def model_of(options: argparse.Namespace, state: InitialState | None) -> Model:
     if blocks is None and options.grid is None and options.springs is None and state is not None:
         blocks = state.blocks
         if blocks is None:
-            raise ValueError("blocks: missing, expected the number of blocks, which a drawn state does not tell")
+            raise ValueError("blocks: missing, expected the number of blocks, which a random state does not fix")
     chain = Chain(blocks, **{key: getattr(options, key) for key in CHAIN_OPTIONS})
     return Model(chain, simulated_law(options), options.v, options.contact)
 
 
-def check_out(path: str) -> None:
-    """Raise OSError, one line, if a file cannot be written: before the work, not after it."""
+def check_output(path: str) -> None:
+    """Raise OSError, one line, if a file cannot be written, before the work starts."""
     folder = Path(path).parent
     if not folder.exists():
-        raise OSError(f"{path}: cannot be written: there is no folder {folder}")
+        raise OSError(f"{path}: cannot be written: folder {folder} does not exist")
     check_target(path)
 
 
 def command_of(options: argparse.Namespace) -> str:
-    """Return the command without its output files, as the files record it."""
+    """Return the command without its output files, as recorded in these files."""
     files, words = ("--out", "--attractors-out"), ["bk", *options.given]
-    told = [word for before, word in pairwise(words) if before not in files and not word.startswith(files)]
-    return shlex.join(["bk", *told])
+    kept = [word for before, word in pairwise(words) if before not in files and not word.startswith(files)]
+    return shlex.join(["bk", *kept])
 
 
-def said_of(model: Model) -> str:
-    """Describe a model in a line."""
+def model_line(model: Model) -> str:
+    """Return a line that describes a model."""
     numbers: Mapping[str, float] = model.law.numbers
-    told = "".join(f", {name} = {value:g}" for name, value in numbers.items())
-    return f"{model.law.name} law{told}, a = {model.a:g}, v = {model.v:g}, {model.blocks} blocks"
+    parameters = "".join(f", {name} = {value:g}" for name, value in numbers.items())
+    return f"{model.law.name} law{parameters}, a = {model.a:g}, v = {model.v:g}, {model.blocks} blocks"

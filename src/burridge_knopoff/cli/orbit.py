@@ -5,7 +5,16 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
-from burridge_knopoff.cli.options import add, add_model, add_state, how_many, model_of, number, said_of, state_of
+from burridge_knopoff.cli.options import (
+    add_model,
+    add_settings,
+    add_state,
+    model_line,
+    model_of,
+    read_natural,
+    read_number,
+    state_of,
+)
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.running.settings import LONGEST, Settings
 
@@ -16,8 +25,8 @@ if TYPE_CHECKING:
     from burridge_knopoff.model.model import Model
     from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 
-DESCRIPTION = """Compute the synchronized orbit, stable or unstable, of a chain that is its own mirror image; or, for
-any chain, the periodic orbit that the motion from an initial state settles on. An orbit is stable if all multipliers
+DESCRIPTION = """Compute the synchronized orbit, stable or unstable, of a mirror-symmetric chain. If an initial state is
+given, compute the periodic orbit to which its motion settles, in any chain. An orbit is stable if all multipliers
 except that of the flow have modulus below 1."""
 
 EXAMPLES = """  bk orbit --law linearized --a 0.08
@@ -27,7 +36,7 @@ EXAMPLES = """  bk orbit --law linearized --a 0.08
 
 SETTLING = Number(0.0, LONGEST)
 
-# Smaller multipliers are zero up to rounding: those of blocks that stop.
+# Smaller multipliers are 0 up to rounding, since blocks stop.
 ZERO = 1e-7
 
 
@@ -35,17 +44,20 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of an orbit."""
     add_model(parser)
     add_state(parser, "none: the synchronized orbit")
-    motion = parser.add_argument_group("motion from that state")
-    add(motion, Settings, "start")
+    motion = parser.add_argument_group("motion from this state")
+    add_settings(motion, Settings, "start")
     parser.add_argument(
         "--events",
-        type=how_many,
+        type=read_natural,
         default=20,
         metavar="N",
         help="number of stops and starts printed (default: %(default)s)",
     )
     motion.add_argument(
-        "--settling", type=number, default=3000.0, help="time to let the motion settle first (default: %(default)g)"
+        "--settling",
+        type=read_number,
+        default=3000.0,
+        help="time for which the motion settles first (default: %(default)g)",
     )
 
 
@@ -55,7 +67,7 @@ def run(options: argparse.Namespace) -> int:
     state = state_of(options)
     model = model_of(options, state)
     orbit = _synchronized(model) if state is None else _reached(model, state, options.start, settling)
-    print("\n".join([said_of(model), "", *_lines(orbit, options.events)]))
+    print("\n".join([model_line(model), "", *_lines(orbit, options.events)]))
     return 0
 
 
@@ -75,11 +87,13 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
     """Describe an orbit in lines, with at most `most` of its events."""
     from burridge_knopoff.periodic_orbits.floquet import multipliers
     from burridge_knopoff.show.formatting import table
-    from burridge_knopoff.study.formatting import counted
+    from burridge_knopoff.study.formatting import format_count
 
     found = multipliers(orbit)
     stability = (
-        f"unstable: {counted(found.unstable_count, 'multiplier')}" if found.unstable_count else "stable: no multiplier"
+        f"unstable: {format_count(found.unstable_count, 'multiplier')}"
+        if found.unstable_count
+        else "stable: no multiplier"
     )
     lines = [
         f"symmetry     {orbit.symmetry.name.lower()}",
@@ -100,7 +114,7 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
 
 
 def _complex(values: np.ndarray) -> str:
-    """Format multipliers: conjugate pairs as one, without those that are 0."""
+    """Format multipliers, conjugate pairs as one, except those that are 0."""
     shown = [value for value in values.tolist() if abs(value) > ZERO and value.imag >= 0.0]
     words = [f"{value.real:.6g} +- {value.imag:.6g}i" if value.imag else f"{value.real:.6g}" for value in shown]
     return ", ".join(words) or "0"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-DESCRIPTION = """Delete files of a law, an initial state, a value of a or a stage that the config of the last run lacks,
-with their logs and benchmarks, and list them. Files with any other name stay."""
+DESCRIPTION = """Delete and list files of laws, initial states, values of a and stages that are no longer in the config
+of the last run, with their logs and benchmarks. Files with other names are kept."""
 
 EXAMPLES = """  bk prune --dry-run results/paper
   bk prune results/paper
@@ -22,15 +22,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Delete leftover files, and print how many."""
     from burridge_knopoff.check.leftovers import delete, leftovers
-    from burridge_knopoff.check.study import changed
+    from burridge_knopoff.check.study import config_change
     from burridge_knopoff.jobs.jobs import Jobs
-    from burridge_knopoff.study.formatting import counted
+    from burridge_knopoff.study.formatting import format_count
     from burridge_knopoff.study.recorded import recorded_study
 
     studies = []
     for folder in map(Path, options.results):
         record, study = recorded_study(folder)
-        if (found := changed(folder, record)) and found.kind == "stale":
+        if (found := config_change(folder, record)) and found.kind == "stale":
             raise ValueError(f"{folder}: {record['config_file']} has changed since the last run: run snakemake first")
         studies.append((folder, study))
     for folder, study in studies:
@@ -39,5 +39,5 @@ def run(options: argparse.Namespace) -> int:
             print(path)
         if not options.dry_run:
             delete(folder, left)
-        print(f"{folder}: {counted(len(left), 'file')} {'would be ' * options.dry_run}deleted")
+        print(f"{folder}: {format_count(len(left), 'file')} {'would be ' * options.dry_run}deleted")
     return 0

@@ -7,12 +7,12 @@ import math
 import sys
 from typing import TYPE_CHECKING
 
-from burridge_knopoff.cli.options import add, add_model, add_state, model_of, settings_of, state_of
+from burridge_knopoff.cli.options import add_model, add_settings, add_state, model_of, settings_of, state_of
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.status import EXIT_CODE
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
 if TYPE_CHECKING:
     from burridge_knopoff.model.initial import InitialState
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 DESCRIPTION = """Run one simulation and write it as a netCDF point file.
 All quantities are dimensionless: times in 1/omega, U = k X / F(0), as in the paper.
-Exit code: 3 if the run hit a limit or diverged; its file is written all the same."""
+Exit code 3: the run hit a limit or diverged; the file is still written."""
 
 EXAMPLES = """  bk simulate --law linearized --a 0.08 --initial plus --out plus.nc
   bk simulate --law nonlinear --a 0.08 --initial minus --transient 0 --window 100 --events all --out start.nc
@@ -30,9 +30,9 @@ EXAMPLES = """  bk simulate --law linearized --a 0.08 --initial plus --out plus.
   bk simulate --formula "1 - c*tanh(a*u/c)" --number c=0.1 --a 0.5 --out own.nc
 """
 
-#: Settings of what is kept of a run.
+#: Settings of the recorded output of a run.
 _KEPT = ("sampling", "events", "event_window", "trajectory", "trajectory_sampling")
-#: Settings that may ask for a longer time than the run or the window has.
+#: Durations that may exceed the run or the window.
 _PARTS = {"trajectory": "run", "event_window": "window"}
 
 
@@ -41,10 +41,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_model(parser)
     add_state(parser, "minus")
     run = parser.add_argument_group("run")
-    add(run, Settings, *(name for name in fields_of(Settings) if name not in _KEPT))
+    add_settings(run, Settings, *(name for name in fields_of(Settings) if name not in _KEPT))
     kept = parser.add_argument_group("output")
     kept.add_argument("--out", required=True, metavar="FILE", help="point file to write (netCDF)")
-    add(kept, Settings, *_KEPT)
+    add_settings(kept, Settings, *_KEPT)
 
 
 def run(options: argparse.Namespace) -> int:
@@ -55,15 +55,15 @@ def run(options: argparse.Namespace) -> int:
     state = state_of(options) or PAPER_STATES["minus"]
     settings = settings_of(Settings, options)
     model = model_of(options, state)
-    if told := _cost(model, state, settings):
-        print(f"note: bk simulate: {told}", file=sys.stderr, flush=True)
+    if cost := _cost(model, state, settings):
+        print(f"note: bk simulate: {cost}", file=sys.stderr, flush=True)
     trajectory = simulation.run(model, state, settings)
     write_point(trajectory, options.out)
     for key, part in _PARTS.items():
-        asked, there = getattr(settings, key), settings.duration if part == "run" else settings.window
-        if asked > there and asked != fields_of(Settings)[key].default:
-            told = f"{key}: {asked:g} is longer than the {part}: {there:g} were kept"
-            print(f"note: bk simulate: {told}", file=sys.stderr)
+        requested, available = getattr(settings, key), settings.duration if part == "run" else settings.window
+        if requested > available and requested != fields_of(Settings)[key].default:
+            note = f"{key}: {requested:g} is longer than the {part}; all {available:g} time units were recorded"
+            print(f"note: bk simulate: {note}", file=sys.stderr)
     if trajectory.status == "completed":
         print(f"{options.out}: {outcome(trajectory)}")
     else:
@@ -77,15 +77,15 @@ def run(options: argparse.Namespace) -> int:
 
 
 def _cost(model: Model, state: InitialState, settings: Settings) -> str:
-    """Return about what a run costs if its blocks go on as at the start; empty for a minute or less."""
+    """Return the estimated cost of a run if its blocks keep moving as at the start; empty for a minute or less."""
     from burridge_knopoff.running.cost import cost_of
 
     settings.check_chain(model.chain)
     each, memory = cost_of(model, model.begin(state, settings.start), settings)
     if settings.solver == "rk4" or each * settings.duration <= 60.0:
         return ""
-    seconds = f"{_time(each)} for a unit of time, {_time(each * settings.duration)} for the run if they go on slipping"
-    return f"{model.blocks} blocks: about {seconds}; {1e-9 * memory:.2g} GB besides the events kept"
+    seconds = f"{_time(each)} per time unit, {_time(each * settings.duration)} for the run if they keep slipping"
+    return f"{model.blocks} blocks: about {seconds}; {1e-9 * memory:.2g} GB in addition to the recorded events"
 
 
 def _time(seconds: float) -> str:
@@ -97,8 +97,8 @@ def _time(seconds: float) -> str:
 
 def outcome(trajectory: Trajectory) -> str:
     """Describe the outcome of a completed run in a line."""
-    words = f"<J> = {plain(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}"
+    words = f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}"
     for exponent, error in zip(trajectory.lyapunov_exponent[:1], trajectory.lyapunov_error[:1], strict=True):
         if not math.isnan(error):
-            words += f", largest Lyapunov exponent {plain(with_error(float(exponent), float(error)))}"
+            words += f", largest Lyapunov exponent {to_ascii(with_error(float(exponent), float(error)))}"
     return f"{words}, {trajectory.event_count} stops and starts until tau = {trajectory.end_time:g}"

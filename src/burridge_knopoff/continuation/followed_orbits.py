@@ -167,7 +167,9 @@ def _half(orbit: PeriodicOrbit, upward: bool, largest: float) -> HalfBranch | Or
     try:
         # Steps are large enough to cross a wide grid.
         step = max(FOLLOWING.largest_step, largest / orbit.model.chain.own_units.slope / FOLLOWING.max_orbits)
-        found = follow_half_branch(orbit, upward, (LEAST_A, largest), UNSTABLE_ORBITS, replace(FOLLOWING, largest_step=step))
+        found = follow_half_branch(
+            orbit, upward, (LEAST_A, largest), UNSTABLE_ORBITS, replace(FOLLOWING, largest_step=step)
+        )
         # Cached properties that are computed here go with the orbits to the calling process.
         _ = (
             [(bifurcation.stick_time, bifurcation.mean_distance) for bifurcation in found.bifurcations],

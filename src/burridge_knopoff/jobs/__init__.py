@@ -1,1 +1,1 @@
-"""The jobs of a study: what each reads and makes, what decides its files, and how it is done."""
+"""The jobs of a study: what each reads and makes, what its files depend on, and how they are made."""

@@ -1,4 +1,4 @@
-"""Whether files are those that their study has there: made from its config, by these sources, from these inputs."""
+"""Checks that files of a study were made from its config, by the current sources, from the current inputs."""
 
 from __future__ import annotations
 
@@ -9,18 +9,18 @@ from pathlib import Path
 
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import study_folder
-from burridge_knopoff.provenance.seal import BadFile, first_difference, of_config, read_seal, told_difference
+from burridge_knopoff.provenance.seal import BadFile, config_part, describe_difference, first_difference, read_seal
+from burridge_knopoff.study.chunks import incomplete_chunks
 from burridge_knopoff.study.recorded import recorded_study
-from burridge_knopoff.study.stretches import incomplete
 
 
 def check_file(jobs: Jobs, results: Path, name: str, *, any_sources: bool = False) -> str:
-    """Check a file of a study, by its name in the results; return the status of its run, "made" if it is no run's.
+    """Check a file of a study, by its name in the results; return the status of its run, or "made" without a run.
 
-    any_sources : accept a file that other sources made
+    any_sources : accept a file made by other sources
 
-    Raises BadFile, one line with the difference, if the file is missing, damaged, or not the expected one. If it was
-    made from another file that is wrong too, the error is about that one.
+    Raises BadFile, one line with the difference, if the file is missing, damaged, or not the expected one. If a bad
+    input is the reason, the error names that input.
     """
     path = results / name
     found, status = read_seal(path)
@@ -28,23 +28,20 @@ def check_file(jobs: Jobs, results: Path, name: str, *, any_sources: bool = Fals
     if expected is None:
         return status
     if any_sources:
-        found, expected = of_config(found), of_config(expected)
-        # Another version may describe files by more, or less.
+        found, expected = config_part(found), config_part(expected)
+        # Descriptions of another version may have more keys, or fewer.
         both = {"file"} | found.keys() & expected.keys()
         found, expected = ({key: one[key] for key in one if key in both} for one in (found, expected))
     if key := first_difference(found, expected):
         for other in expected.get("inputs", {}) if key == "inputs" else ():
             if found["inputs"].get(other) != expected["inputs"][other] and (results / other).is_file():
                 check_file(jobs, results, other, any_sources=any_sources)
-        raise BadFile(path, told_difference(key, found, expected))
+        raise BadFile(path, describe_difference(key, found, expected))
     return status
 
 
-def damaged(jobs: Jobs, results: Path) -> list[tuple[Path, str]]:
-    """Return texts and pictures that are damaged, which hardly any job reads, and marks of stretches without points.
-
-    With the reason of each, in words.
-    """
+def damaged_files(jobs: Jobs, results: Path) -> list[tuple[Path, str]]:
+    """Return damaged texts and pictures, which few jobs read, and marks of incomplete chunks, each with the reason."""
     found = []
     for name in jobs.all_files:
         path = results / name
@@ -53,16 +50,16 @@ def damaged(jobs: Jobs, results: Path) -> list[tuple[Path, str]]:
                 read_seal(path)
             except BadFile as error:
                 found.append((path, error.reason))
-    marks = incomplete(jobs.study, results)
-    return [*found, *((mark, "a point of it is missing or was changed") for mark in marks)]
+    marks = incomplete_chunks(jobs.study, results)
+    return [*found, *((mark, "a point of this chunk is missing or was changed") for mark in marks)]
 
 
 def check_result(path: Path, *, any_sources: bool = True) -> Collection[str]:
     """Check that a file is intact and, in a study, that it is the expected result.
 
-    any_sources : accept a file that other sources made
+    any_sources : accept a file made by other sources
 
-    Returns the names of all files of the study besides runs; none if it is not known, or of another version.
+    Returns the names of all files of the study except runs; none if the study is of another version, or cannot be read.
     Raises BadFile as `check_file` does.
     """
     folder, jobs = study_folder(path), None

@@ -1,4 +1,4 @@
-"""The jobs of a study: its rules, the files that follow from them, and what these must be made from."""
+"""The jobs of a study: its rules, their files, and the descriptions with which these are sealed."""
 
 from __future__ import annotations
 
@@ -17,20 +17,20 @@ from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.paths import VALUE
 from burridge_knopoff.study.study import Study
 
-#: Patterns of wildcards in the names of files; parameters of the grid have that of a.
+#: Patterns of wildcards in the names of files; all parameters of the grid have that of a.
 PATTERNS = {
     "law": r"[a-z]\w*",
     "initial": r"[A-Za-z]\w*",
     "a": VALUE,
     "values": rf"[A-Za-z]\w*?{VALUE}(?:_[A-Za-z]\w*?{VALUE})*",
     "solver": r"\w+",
-    "stretch": r"\d+",
+    "chunk": r"\d+",
     "tile": r"(?:0|[1-9]\d*)",
     "blocks": r"[1-9]\d*",
 }
 
 
-def made(rule: Rule) -> list[str]:
+def files_of(rule: Rule) -> list[str]:
     """Return the files of all jobs of a rule."""
     return [form.format(**job) for job in rule.each for form in rule.files]
 
@@ -38,15 +38,15 @@ def made(rule: Rule) -> list[str]:
 class Jobs:
     """The jobs of a study.
 
-    rules : all rules by name, in the order of a study; also those that this study does not have
-    there : those that it has
-    defined : those, and others whose files may be asked for by name, which is refused with a reason
+    rules : all rules by name, in the order of a study, including those that this study does not have
+    existing : those that this study has
+    defined : those, and rules whose files may be requested by name, which is refused with a reason
     """
 
     def __init__(self, study: Study) -> None:
         self.study = study
         self.rules: dict[str, Rule] = {}
-        self.there: dict[str, Rule] = {}
+        self.existing: dict[str, Rule] = {}
         self.defined: dict[str, Rule] = {}
         self._made_by: dict[str, Rule] = {}
         self._abouts: dict[str, dict[str, Any]] = {}
@@ -54,10 +54,10 @@ class Jobs:
             self._add(declared(study))
         pictures = [name.removeprefix("figures/").removesuffix(".png") for name in self.files("figures/", ".png")]
         self._add(shown.claims(study, sorted(pictures)))
-        self._add(shown.report(study, [form for rule in self.asked() for form in rule.files]))
+        self._add(shown.report(study, [form for rule in self.requested() for form in rule.files]))
 
     def _add(self, rules: Sequence[Rule]) -> None:
-        """Take rules, after those whose files they read; raises ValueError, one line, if none makes such a file."""
+        """Add rules, after those whose files they read; raises ValueError, one line, if no rule makes such a file."""
         for declared in rules:
             inputs = declared.inputs
             for form in (form for forms in inputs.values() for form in forms):
@@ -67,84 +67,90 @@ class Jobs:
             makers = [self._made_by[form] for forms in reads.values() for form in forms]
             possible = (
                 declared.over in ("any", "several" if self.study.is_plane else "a")
-                and declared.stage not in self.study.left_out
-                and (declared.if_there or reads == inputs)
+                and declared.stage not in self.study.omitted_stages
+                and (declared.optional_reads or reads == inputs)
             )
             rule = replace(
                 declared,
                 reads=reads,
-                there=possible and declared.there and bool(declared.each),
-                asked=declared.asked and all(maker.asked for maker in makers),
+                exists=possible and declared.exists and bool(declared.each),
+                requested=declared.requested and all(maker.requested for maker in makers),
             )
             self.rules[rule.name] = rule
-            if rule.there:
-                self.there[rule.name] = rule
+            if rule.exists:
+                self.existing[rule.name] = rule
                 self._made_by.update(dict.fromkeys(rule.files, rule))
-            if rule.there or (possible and rule.refused):
+            if rule.exists or (possible and rule.refusal):
                 self.defined[rule.name] = rule
 
-    def asked(self) -> list[Rule]:
-        """Return the rules of the files that the target `all` makes, besides runs."""
-        return [rule for rule in self.there.values() if rule.asked and rule.make]
+    def requested(self) -> list[Rule]:
+        """Return the rules of the files that the target `all` makes, except runs."""
+        return [rule for rule in self.existing.values() if rule.requested and rule.make]
 
     def runs(self) -> list[Rule]:
         """Return the rules of the point files, whose wildcards are arguments of `Study.command`."""
-        return [self.there[name] for name in ("simulate", "simulate_solver") if name in self.there]
+        return [self.existing[name] for name in ("simulate", "simulate_solver") if name in self.existing]
 
     def stage_of(self, name: str) -> str:
-        """Return the stage of a rule, whose name a workflow that imports this one has put a word before."""
+        """Return the stage of a rule, by its name, to which a workflow that imports this one may add a prefix."""
         known = [own for own in self.rules if f"_{name}".endswith(f"_{own}")]
         return self.rules[max(known, key=len)].stage if known else name
 
     def files(self, start: str = "", end: str = "") -> list[str]:
-        """Return the files that the target `all` makes, besides runs, whose names start and end so."""
-        return [name for rule in self.asked() for name in made(rule) if name.startswith(start) and name.endswith(end)]
+        """Return the files that the target `all` makes, except runs, whose names start and end with these texts."""
+        return [
+            name
+            for rule in self.requested()
+            for name in files_of(rule)
+            if name.startswith(start) and name.endswith(end)
+        ]
 
-    def of_paper(self) -> list[Rule]:
+    def paper_figures(self) -> list[Rule]:
         """Return the rules of the figures of the paper."""
-        return [rule for rule in self.asked() if rule.stage == "figures" and rule.priority]
+        return [rule for rule in self.requested() if rule.stage == "figures" and rule.priority]
 
     @cached_property
     def all_files(self) -> dict[str, tuple[Rule, Wildcards]]:
-        """{name: its job} of all files of the study besides runs, also of those that are made by name only."""
+        """{name: its job} of all files of the study except runs, including those that are made only by name."""
         return {
             form.format(**job): (rule, job)
-            for rule in self.there.values()
+            for rule in self.existing.values()
             if rule.make
             for job in rule.each
             for form in rule.files
         }
 
     def inputs(self, rule: Rule, job: Wildcards) -> dict[str, list[str]]:
-        """Return {name: files of other rules} that a job reads, besides points."""
+        """Return {name: files of other rules} that a job reads, except points."""
         return {
             name: [form.format(**other) for form in forms for _, other in self._sources_of(form, job)]
             for name, forms in rule.inputs.items()
         }
 
     def _sources_of(self, form: str, job: Wildcards) -> Iterator[tuple[Rule, Wildcards]]:
-        """Yield the jobs that make the files of a form that a job reads, with the same values of common wildcards."""
+        """Yield the jobs that make the files of a form that a job reads: those with equal common wildcards."""
         rule = self._made_by[form]
         for other in rule.each:
             if all(other[name] == value for name, value in job.items() if name in other):
                 yield rule, other
 
     def point_files(self, rule: Rule, job: Wildcards) -> list[str]:
-        """Return the points that a job reads; of a grid over several parameters, the marks of their stretches."""
+        """Return the points that a job reads, or the marks of their chunks if several parameters vary."""
         if rule.points is None:
             return []
-        if "stretch" in self.there:
-            return made(self.there["stretch"])
+        if "chunk" in self.existing:
+            return files_of(self.existing["chunk"])
         points = rule.points(job)
         names = ("law", "initial", *points["parameters"])
         found = product(points["laws"], points["initial"], *points["parameters"].values())
         return [self.rules["simulate"].files[0].format(**dict(zip(names, one, strict=True))) for one in found]
 
     def abouts(self, rule: Rule, job: Wildcards) -> dict[str, dict[str, Any]]:
-        """Return {file: what it must be made from} of a job, for seals.
+        """Return {file: its description} of a job, for seals.
 
-        Its name, the function that makes it, the parts of the config that decide it, the sources of the function, and a
-        digest of the same of each file that the job reads. Points are described by the config and by their sources.
+        A description contains the name of the file, the function that makes it, the parts of the config on which it
+        depends, the fingerprint of the sources, and a digest of the description of each file that the job reads. Points
+        are described by the config and their sources.
         """
         return {form.format(**job): self._about(rule, job, form.format(**job)) for form in rule.files}
 
@@ -170,7 +176,7 @@ class Jobs:
         return self._abouts[name]
 
     def expected(self, name: str) -> dict[str, Any] | None:
-        """Return what a file must be made from, by its name in the results; None if the study has no such file."""
+        """Return the description of a file, by its name in the results; None if the study has no such file."""
         if name in self.all_files:
             return self._about(*self.all_files[name], name)
         for rule in self.runs():

@@ -1,4 +1,4 @@
-"""A rule: the declaration of alike jobs, which differ in the values of some wildcards."""
+"""A rule: the declaration of jobs that differ only in the values of some wildcards."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 #: {name of a wildcard: its value in a job}
 Wildcards = Mapping[str, str]
 
-#: Folders whose files have logs without the folder's name, and what stands there instead.
+#: {folder whose name is left out of the names of logs: prefix of these names}
 _IN_LOGS = {"summary": "", "figures": "figure_"}
 
 
@@ -18,7 +18,7 @@ _IN_LOGS = {"summary": "", "figures": "figure_"}
 class Shown:
     """How `snakemake --report` shows a file.
 
-    caption : name of a file in workflow/report, and words that it quotes; paper : figures of the paper
+    caption, words : name of a file in workflow/report, and words that it quotes; paper : figures of the paper
     """
 
     title: str
@@ -30,30 +30,30 @@ class Shown:
 
 @dataclass(frozen=True)
 class Rule:
-    """What the jobs of a rule read and make, and what decides their files; files are named relative to the results.
+    """What the jobs of a rule read and make, and what their files depend on; paths are relative to the results.
 
     name, purpose, message : Snakemake's name, docstring (a sentence) and message of a job
-    files : that a job makes, with the names of wildcards in braces
-    make : "room.module:function", which makes the content of the files, see `jobs.run`; empty for runs, which the
+    files : the files that a job makes, with the names of wildcards in braces
+    make : "package.module:function", which makes the content of the files, see `jobs.run`; empty for runs, which the
         workflow makes
-    modules : that `make` loads by name: their sources count, too
+    modules : modules that `make` loads by name, whose sources count as well
     reads : {name: files of other rules}; a wildcard that the job does not have stands for all its values
-    if_there : whether it reads those only that the study has
-    points : returns what `Study.points` says of the points that a job reads; None if it reads none
-    params : returns the parts of the config that decide what a job makes, and no others
+    optional_reads : whether files of `reads` that the study does not have are left out
+    points : returns the part of `Study.points` with the points that a job reads; None if it reads none
+    params : returns exactly those parts of the config on which the files of a job depend
     each : the wildcards of all jobs
-    stage : the name of its part of the study; the config can leave out some
-    over : the studies that can have it: of a alone, of `several` parameters, or of `any`
-    there : whether the study has it, if it can and the stage is not left out
-    refused : why not, for those who ask for its files by name
-    asked : whether the target `all` makes it
+    stage : the part of the study to which the rule belongs; a config can leave out some
+    over : the studies that can have the rule: over a alone, over `several` parameters, or over `any`
+    exists : whether the study has the rule, provided that its stage is not left out
+    refusal : the reason why the study does not have it, for those who request its files by name
+    requested : whether the target `all` makes its files
     shown : {file: how `snakemake --report` shows it}
-    cores : of a job; 0 for the cores of the machine, shared among the laws
-    memory, minutes : that a job needs, in MB, and 100 MB more for each core if it has several; 0 for the usual
-    priority : jobs with a higher one start first
-    group : its group of jobs on a cluster
+    cores : cores of a job; 0 for the cores of the machine, shared among the laws
+    memory, minutes : memory of a job in MB, with 100 MB more for each of several cores, and time; 0 for the defaults
+    priority : jobs with a higher priority start first
+    group : group of jobs on a cluster
     log : name of the log of a job, without suffix, if it is not that of its first file
-    work : what one of its jobs has to do, in units of its own, from which the display tells its time
+    work : amount of work of a job, in units of the rule, from which the display estimates the time
     """
 
     name: str
@@ -63,15 +63,15 @@ class Rule:
     make: str = ""
     modules: tuple[str, ...] = ()
     reads: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
-    if_there: bool = False
+    optional_reads: bool = False
     points: Callable[[Wildcards], Mapping[str, Any]] | None = None
     params: Callable[[Wildcards], Mapping[str, Any]] = lambda wildcards: {}
     each: Sequence[Wildcards] = ({},)
     stage: str = "summary"
     over: str = "a"
-    there: bool = True
-    refused: str = ""
-    asked: bool = True
+    exists: bool = True
+    refusal: str = ""
+    requested: bool = True
     shown: Mapping[str, Shown] = field(default_factory=dict)
     cores: int = 1
     memory: int = 0
@@ -83,7 +83,7 @@ class Rule:
 
     @property
     def inputs(self) -> dict[str, list[str]]:
-        """{name: files of other rules that it reads}, besides points."""
+        """{name: files of other rules that it reads}, except points."""
         return {name: [files] if isinstance(files, str) else list(files) for name, files in self.reads.items()}
 
     @property

@@ -1,4 +1,4 @@
-"""Doing a job: its function makes the content of its files, which are written whole and sealed."""
+"""Does a job: its function makes the content of the files, which are written and sealed."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.provenance.seal import BadFile, digest_of, read_seal, write_sealed_text
 
-#: What a description of a file has besides the params of the function that makes it.
+#: Keys of a description that are not params of the function that makes the file.
 _ABOUT = ("file", "make", "points", "of_points", "sources", "inputs")
 
 
@@ -27,11 +27,11 @@ def do_job(
 ) -> None:
     """Make the files of a job.
 
-    abouts : {file: what it must be made from}, see `Jobs.abouts`
+    abouts : {file: its description}, see `Jobs.abouts`
     results : folder of the study; inputs, wildcards, cores, arguments : see `Given`
 
-    Raises BadFile if an input is damaged or another one than expected, OSError if a file cannot be written, and what
-    the function of the job raises.
+    Raises BadFile if an input is damaged or not the expected one, OSError if a file cannot be written, and the errors
+    of the function.
     """
     about = next(iter(abouts.values()))
     room, _, function = about["make"].partition(":")
@@ -58,9 +58,9 @@ def do_job(
 
 
 def _check(path: Path, results: Path, digest: str | None) -> None:
-    """Raise BadFile if an input is damaged, or not what has this digest; points have none, and are checked as read."""
+    """Raise BadFile if an input is damaged or has another digest; points have none and are checked when read."""
     if digest is not None and digest_of(read_seal(path)[0]) != digest:
-        # Only then does a job need to know the study.
+        # A job needs the study only to give the reason.
         from burridge_knopoff.jobs.checked import check_result
 
         check_result(path, any_sources=False)

@@ -1,4 +1,4 @@
-"""Attractors, and what follows from them: basins, bifurcations and phases."""
+"""The stages that need attractors: the search itself, basins, bifurcations, edge states and phases."""
 
 from __future__ import annotations
 
@@ -6,29 +6,29 @@ from collections.abc import Callable
 from math import prod
 from typing import Any
 
-from burridge_knopoff.jobs.params import basin_keys, keys, model_config, motion_config, of_laws
+from burridge_knopoff.jobs.params import basin_keys, keys, law_jobs, model_config, motion_config
 from burridge_knopoff.jobs.rule import Rule, Shown, Wildcards
 from burridge_knopoff.study.study import Study
 
 
 def attractors(study: Study) -> list[Rule]:
-    """Attractors: found for each law along the grid of a and between its values, then merged."""
+    """Attractors of each law along the grid of a and between its values, and all laws together."""
     config, grid = study.config["attractors"], list(study.grid.values())
     settings = {**keys(study, "initial", "start", "attractors", "refine"), "motion": motion_config(study)}
     return [
         Rule(
             "attractors_of_law",
-            "Search for the coexisting attractors of one friction law at every a, and refine a where they change.",
+            "Search for the attractors of one friction law at every a, and insert values of a where they change.",
             "attractors of the {law} law along a",
             ("attractors/{law}.nc", "refined/{law}.nc", "returns/{law}.nc"),
             "summaries.attractors_of_law:make",
             params=lambda job: {**settings, "grid": grid, "model": model_config(study, [job["law"]])},
-            each=of_laws(study),
+            each=law_jobs(study),
             stage="attractors",
             cores=0,
             memory=300,
             minutes=240,
-            # The longest jobs of a study, started right after the points and the figures of the paper.
+            # The longest jobs of a study start right after the points and the figures of the paper.
             priority=2,
             work=study.blocks * config["samples"] * (config["transient"] + config["window"]) * len(grid),
         ),
@@ -54,7 +54,7 @@ def attractors(study: Study) -> list[Rule]:
 
 
 def basins(study: Study) -> list[Rule]:
-    """Basins of attraction: tiles of maps over a plane of initial states, and their merge."""
+    """Basins of attraction: maps over a plane of initial states, computed in tiles and merged."""
     config = study.config["basins"]
     maps = [{"law": law, "a": a} for law, a in study.basin_maps]
     state = {"name": config["initial"], **study.config["initial"][config["initial"]]}
@@ -86,8 +86,8 @@ def basins(study: Study) -> list[Rule]:
         ),
         Rule(
             "basin_pairs",
-            "Measure how rough the basin boundaries are, from pairs of nearby initial states.",
-            "pairs of near states, {law} law, a = {a}",
+            "Measure how rough the basin boundaries are by pairs of nearby initial states.",
+            "pairs of nearby states, {law} law, a = {a}",
             ("basins/{law}/a{a}/pairs.nc",),
             "summaries.basins:make_pairs",
             reads=known,
@@ -116,7 +116,7 @@ def basins(study: Study) -> list[Rule]:
                 "basins": basin_keys(study),
             },
             stage="basins",
-            there=bool(maps),
+            exists=bool(maps),
             shown={"summary/basins.txt": Shown("basins in words", "Attractors", "basins_txt")},
             group="summaries",
             work=len(maps),
@@ -125,13 +125,13 @@ def basins(study: Study) -> list[Rule]:
 
 
 def bifurcations(study: Study) -> list[Rule]:
-    """Bifurcations and crises of the branches of attractors and the edge states that crises meet, for each law."""
+    """Bifurcations and crises of the branches of attractors of each law, and the edge states on their boundaries."""
     config = study.config.get("edges", {"a": []})
     return [
         Rule(
             "bifurcations_of_law",
-            "Continue the periodic orbits of one friction law in a to the bifurcations where their branches begin or "
-            "end.",
+            "Continue the periodic orbits of one friction law in a to the bifurcations at which their branches begin "
+            "or end.",
             "bifurcations of the branches of attractors, {law} law",
             ("bifurcations/{law}.nc",),
             "summaries.bifurcations:make_of_law",
@@ -140,7 +140,7 @@ def bifurcations(study: Study) -> list[Rule]:
                 "model": model_config(study, [job["law"]]),
                 "a": min(study.grid.values()),
             },
-            each=of_laws(study),
+            each=law_jobs(study),
             stage="bifurcations",
             cores=0,
             memory=350,
@@ -149,7 +149,7 @@ def bifurcations(study: Study) -> list[Rule]:
         ),
         Rule(
             "edges_of_law",
-            "Follow the boundaries between the basins of one friction law to edge states, and continue these in a.",
+            "Follow the boundaries between the basins of one friction law to edge states, and continue those in a.",
             "edge states between the attractors of the {law} law",
             ("edges/{law}.nc",),
             "summaries.edges:make_of_law",
@@ -160,16 +160,16 @@ def bifurcations(study: Study) -> list[Rule]:
                 "bifurcations": "bifurcations/{law}.nc",
             },
             # Without bifurcations there are no crises.
-            if_there=True,
+            optional_reads=True,
             params=lambda job: {
                 **keys(study, "attractors"),
                 "grid": config["a"],
                 "edges": {key: value for key, value in config.items() if key != "a"},
                 "model": model_config(study, [job["law"]]),
             },
-            each=of_laws(study),
+            each=law_jobs(study),
             stage="edges",
-            there=bool(config["a"]),
+            exists=bool(config["a"]),
             cores=0,
             memory=350,
             minutes=240,
@@ -193,7 +193,7 @@ def bifurcations(study: Study) -> list[Rule]:
             ("summary/bifurcations.nc", "summary/bifurcations.txt"),
             "summaries.bifurcations:make",
             reads={"parts": "bifurcations/{law}.nc", "edges": "summary/edges.nc"},
-            if_there=True,
+            optional_reads=True,
             stage="bifurcations",
             shown={"summary/bifurcations.txt": Shown("bifurcations in words", "Attractors", "bifurcations_txt")},
             group="summaries",
@@ -202,13 +202,13 @@ def bifurcations(study: Study) -> list[Rule]:
 
 
 def phases(study: Study) -> list[Rule]:
-    """Initial states by the phases of their end blocks, labelled for each law by the known attractors, then merged."""
+    """Initial states defined by the phases of their end blocks, and the attractors that they reach under each law."""
     config = study.config["phases"]
     of_phases = {key: value for key, value in config.items() if key != "a"}
     return [
         Rule(
             "phases_of_law",
-            "Find out which initial phases of the end blocks lead to synchrony under one friction law.",
+            "Determine which initial phases of the end blocks lead to synchrony under one friction law.",
             "phases of the end blocks, {law} law",
             ("phases/{law}.nc",),
             "summaries.phases:make_of_law",
@@ -219,9 +219,9 @@ def phases(study: Study) -> list[Rule]:
                 "phases": of_phases,
                 "model": model_config(study, [job["law"]]),
             },
-            each=of_laws(study),
+            each=law_jobs(study),
             stage="phases",
-            there=bool(config["a"]),
+            exists=bool(config["a"]),
             cores=0,
             memory=300,
             minutes=60,
@@ -241,5 +241,5 @@ def phases(study: Study) -> list[Rule]:
     ]
 
 
-#: All of these, each after those whose files it reads.
+#: All of these stages, each after those whose files it reads.
 STAGES = (attractors, basins, bifurcations, phases)

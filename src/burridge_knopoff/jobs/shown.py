@@ -1,4 +1,4 @@
-"""The summaries of points and of models, and what shows and judges them: figures, claims and the report."""
+"""Summaries of points and of models, figures, claims and the report."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from burridge_knopoff.jobs.params import keys, model_config
 from burridge_knopoff.jobs.rule import Rule, Shown
 from burridge_knopoff.study.study import Study
 
-#: Priority of the figures of the paper, which a reader wants first, and of the summaries in them.
+#: Priority of the figures of the paper, which are made first, and of the summaries that they show.
 FIRST = 4
 
 
 def summaries(study: Study) -> list[Rule]:
-    """Summaries of points, and of models alone: one netCDF file a question, by the module of its name."""
+    """Summaries of points, and of models without points: one netCDF file per question, by the module of its name."""
     of_paper = {name for figure in figure_descriptions() if figure.paper for name in figure.inputs}
 
-    def of_points(
+    def point_summary(
         name: str,
         purpose: str,
         *used: str,
@@ -27,7 +27,7 @@ def summaries(study: Study) -> list[Rule]:
         memory: int = 400,
         over: str = "a",
     ) -> Rule:
-        """used : keys of the config; read : other summaries; texts : {suffix of a text that comes with it: title}."""
+        """used : keys of the config; read : other summaries; texts : {suffix of a text next to it: title}."""
         shown = {
             f"summary/{name}.{suffix}": Shown(title, "Friction laws", f"{name}_{suffix}")
             for suffix, title in (texts or {}).items()
@@ -40,7 +40,7 @@ def summaries(study: Study) -> list[Rule]:
             "summaries.of_points:make",
             (f"summaries.{name}",),
             reads={"summaries": [f"summary/{other}.nc" for other in read]},
-            if_there=True,
+            optional_reads=True,
             points=lambda job: study.points,
             params=lambda job: {"summary": name, "config": keys(study, *used)},
             over=over,
@@ -51,7 +51,7 @@ def summaries(study: Study) -> list[Rule]:
             group="summaries",
         )
 
-    def of_models(name: str, purpose: str) -> Rule:
+    def model_summary(name: str, purpose: str) -> Rule:
         return Rule(
             name,
             purpose,
@@ -71,45 +71,44 @@ def summaries(study: Study) -> list[Rule]:
         )
 
     return [
-        of_points(
+        point_summary(
             "mean_distance",
             "Average the distance J between the end blocks over each run.",
             "synchronization_threshold",
         ),
-        of_points(
+        point_summary(
             "bifurcation_diagram",
             "Collect the section points of all runs for the bifurcation diagrams.",
             memory=1000,
         ),
-        of_points(
+        point_summary(
             "lyapunov",
-            "Estimate the Lyapunov exponents of each run and tell its kind of motion.",
+            "Estimate the Lyapunov exponents of each run and determine its kind of motion.",
             *("lyapunov_exponents", "synchronization_threshold", "motion"),
         ),
-        of_points(
+        point_summary(
             "agreement",
-            "Judge where each friction law agrees with the first one.",
+            "Determine where each friction law agrees with the first.",
             *("synchronization_threshold", "agreement"),
             read=("lyapunov", "attractors"),
             texts={"csv": "table of the agreement", "txt": "agreement in words"},
         ),
-        of_points(
+        point_summary(
             "stick_slip",
             "Measure the stick-slip cycles of each block in each run.",
             *("transient", "window", "batches"),
         ),
-        of_models(
+        model_summary(
             "orbits",
-            "Follow the synchronized orbit in a to where it loses its stability, and the orbit that branches off "
-            "there.",
+            "Continue the synchronized orbit in a to its loss of stability, and the orbit that branches off there.",
         ),
-        of_models(
+        model_summary(
             "equilibrium",
             "Find uniform sliding and the eigenvalues of its perturbations.",
         ),
-        of_points(
+        point_summary(
             "grid",
-            "Collect the numbers of all runs over the study's parameters.",
+            "Collect the results of all runs over the study's parameters.",
             *("lyapunov_exponents", "synchronization_threshold", "motion"),
             over="several",
         ),
@@ -117,13 +116,13 @@ def summaries(study: Study) -> list[Rule]:
 
 
 def figures(study: Study) -> list[Rule]:
-    """Figures: one for each module of `figures` that has a caption, as PDF for print and PNG for the screen."""
+    """One figure for each module of `figures` that has a caption, as PDF for print and PNG for the screen."""
     return [_figure(study, figure) for figure in figure_descriptions()]
 
 
 def _figure(study: Study, figure: Description) -> Rule:
     files = tuple(f"figures/{figure.file}.{suffix}" for suffix in ("pdf", "png"))
-    # A picture of the runs from one initial state has the name of the state.
+    # The name of a figure of runs from one initial state contains the name of the state.
     of_states = "{initial}" in figure.file
     words = figure.caption_of({"initial": "{initial}"})
     return Rule(
@@ -142,7 +141,7 @@ def _figure(study: Study, figure: Description) -> Rule:
         each=[{"initial": initial} for initial in study.initial] if of_states else ({},),
         stage="figures",
         over="a" if figure.of_runs else "any",
-        there=not figure.condition or bool(getattr(study, figure.condition)),
+        exists=not figure.condition or bool(getattr(study, figure.condition)),
         shown={files[1]: Shown(figure.title, figure.category, "figure", figure.paper or "none", words)},
         priority=FIRST if figure.paper else 0,
         group="figures",
@@ -150,7 +149,7 @@ def _figure(study: Study, figure: Description) -> Rule:
 
 
 def claims(study: Study, pictures: Sequence[str]) -> list[Rule]:
-    """The verdict on each statement of the paper, from the summaries that judges read; pictures : of the study."""
+    """The verdict on each claim of the paper, from the summaries; pictures : the figures of the study."""
     return [
         Rule(
             "claims",
@@ -159,7 +158,7 @@ def claims(study: Study, pictures: Sequence[str]) -> list[Rule]:
             tuple(f"summary/claims.{suffix}" for suffix in ("json", "csv", "md")),
             "claims.making:make",
             reads={"summaries": [f"summary/{name}.nc" for name in READS]},
-            if_there=True,
+            optional_reads=True,
             params=lambda job: {
                 "study": study.name,
                 "figures": pictures,
@@ -178,7 +177,7 @@ def claims(study: Study, pictures: Sequence[str]) -> list[Rule]:
 
 
 def report(study: Study, files: Sequence[str]) -> list[Rule]:
-    """One HTML file that opens offline, with all that the study makes; files : names of those besides points."""
+    """The report, one HTML file that opens offline; files : those of the study, except points."""
     return [
         Rule(
             "report",
@@ -191,7 +190,7 @@ def report(study: Study, files: Sequence[str]) -> list[Rule]:
                 "summaries": [file for file in files if file.startswith("summary/") and file.endswith(".nc")],
                 "figures": [file for file in files if file.endswith(".png")],
             },
-            if_there=True,
+            optional_reads=True,
             # The report shows the whole config.
             params=lambda job: {"config": study.config, "parameters": study.points["parameters"]},
             stage="report",

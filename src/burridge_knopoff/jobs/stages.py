@@ -8,18 +8,18 @@ from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS
 from burridge_knopoff.jobs import searches
 from burridge_knopoff.jobs.params import (
     catalogue_keys,
-    catalogue_run,
+    catalogue_run_config,
     keys,
+    length_refusal,
     model_config,
     motion_config,
     other_length_config,
-    refused_length,
 )
 from burridge_knopoff.jobs.rule import Rule, Shown
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
 from burridge_knopoff.running.settings import SOLVERS
-from burridge_knopoff.study.paths import STRETCH
-from burridge_knopoff.study.stretches import stretches
+from burridge_knopoff.study.chunks import chunks
+from burridge_knopoff.study.paths import CHUNK
 from burridge_knopoff.study.study import Study, all_points, solver_points
 
 
@@ -28,12 +28,12 @@ def _time(study: Study) -> float:
 
 
 def runs(study: Study) -> list[Rule]:
-    """Points, which the workflow makes: a job each, or one for each stretch of a grid over several parameters."""
-    file, parts = study.point_file, stretches(study)
+    """Points, which the workflow makes: one job per point, or one per chunk if several parameters vary."""
+    file, parts = study.point_file, chunks(study)
     return [
         Rule(
             "simulate",
-            "Simulate one point: one friction law from one initial state at one a, or at one point of the grid.",
+            "Simulate one point of the study: one friction law, one initial state, one value of each parameter.",
             "simulate {law} law, initial state {initial}, "
             + ", ".join(f"{name} = {{{word}}}" for word, name in study.wildcards.items()),
             (f"points/{file}",),
@@ -44,14 +44,14 @@ def runs(study: Study) -> list[Rule]:
             work=study.blocks * _time(study),
         ),
         Rule(
-            "stretch",
-            "Simulate the points of a stretch that are missing, damaged or out of date.",
-            "simulate the points of stretch {stretch}",
-            (STRETCH,),
-            each=[{"stretch": stretch} for stretch in parts],
+            "chunk",
+            "Simulate the points of a chunk that are missing, damaged or out of date.",
+            "simulate the points of chunk {chunk}",
+            (CHUNK,),
+            each=[{"chunk": chunk} for chunk in parts],
             stage="points",
             over="several",
-            log="stretch/{stretch}",
+            log="chunk/{chunk}",
             work=study.blocks * _time(study) * max(map(len, parts.values()), default=0),
         ),
         Rule(
@@ -68,7 +68,7 @@ def runs(study: Study) -> list[Rule]:
 
 
 def solvers(study: Study) -> list[Rule]:
-    """The points at a few values of a, repeated with every other solver of each law, and their comparison."""
+    """The comparison of the solvers: points at a few values of a, repeated with every other solver of each law."""
     of_laws = {solver: [law for law in study.laws if solver in study.other_solvers(law)] for solver in SOLVERS}
     return [
         Rule(
@@ -78,7 +78,7 @@ def solvers(study: Study) -> list[Rule]:
             ("summary/solvers.nc",),
             "summaries.solvers:make",
             reads={"others": f"solvers/{{solver}}/{study.point_file}"},
-            points=lambda job: {**study.points, "parameters": {"a": study.compared}},
+            points=lambda job: {**study.points, "parameters": {"a": study.compared_values}},
             params=lambda job: {
                 "others": {
                     solver: {law: asdict(study.settings(law, solver)) for law in laws}
@@ -93,7 +93,7 @@ def solvers(study: Study) -> list[Rule]:
 
 
 def proof(study: Study) -> list[Rule]:
-    """The synchronized orbit of the paper's chain, and where it is lost, in ball arithmetic."""
+    """The synchronized orbit of the paper's chain and its loss of stability, in ball arithmetic."""
     return [
         Rule(
             "proof",
@@ -103,8 +103,8 @@ def proof(study: Study) -> list[Rule]:
             "summaries.proof:make",
             params=lambda job: {"model": model_config(study, study.proved_laws)},
             stage="proof",
-            there=bool(study.proved_laws),
-            refused=f"study {study.name}: nothing to prove: the proof is of the paper's chain of 3 blocks and its two "
+            exists=bool(study.proved_laws),
+            refusal=f"study {study.name}: nothing to prove: the proof covers the paper's chain of 3 blocks and its two "
             f"laws (linearized: any v, at most {LARGEST_V:g} under a symmetric contact; nonlinear: v = "
             f"{NONLINEAR_V:g})",
             shown={"summary/proof.txt": Shown("what is proved, and what is assumed", "Synchronization", "proof_txt")},
@@ -114,7 +114,7 @@ def proof(study: Study) -> list[Rule]:
 
 
 def catalogue(study: Study) -> list[Rule]:
-    """Catalogues of slip events: a run for each law and a, and the statistics of their events."""
+    """Catalogues of slip events: one run for each law and a, and the statistics of the events."""
     config = study.config.get("catalogue")
     if config is None:
         config = {"initial": next(iter(study.initial)), "a": []}
@@ -130,7 +130,7 @@ def catalogue(study: Study) -> list[Rule]:
                 "model": model_config(study, [job["law"]]),
                 "a": study.value(job["a"]),
                 "state": state,
-                "run": catalogue_run(study, job["law"]),
+                "run": catalogue_run_config(study, job["law"]),
                 "catalogue": catalogue_keys(study),
             },
             each=[{"law": law, "a": a} for law in study.laws for a in study.catalogue_a],
@@ -142,7 +142,7 @@ def catalogue(study: Study) -> list[Rule]:
         ),
         Rule(
             "catalogue",
-            "Count the slip events by magnitude and fit the slope, and measure extents, intervals and recurrence.",
+            "Count the slip events by magnitude, fit the slope, and measure extents, intervals and recurrence.",
             "statistics of slip events, all laws",
             ("summary/catalogue.nc",),
             "summaries.catalogue:make",
@@ -153,7 +153,7 @@ def catalogue(study: Study) -> list[Rule]:
                 "fit": {key: config[key] for key in ("low", "high") if key in config},
             },
             stage="catalogue",
-            there=bool(study.catalogue_a),
+            exists=bool(study.catalogue_a),
             memory=1000,
             group="summaries",
         ),
@@ -161,13 +161,13 @@ def catalogue(study: Study) -> list[Rule]:
 
 
 def two_blocks(study: Study) -> list[Rule]:
-    """Two blocks under each law: every study judges a statement of the paper about them."""
+    """Two blocks under each law, about which the paper makes a claim."""
     config, search = study.config["chains"], study.config["attractors"]
     pair = config["two_blocks"]
     return [
         Rule(
             "two_blocks",
-            "Compare the motion of two blocks under each friction law with that under the first law.",
+            "Compare the motion of two blocks under each friction law with that under the first.",
             "two blocks: each law against the first one",
             ("summary/two_blocks.nc",),
             "summaries.two_blocks:make",
@@ -178,16 +178,16 @@ def two_blocks(study: Study) -> list[Rule]:
                 "two_blocks": pair,
                 "settings": keys(study, "start", "transient", "window"),
                 "search": {key: search[key] for key in GIVEN_STATE_KEYS},
-                # The block of the study's section may not exist here; the sum always does.
+                # Two blocks may lack the block of the study's section; the sum always exists.
                 "motion": {key: value for key, value in motion_config(study).items() if key != "section"},
             },
             stage="two_blocks",
-            there=study.has_several_laws and not study.single_length_key,
-            refused=refused_length(study),
+            exists=study.has_several_laws and not study.single_length_key,
+            refusal=length_refusal(study),
             cores=0,
             memory=300,
             minutes=30,
-            # A long job that waits for nothing: started early, so that it does not run alone at the end.
+            # A long job without inputs starts early, so that it does not run alone at the end.
             priority=1,
             work=pair["samples"] * len(pair["a"]) * len(study.laws) * _time(study),
         )
@@ -195,13 +195,13 @@ def two_blocks(study: Study) -> list[Rule]:
 
 
 def chains(study: Study) -> list[Rule]:
-    """Longer chains: made for the target `chains`, and as a part of the study if its config has `chains.blocks`."""
+    """Chains of other lengths: for the target `chains`, or in every run if the config has `chains.blocks`."""
     config = study.config["chains"]
     sample = ("samples", "symmetric_samples", "seed", "position", "velocity")
     return [
         Rule(
             "watch_chain",
-            "Find out which sampled initial states of a longer chain end in mirror synchrony.",
+            "Determine which sampled initial states of a chain end in mirror synchrony.",
             "mirror synchrony of sampled states, {blocks} blocks",
             ("chains/blocks{blocks}.nc",),
             "summaries.chains:make_of_length",
@@ -215,9 +215,9 @@ def chains(study: Study) -> list[Rule]:
             # Long chains take longest and start first.
             each=[{"blocks": str(number)} for number in sorted(study.chain_lengths, reverse=True)],
             stage="chains",
-            there=not study.single_length_key,
-            refused=refused_length(study),
-            asked="blocks" in config,
+            exists=not study.single_length_key,
+            refusal=length_refusal(study),
+            requested="blocks" in config,
             minutes=30,
             priority=1,
             work=config["samples"] * len(config["a"]) * len(config["laws"]) * config["time_limit"],
@@ -230,12 +230,12 @@ def chains(study: Study) -> list[Rule]:
             "summaries.chains:make",
             reads={"parts": "chains/blocks{blocks}.nc"},
             stage="chains",
-            there=not study.single_length_key,
-            refused=refused_length(study),
+            exists=not study.single_length_key,
+            refusal=length_refusal(study),
             group="summaries",
         ),
     ]
 
 
-#: All of these, each after those whose files it reads.
+#: All of these stages, each after those whose files it reads.
 STAGES = (runs, *searches.STAGES, solvers, proof, catalogue, two_blocks, chains)

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 
 from burridge_knopoff.laws.formula import FormulaError, names_of, tape_of
 from burridge_knopoff.laws.tape import Tape
-from burridge_knopoff.values import Unchanging, instance_of, joined, real_number, refusal, shown
+from burridge_knopoff.values import Unchanging, format_value, full_key, instance_of, real_number, refusal
 
 #: A law has to be analytic up to this speed. Blocks stay slower if springs and thresholds are about 1.
 FASTEST = 10.0
@@ -64,7 +64,7 @@ class Law(Unchanging):
         self.name = name or type(self).__module__.rpartition(".")[2]
         for key in numbers.keys() - self.defaults.keys():
             allowed = " | ".join(self.defaults) or "none"
-            raise ValueError(f"{joined(self.name, key)}: not a number of this law, expected {allowed}")
+            raise ValueError(f"{full_key(self.name, key)}: not a number of this law, expected {allowed}")
         self._set(a, {**self.defaults, **numbers})
 
     def _set(self, a: float, numbers: Mapping[str, float]) -> None:
@@ -74,10 +74,10 @@ class Law(Unchanging):
         known = names_of(self.formula)
         for key in numbers:
             if key in ("a", "u"):
-                place = joined(self.name, key)
+                place = full_key(self.name, key)
                 raise ValueError(f"{place}: got a name that is taken, expected another one for a number")
             if key not in known:
-                raise ValueError(f"{joined(self.name, key)}: not in the formula {shown(self.formula)}")
+                raise ValueError(f"{full_key(self.name, key)}: not in the formula {format_value(self.formula)}")
         for key, value in {"a": a, **numbers}.items():
             if not abs(real_number(value)) < 1e300:
                 raise refusal(key, value, "a finite number")
@@ -90,7 +90,7 @@ class Law(Unchanging):
             self._check()
         except FormulaError as error:
             raise ValueError(
-                f"{self.name}: got {shown(self.formula)} at a = {self.a:g}, expected a friction law: {error}"
+                f"{self.name}: got {format_value(self.formula)} at a = {self.a:g}, expected a friction law: {error}"
             ) from None
 
     def _check(self) -> None:

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.values import read_only
+from burridge_knopoff.values import read_only_copy
 
 #: The result of an operation on its registers p and q: α p + β q + γ, α p q, α / p, p^α, α exp p, α log p.
 CODES = ("linear", "multiply", "reciprocal", "power", "exp", "log")
@@ -175,7 +175,7 @@ class Tape:
         rows = [(item.code, item.first, item.second) for item in self.operations]
         constants = [(item.alpha, item.beta, item.gamma) for item in self.operations]
         table = np.array(rows, dtype=np.intc).reshape(-1, 3), np.array(constants, dtype=float).reshape(-1, 3)
-        return read_only(table[0]), read_only(table[1])
+        return read_only_copy(table[0]), read_only_copy(table[1])
 
     def run(self, speed: Any, functions: Any = np) -> tuple[Any, Any]:
         """Return Φ and dΦ/du at a speed, in the arithmetic of the speed.

@@ -12,7 +12,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import Field, Keys, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.values import refusal, shown
+from burridge_knopoff.values import format_value, refusal
 
 #: An initial state: minus or plus, an `InitialState`, {"position": …, "velocity": …}, or (position, velocity).
 Initial = str | InitialState | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray
@@ -47,7 +47,7 @@ def _state(given: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarr
         pair = _plain(given)
         lists = [_plain(values) for values in pair] if isinstance(pair, list) else []
         if len(lists) != 2 or not all(isinstance(values, list) for values in lists):
-            raise ValueError(f"initial: got {shown(given)}, expected {_FORMS}, each one number a block")
+            raise ValueError(f"initial: got {format_value(given)}, expected {_FORMS}, each one number a block")
         numbers = dict(zip(("position", "velocity"), lists, strict=True))
     return InitialState(**_KEYS.form(numbers, "initial"))
 

@@ -25,7 +25,7 @@ from burridge_knopoff.running.runner import TOGETHER, run_together
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import prepare
 from burridge_knopoff.running.threads import in_threads
-from burridge_knopoff.values import joined, refusal, shown
+from burridge_knopoff.values import format_value, full_key, refusal
 
 if TYPE_CHECKING:
     import xarray
@@ -129,9 +129,9 @@ def _grid(
     axes: dict[str, list[float]] = {name: given.tolist() for name, given in arrays.items() if given.ndim}
     for name, values in axes.items():
         if arrays[name].ndim > 1:
-            raise refusal(joined("", name), values, "one number or a sequence of numbers")
+            raise refusal(full_key("", name), values, "one number or a sequence of numbers")
         if not values:
-            raise ValueError(f"{joined('', name)}: got no value, expected at least one")
+            raise ValueError(f"{full_key('', name)}: got no value, expected at least one")
     single = {name: value for name, value in parameters.items() if name not in axes}
     if isinstance(law, Model):
         base = given_model(law, None, blocks, chain, None, contact)
@@ -141,13 +141,13 @@ def _grid(
     for name in parameters:
         if name not in names_of(base) and single_of(name) is None:
             known = " | ".join([words_of(base), *sorted(fields_of(Settings))])
-            raise ValueError(f"{joined('', name)}: not a setting or a parameter, expected {known}")
+            raise ValueError(f"{full_key('', name)}: not a setting or a parameter, expected {known}")
     base = base.at(**single)
     for name, values in axes.items():
         axes[name] = [value_of(base.at(**{name: value}), name) for value in values]
         value, count = Counter(axes[name]).most_common(1)[0]
         if count > 1:
-            raise ValueError(f"{name}: got {shown(value)} twice, expected each value once")
+            raise ValueError(f"{name}: got {format_value(value)} twice, expected each value once")
     return base, axes
 
 

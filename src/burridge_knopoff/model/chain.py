@@ -27,7 +27,7 @@ from burridge_knopoff.model.springs import (
     of_grid,
     read_edges,
 )
-from burridge_knopoff.values import Unchanging, read_only, refusal
+from burridge_knopoff.values import Unchanging, read_only_copy, refusal
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -214,12 +214,12 @@ class Chain(Unchanging):
     @cached_property
     def thresholds(self) -> np.ndarray:
         """Static friction of each block, shape (blocks,)."""
-        return read_only(numbers_of(self.threshold, self.blocks, "threshold"))
+        return read_only_copy(numbers_of(self.threshold, self.blocks, "threshold"))
 
     @cached_property
     def masses(self) -> np.ndarray:
         """Mass of each block, shape (blocks,)."""
-        return read_only(numbers_of(self.mass, self.blocks, "mass"))
+        return read_only_copy(numbers_of(self.mass, self.blocks, "mass"))
 
     @cached_property
     def before(self) -> np.ndarray:
@@ -232,12 +232,12 @@ class Chain(Unchanging):
             raise ValueError("chain: got a network of springs, expected a row or a ring")
         springs = np.zeros(self.blocks)
         springs[: self.blocks - (self.ends == "open")] = values
-        return read_only(np.roll(springs, 1))
+        return read_only_copy(np.roll(springs, 1))
 
     @cached_property
     def after(self) -> np.ndarray:
         """Strength of the spring to the next block of a row or ring, shape (blocks,); 0 at an open end."""
-        return read_only(np.roll(self.before, -1))
+        return read_only_copy(np.roll(self.before, -1))
 
     @cached_property
     def neighbours(self) -> Neighbours:
@@ -261,19 +261,19 @@ class Chain(Unchanging):
     def driving(self) -> np.ndarray:
         """Strengths D of the springs to the driver, shape (blocks,)."""
         if isinstance(self.pulling, str):
-            return read_only(np.diff(self.neighbours.start).astype(float) if self.blocks > 1 else np.ones(1))
-        return read_only(np.broadcast_to(self.pulling, self.blocks))
+            return read_only_copy(np.diff(self.neighbours.start).astype(float) if self.blocks > 1 else np.ones(1))
+        return read_only_copy(np.broadcast_to(self.pulling, self.blocks))
 
     @cached_property
     def driver_damping(self) -> np.ndarray:
         """The dashpots c_i to the driver, shape (blocks,)."""
-        return read_only(np.broadcast_to(self.pulling_damping, self.blocks).astype(float))
+        return read_only_copy(np.broadcast_to(self.pulling_damping, self.blocks).astype(float))
 
     @cached_property
     def damping_diagonal(self) -> np.ndarray:
         """Diagonal of C: the total of the dashpots at each block, shape (blocks,)."""
         coupled = np.bincount(self.neighbours.block, self.neighbours.damping, self.blocks)
-        return read_only(coupled + self.driver_damping)
+        return read_only_copy(coupled + self.driver_damping)
 
     @property
     def is_damped(self) -> bool:
@@ -284,7 +284,7 @@ class Chain(Unchanging):
     def diagonal(self) -> np.ndarray:
         """Diagonal of K: the total strength of the springs at each block, shape (blocks,)."""
         coupled = np.bincount(self.neighbours.block, self.neighbours.strength, self.blocks)
-        return read_only(coupled + self.driving)
+        return read_only_copy(coupled + self.driving)
 
     @property
     def stiffness(self) -> np.ndarray:

@@ -30,14 +30,24 @@ class Drawn(Range):
 
     each: Number
 
+    @property
+    def keys(self) -> Keys:
+        """The keys that describe the numbers."""
+        return Keys(
+            {
+                "random": Field(OneOf(("uniform",)), "the distribution, uniform"),
+                "low": Field(self.each, "the smallest number"),
+                "high": Field(self.each, "the largest number"),
+                "seed": Field(SEED, "a seed; the same seed draws the same numbers"),
+            }
+        )
+
     def _fit(self, value: Any, key: str) -> str | None:
         if isinstance(value, str) and value.startswith("random="):
             value = _read(value)
         if not isinstance(value, Mapping):
             return None
-        limit = Field(self.each, str(self.each))
-        fields = {"random": Field(OneOf(("uniform",)), "uniform"), "low": limit, "high": limit}
-        drawn = Keys({**fields, "seed": Field(SEED, str(SEED))}).form(value, key)
+        drawn = self.keys.form(value, key)
         if drawn["high"] < drawn["low"]:
             raise refusal(f"{key}.high", drawn["high"], f"at least low ({drawn['low']!r})")
         return ",".join(f"{name}={item}" for name, item in drawn.items())

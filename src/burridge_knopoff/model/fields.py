@@ -17,7 +17,7 @@ from difflib import get_close_matches
 from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 from burridge_knopoff.model.ranges import Range
-from burridge_knopoff.values import joined
+from burridge_knopoff.values import full_key
 
 #: Default of a required field, and of an optional field whose value is derived from others.
 REQUIRED, FOLLOWS = object(), object()
@@ -50,9 +50,9 @@ class Keys(Range):
         for name, field in self.fields.items():
             given = value.get(name, field.default)
             if given is REQUIRED:
-                raise ValueError(f"{joined(key, name)}: missing, expected {field.description}")
+                raise ValueError(f"{full_key(key, name)}: missing, expected {field.description}")
             if given is not FOLLOWS:
-                values[name] = field.range.form(given, joined(key, name))
+                values[name] = field.range.form(given, full_key(key, name))
         return values
 
     def __str__(self) -> str:
@@ -69,7 +69,7 @@ def unknown_key(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
     hint = f" (did you mean {near[0]}?)" if near else ""
     if RENAMED.get(name) in allowed:
         hint = f" (it is called {RENAMED[name]} now)"
-    return ValueError(f"{joined(place, name)}: unknown key{hint}, expected one of: {', '.join(allowed)}")
+    return ValueError(f"{full_key(place, name)}: unknown key{hint}, expected one of: {', '.join(allowed)}")
 
 
 _T = TypeVar("_T")

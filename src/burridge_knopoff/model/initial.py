@@ -11,7 +11,7 @@ from burridge_knopoff.model.drawn import Drawn, Numbers, numbers_of
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.ranges import Either, Number, Several, Text
 from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
-from burridge_knopoff.values import shown
+from burridge_knopoff.values import format_value
 
 STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
 COORDINATE = Number(-1e6, 1e6)
@@ -86,7 +86,7 @@ def initial_state(name: str, position: Numbers | None = None, velocity: Numbers 
     if position is None or velocity is None:
         if known is None:
             raise ValueError(
-                f"initial: got {shown(name)}, expected {' | '.join(PAPER_STATES)}, or both position and velocity"
+                f"initial: got {format_value(name)}, expected {' | '.join(PAPER_STATES)}, or both position and velocity"
             )
         position = known.position if position is None else position
         velocity = known.velocity if velocity is None else velocity

@@ -15,7 +15,7 @@ from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.parameters import at
 from burridge_knopoff.model.ranges import Number, OneOf, Text
-from burridge_knopoff.values import Unchanging, instance_of, read_only
+from burridge_knopoff.values import Unchanging, instance_of, read_only_copy
 
 LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
 
@@ -106,7 +106,7 @@ class Model(Unchanging):
     @cached_property
     def sliding_offset(self) -> np.ndarray:
         """Positions e of uniform sliding relative to the driver, shape (blocks,)."""
-        return read_only(self.chain.sliding_offset(float(self.law(self.v))))
+        return read_only_copy(self.chain.sliding_offset(float(self.law(self.v))))
 
     def begin(self, initial: InitialState, start: str = "moving") -> ChainState:
         """Return the instant τ = 0 of a run from an initial state.

@@ -13,7 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from burridge_knopoff.model.chain import BLOCK_NUMBERS, NEIGHBOURS, SPRING_NUMBERS
-from burridge_knopoff.values import joined, real_number, refusal
+from burridge_knopoff.values import full_key, real_number, refusal
 
 if TYPE_CHECKING:
     from burridge_knopoff.model.chain import Chain
@@ -111,7 +111,7 @@ def _given(model: Model, name: str) -> Any:
         return _single(model.chain, name, *single)
     names = names_of(model)
     if name not in names:
-        raise ValueError(f"{joined('', name)}: not a parameter of this model, expected {words_of(model)}")
+        raise ValueError(f"{full_key('', name)}: not a parameter of this model, expected {words_of(model)}")
     if names.count(name) > 1:
         raise ValueError(f"{name}: got a number of the law {model.law.name} and one of the model, expected one of them")
     if name in CHAIN:

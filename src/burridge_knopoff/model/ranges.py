@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.values import joined, real_number, refusal, scalar
+from burridge_knopoff.values import full_key, real_number, refusal, scalar
 
 #: Stands for no limit: numbers still have to be finite.
 HUGE = 1e300
@@ -175,7 +175,7 @@ class Named(Range):
     def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
         if not isinstance(value, Mapping) or len(value) < self.least:
             return None
-        return {self.name.form(name, key): self.each.form(item, joined(key, name)) for name, item in value.items()}
+        return {self.name.form(name, key): self.each.form(item, full_key(key, name)) for name, item in value.items()}
 
     def __str__(self) -> str:
         limits = [f"at least {self.least}"] if self.least else []

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from burridge_knopoff.model.ranges import Number, Range
-from burridge_knopoff.values import read_only
+from burridge_knopoff.values import read_only_copy
 
 #: Limit on the number of blocks.
 MAXIMUM_BLOCKS = 10**6
@@ -51,7 +51,7 @@ def _listed(index: np.ndarray, strength: np.ndarray, damping: np.ndarray) -> Nei
     joined = strength > 0.0
     start = np.concatenate([[0], np.cumsum(joined.sum(axis=1))])
     numbers = (strength[joined].astype(float), damping[joined].astype(float))
-    return Neighbours(*map(read_only, (start.astype(np.int64), index[joined].astype(np.int64), *numbers)))
+    return Neighbours(*map(read_only_copy, (start.astype(np.int64), index[joined].astype(np.int64), *numbers)))
 
 
 def along(strength: np.ndarray, damping: np.ndarray) -> Neighbours:
@@ -78,7 +78,7 @@ def of_edges(one: np.ndarray, other: np.ndarray, strength: np.ndarray, damping: 
     order = np.lexsort((index, block))
     start = np.concatenate([[0], np.cumsum(np.bincount(block, minlength=blocks))])
     numbers = (np.concatenate([values, values])[order] for values in (strength, damping))
-    return Neighbours(*map(read_only, (start.astype(np.int64), index[order].astype(np.int64), *numbers)))
+    return Neighbours(*map(read_only_copy, (start.astype(np.int64), index[order].astype(np.int64), *numbers)))
 
 
 class SpringsFile(Range):
@@ -141,7 +141,7 @@ def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
             row = table[np.flatnonzero(wrong)[0]]
             raise _refused(path, f"{' '.join(f'{value:g}' for value in row)}{reason}")
     one, other = blocks.T.astype(np.int64) - 1
-    return read_only(one), read_only(other), read_only(strength), read_only(damping)
+    return read_only_copy(one), read_only_copy(other), read_only_copy(strength), read_only_copy(damping)
 
 
 def _content(path: str) -> bytes:

@@ -1,1 +1,1 @@
-"""The origin of a result: its sources and their fingerprint, the command of a run, seals, and atomic writing."""
+"""The origin of a result: fingerprints of its sources, seals, records of studies, and atomic writing of files."""

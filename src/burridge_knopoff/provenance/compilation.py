@@ -1,11 +1,11 @@
-"""The compilation of the kernel, which decides the numbers just as its sources do."""
+"""Options of the compiler for the kernel, on which the results depend just as on the sources."""
 
 import os
 import sysconfig
 
-#: Neither contraction to fused multiply-add nor reassociation: a compiler must not change a result.
-#: docs/performance.md explains on which machines results agree to the bit. Nor vectors of its own: the sources have
-#: them, and short loops are slower with them.
+#: No contraction to fused multiply-add and no reassociation, since a compiler must not change a result;
+#: docs/performance.md says on which machines results agree to the bit. No automatic vectorization, since the sources
+#: use vectors where these help, and short loops are slower with them.
 COMPILER_FLAGS = (
     "-std=c++20",
     "-O3",
@@ -16,24 +16,24 @@ COMPILER_FLAGS = (
     "-fvisibility=hidden",
 )
 
-#: For nanobind itself, which hands arrays over and computes nothing.
+#: For nanobind itself, which passes arrays and computes nothing.
 NANOBIND_FLAGS = ("-std=c++20", "-Os", "-g0", "-fno-strict-aliasing", "-fvisibility=hidden")
 
-#: {doubles in a vector: oldest x86-64 processors that have it}. The numbers are the same with each.
+#: {doubles in a vector: oldest x86-64 processors that have it}. The results do not depend on it.
 LEVELS = {"2": "-march=x86-64-v2", "4": "-march=x86-64-v3", "8": "-march=x86-64-v4"}
 
 
 def vector_flags() -> dict[str, tuple[str, ...]]:
-    """Return {folder in the kernel: flags that choose the vectors} of every module to compile, the narrowest first.
+    """Return {folder in the kernel: flags that select the vectors} of the modules to compile, narrowest first.
 
-    By default there is one module, for this processor. BURRIDGE_KNOPOFF_LANES chooses the number of doubles in a
-    vector, or "all" for three modules, of which the widest that the processor runs is imported. Where Python is built
-    for other processors than x86-64, or for several at once as on macOS, there is one module without such flags, which
-    only compilers for x86-64 have.
+    By default one module is compiled, for this processor. BURRIDGE_KNOPOFF_LANES sets the number of doubles in a
+    vector; "all" compiles three modules, of which the widest that the processor supports is imported. If Python is
+    built for other processors than x86-64, or for several as on macOS, one module is compiled without such flags, which
+    only compilers for x86-64 accept.
 
     Raises ValueError if BURRIDGE_KNOPOFF_LANES is none of 2, 4, 8 and all.
     """
-    # What modules are compiled for, which need not be the machine that compiles them.
+    # The platform of Python, which need not be that of the machine that compiles.
     if not sysconfig.get_platform().endswith(("-x86_64", "-amd64")):
         return {"": ()}
     lanes = os.environ.get("BURRIDGE_KNOPOFF_LANES")

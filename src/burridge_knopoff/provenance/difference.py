@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 import shlex
 
-# A number of a law includes its name: `number sigma`.
+# The option of a law's parameter includes its name: `number sigma`.
 _OPTION = re.compile(r"--(number \w+|[\w-]+)[ =](.*?)(?= --|$)")
 
 

@@ -1,4 +1,4 @@
-"""Atomic writing of files: whole or not at all."""
+"""Atomic writing of files: completely or not at all."""
 
 from __future__ import annotations
 
@@ -11,20 +11,20 @@ from pathlib import Path
 
 #: Number of attempts to write a file if another process removes its temporary file.
 ATTEMPTS = 3
-#: Bytes written to a disk to find out why it refuses more.
+#: Bytes written to a disk to find out why writing failed.
 PROBE = 1 << 20
 
 
 def write_whole(path: str | Path, write: Callable[[str], object]) -> None:
-    """Let `write` fill a temporary file beside `path`, then move it into place; leave nothing behind if it fails.
+    """Let `write` fill a temporary file next to `path`, then move it into place; leave nothing behind if it fails.
 
-    Temporary files of `path` left by killed processes are removed as well. Two processes may write the same file at the
-    same time: the last one stays, whole.
+    Temporary files of `path` that killed processes left are removed as well. Two processes may write the same file at
+    the same time: one of the two complete files remains.
 
     Raises OSError, one line that names the file, if it or its folder cannot be written.
     """
     check_target(path)
-    # A link stays; the file that it points to is replaced.
+    # A link is kept; the file that it points to is replaced.
     path = Path(os.path.realpath(path))
     # Keep the suffix: matplotlib and others derive the format from it.
     name = ".{}.part-{}{}"
@@ -33,7 +33,7 @@ def write_whole(path: str | Path, write: Callable[[str], object]) -> None:
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             write(str(temporary))
-            # Otherwise the move could reach the disk before the content, and a power failure leave an empty file.
+            # Otherwise the move could reach the disk before the content, and a power failure could leave an empty file.
             with temporary.open("rb") as file:
                 os.fsync(file.fileno())
             os.replace(temporary, path)
@@ -44,8 +44,8 @@ def write_whole(path: str | Path, write: Callable[[str], object]) -> None:
                 raise OSError(f"{path}: cannot be written: {_reason(error, temporary)}") from error
         finally:
             _remove(temporary)
-    # It is not known whether the processes of other temporary files still run: on a cluster they run on other machines.
-    # A process that does run writes its file again.
+    # The processes of other temporary files may still run, on a cluster even on other machines. Such a process writes
+    # its file again.
     _remove(*path.parent.glob(name.format(glob.escape(path.stem), "[0-9a-f]" * 8, glob.escape(path.suffix))))
 
 
@@ -57,7 +57,7 @@ def _remove(*paths: Path) -> None:
 
 def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
     """Return the reason why a file could not be written."""
-    # netCDF4 reports a full disk as "NetCDF: HDF error" or "Permission denied"; trying to write more bytes tells.
+    # netCDF4 reports a full disk as "NetCDF: HDF error" or "Permission denied"; writing more bytes shows the reason.
     try:
         with temporary.open("ab", buffering=0) as file:
             file.write(bytes(PROBE))
@@ -66,16 +66,16 @@ def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
         return refused.strerror or refused
     if isinstance(error, OSError):
         return error.strerror or error
-    return f"{error} (not for want of space on the disk, perhaps of memory)"
+    return f"{error} (the disk is not full; memory may be)"
 
 
 def write_text(path: str | Path, text: str) -> None:
-    """Write a text file, whole or not at all."""
+    """Write a text file, completely or not at all."""
     write_whole(path, lambda name: Path(name).write_bytes(text.encode()))
 
 
 def check_target(path: str | Path) -> None:
-    """Raise OSError, one line, if a file of that name could not be written: before hours of work, not after."""
+    """Raise OSError, one line, if a file of that name could not be written, before hours of work are lost."""
     path = Path(os.path.realpath(path))
     try:
         if path.exists() and not path.is_file():
@@ -105,7 +105,7 @@ def nearest_folder(path: str | Path) -> Path:
     folder = Path(path)
     while not os.path.exists(folder):
         if folder.is_symlink():
-            raise OSError(f"{folder} is a link to {folder.readlink()}, which is not there")
+            raise OSError(f"{folder} is a link to {folder.readlink()}, which does not exist")
         folder = folder.parent
     if not folder.is_dir():
         raise OSError(f"{folder} is not a folder")

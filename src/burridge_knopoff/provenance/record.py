@@ -1,4 +1,4 @@
-"""The record of the last run of a study, beside its results: its config and the command to repeat it."""
+"""The record of the last run of a study, in its folder of results: the config and the command to repeat the run."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from typing import Any
 
 from burridge_knopoff.provenance.files import display_path, write_text
 from burridge_knopoff.provenance.sources import PACKAGE, SOFTWARE
-from burridge_knopoff.values import printable
+from burridge_knopoff.values import escape_unprintable
 
 NAME = "study.json"
 
@@ -48,11 +48,11 @@ def write_study_record(
     given: dict[str, Any],
     arguments: str,
 ) -> None:
-    """Record a study in its folder of results; a record with the same content stays untouched.
+    """Record a study in its folder of results; a record with the same content is left untouched.
 
-    config, grid : with all defaults, and {parameter: {name in file names: value}}
-    config_file, given : its config as it was given, and the content of that file
-    arguments : arguments of `snakemake` besides its targets, such as `--configfile config/mine.yaml`
+    config, grid : the config with all defaults, and {parameter: {name in file names: value}}
+    config_file, given : the config file and its content
+    arguments : arguments of `snakemake` except its targets, such as `--configfile config/mine.yaml`
     Raises OSError, one line, if the folder cannot be written to.
     """
     path = Path(results, NAME)
@@ -67,7 +67,7 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
 
     software, git_commit : of the last run
     arguments, config_file : as they were recorded
-    given, config : the config as it was given, and with all defaults
+    given, config : the content of the config file, and the config with all defaults
     grid : {parameter: {name in file names: value}}
 
     Raises ValueError, one line, if there is no record.
@@ -76,14 +76,13 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     try:
         record = json.loads(path.read_text(encoding="utf-8"))
     except OSError:
-        raise ValueError(
-            f"{printable(str(results))}: not the results of a study: no {NAME} in it; `snakemake` writes it"
-        ) from None
+        folder = escape_unprintable(str(results))
+        raise ValueError(f"{folder}: not the results of a study: no {NAME} in it, which `snakemake` writes") from None
     except (ValueError, RecursionError):
         record = None
-    # Records of earlier versions have more.
+    # Records of earlier versions have more keys.
     if not isinstance(record, dict) or {key: type(record.get(key)) for key in _TYPES} != _TYPES:
-        raise ValueError(f"{printable(str(path))}: not the record of a study; run snakemake again, it writes it")
+        raise ValueError(f"{escape_unprintable(str(path))}: not a valid record; run snakemake again to rewrite it")
     return record
 
 
@@ -93,9 +92,9 @@ def study_folder(path: str | Path) -> Path | None:
 
 
 def check_owner(results: str | Path, config_file: str | Path, given: dict[str, Any]) -> None:
-    """Refuse a folder of results whose content was made from another config file with another content.
+    """Refuse a folder of results that belongs to another config file with another content.
 
-    A config that was edited keeps its folder, as does one that was moved or copied without an edit.
+    A config keeps its folder when it is edited, and when it is moved or copied unchanged.
 
     given : content of the config file
     Raises ValueError, one line, with the differences and the remedy.
@@ -116,11 +115,11 @@ def check_owner(results: str | Path, config_file: str | Path, given: dict[str, A
 
 
 def remake_command(study_file: str | Path, *paths: str | Path, listed: str = "") -> str:
-    """Return the command that remakes files and everything that depends on them, from any folder.
+    """Return the command that recreates files and everything that depends on them, from any folder.
 
     study_file : a file in the results of their study
     paths : the files, if other than that one
-    listed : if there are too many paths, a command that prints them, relative to where `snakemake` runs
+    listed : if there are too many paths, a command that prints them relative to the folder where `snakemake` runs
     """
     place, arguments, named = "", "", [str(path) for path in paths or [study_file]]
     if folder := study_folder(study_file):

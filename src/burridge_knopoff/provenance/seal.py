@@ -1,12 +1,13 @@
 """The seal of a file of results: a description of its content, the status of its run, and the SHA-256 of its bytes.
 
-HDF5 itself notices neither a changed number nor overwritten bytes, and nothing in a picture or a text says which study
+HDF5 itself detects neither a changed number nor overwritten bytes, and nothing in a picture or a text says which study
 it belongs to. The seal is one line. In a netCDF file it is the last line, after the HDF5 data, since netCDF programs do
-not read past the end recorded by HDF5. The seal of a text or a picture lies beside it, in `.<name>.seal`.
+not read past the end recorded by HDF5. The seal of a text or a picture is in a file next to it, `.<name>.seal`.
 
-The description is a mapping in the types of JSON. For a point it has the `bk simulate` command and the fingerprint of
-the sources. For any other file of a study it has the name of the file, what of the config decides it, the fingerprint
-of the sources that make it, and a digest of the description of each input. `jobs.Jobs.abouts` tells what is expected.
+The description is a mapping in the types of JSON. That of a point contains the `bk simulate` command and the
+fingerprint of the sources. That of any other file of a study contains the name of the file, the part of the config on
+which it depends, the fingerprint of the sources that make it, and a digest of the description of each input.
+`jobs.Jobs.abouts` returns the expected descriptions.
 """
 
 from __future__ import annotations
@@ -21,31 +22,31 @@ from typing import Any
 from burridge_knopoff.provenance.difference import difference
 from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.record import remake_command
-from burridge_knopoff.values import printable
+from burridge_knopoff.values import escape_unprintable
 
 _MARK = b"\n#seal "
 _SEAL = re.compile(rb"\n#seal (.+) ([a-z_]+) ([0-9a-f]{64})\n\Z")
 #: Suffixes of the files that contain their seals: netCDF files and cached results.
-_INSIDE = (".nc", "")
-#: What of a description tells of the sources; digests of inputs do, too.
-OF_SOURCES = ("make", "of_points", "sources")
-#: Differences reported last, since they may follow from others.
+_SEALED_INSIDE = (".nc", "")
+#: Keys of a description that depend on the sources, as the digests of inputs do.
+SOURCE_KEYS = ("make", "of_points", "sources")
+#: Keys whose difference is reported last, since it may follow from others.
 _LAST = ("inputs", "sources")
-#: Separates the reason why a file must not be used from the command that remakes it.
+#: Separates the reason why a file must not be used from the command that recreates it.
 REMEDY = "; remake it: "
 #: Maximum length of a value in a message.
 _LONGEST = 60
 
 
 class BadFile(ValueError):
-    """A file of results that must not be used; the message is one line: file, reason, command that remakes it.
+    """The error of a file of results that must not be used: one line with file, reason and the command to recreate it.
 
     kind : missing, corrupt, or stale if the file is intact
     """
 
     def __init__(self, path: str | Path, reason: str, kind: str = "stale") -> None:
         self.path, self.reason, self.kind = Path(path), reason, kind
-        super().__init__(f"{printable(str(path))}: {reason}{REMEDY}{remake_command(path)}")
+        super().__init__(f"{escape_unprintable(str(path))}: {reason}{REMEDY}{remake_command(path)}")
 
 
 def identity(*parts: str) -> str:
@@ -53,32 +54,32 @@ def identity(*parts: str) -> str:
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()[:16]
 
 
-def canonical(about: Any) -> str:
-    """Return a description as one line of JSON; order counts, such as that of the laws in a summary."""
+def canonical_json(about: Any) -> str:
+    """Return a description as one line of JSON; the order matters, such as that of the laws in a summary."""
     return json.dumps(about, separators=(",", ":"))
 
 
 def seal_path(path: str | Path) -> Path:
-    """Return the file that contains the seal: the file itself or, for a text or a picture, one beside it."""
+    """Return the file that contains the seal: the file itself or, for a text or a picture, one next to it."""
     path = Path(path)
-    return path if path.suffix in _INSIDE else path.with_name(f".{path.name}.seal")
+    return path if path.suffix in _SEALED_INSIDE else path.with_name(f".{path.name}.seal")
 
 
 def write_sealed(
     path: str | Path, write: Callable[[str], object], about: Mapping[str, Any], status: str = "made"
 ) -> None:
-    """Let `write` fill a file and seal it, whole or not at all; see `write_whole`.
+    """Let `write` fill a file and seal it, completely or not at all; see `write_whole`.
 
     about : description of the content, in the types of JSON
     status : how its run ended
     """
-    head = f" {canonical(about)} {status} ".encode()
+    head = f" {canonical_json(about)} {status} ".encode()
     line = b""
 
     def write_and_seal(name: str) -> None:
         nonlocal line
         write(name)
-        line = _line(Path(name).read_bytes(), head)
+        line = _seal_line(Path(name).read_bytes(), head)
         if seal_path(path) == Path(path):
             with open(name, "ab") as file:
                 file.write(line)
@@ -88,7 +89,7 @@ def write_sealed(
         write_whole(seal_path(path), lambda name: Path(name).write_bytes(line))
 
 
-def _line(content: bytes, head: bytes) -> bytes:
+def _seal_line(content: bytes, head: bytes) -> bytes:
     head = _MARK.rstrip() + head
     return head + hashlib.sha256(content + head).hexdigest().encode() + b"\n"
 
@@ -111,22 +112,23 @@ def read_sealed(path: str | Path) -> tuple[bytes, dict[str, Any], str]:
     path = Path(path)
     try:
         content = path.read_bytes()
-        beside = seal_path(path)
-        seal = content if beside == path else beside.read_bytes() if beside.is_file() else b""
+        sealed_in = seal_path(path)
+        seal = content if sealed_in == path else sealed_in.read_bytes() if sealed_in.is_file() else b""
     except FileNotFoundError:
         raise BadFile(path, "is missing", "missing") from None
     except OSError as error:
         raise BadFile(path, f"cannot be read: {error.strerror}", "corrupt") from None
-    if beside == path and not content:
+    if sealed_in == path and not content:
         raise BadFile(path, "is empty", "corrupt")
     found = _SEAL.search(seal, max(seal.rfind(_MARK), 0))
     if found is None:
-        where = "at its end: it is cut off, or another program wrote it" if beside == path else "beside it"
-        raise BadFile(path, f"has no seal {where}", "corrupt")
-    if beside == path:
+        is_inside = sealed_in == path
+        reason = "is truncated, or was not written by this program" if is_inside else f"has no seal in {sealed_in.name}"
+        raise BadFile(path, reason, "corrupt")
+    if sealed_in == path:
         content = content[: found.start()]
     if hashlib.sha256(content + found[0][: -len(found[3]) - 1]).hexdigest().encode() != found[3]:
-        raise BadFile(path, "has other bytes than were written" if content else "is empty", "corrupt")
+        raise BadFile(path, "was changed after it was written" if content else "is empty", "corrupt")
     try:
         about = json.loads(found[1])
     except ValueError:
@@ -139,36 +141,37 @@ def read_sealed(path: str | Path) -> tuple[bytes, dict[str, Any], str]:
 def check_seal(path: str | Path, about: Mapping[str, Any] | None = None, *, any_sources: bool = False) -> str:
     """Check that a file is intact and the expected one; return the status of its run.
 
-    about : what it must be made from; None if that is not known
+    about : the expected description; None accepts any
     any_sources : accept a file made by other sources
     Raises BadFile, one line with the difference.
     """
     found, status = read_seal(path)
     if about is not None:
-        one, other = (of_config(found), of_config(about)) if any_sources else (found, about)
+        one, other = (config_part(found), config_part(about)) if any_sources else (found, about)
         if key := first_difference(one, other):
-            raise BadFile(path, told_difference(key, one, other))
+            raise BadFile(path, describe_difference(key, one, other))
     return status
 
 
 def digest_of(about: Mapping[str, Any]) -> str:
-    """Return what a description is in those of files made from it: digits for the config, and for the sources."""
-    own = of_config(about)
-    sources = [about.get(key) for key in OF_SOURCES]
+    """Return the digest of a description for those of files made from it: one part for the config, one for sources."""
+    own = config_part(about)
+    sources = [about.get(key) for key in SOURCE_KEYS]
     sources += [digest.partition(".")[2] for digest in about.get("inputs", {}).values()]
-    return f"{identity(canonical(own))}.{identity(canonical(sources))}"
+    return f"{identity(canonical_json(own))}.{identity(canonical_json(sources))}"
 
 
-def of_config(about: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what of a description does not depend on the sources."""
+def config_part(about: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the part of a description that does not depend on the sources."""
     inputs = {name: digest.partition(".")[0] for name, digest in about.get("inputs", {}).items()}
-    return {**{key: value for key, value in about.items() if key not in OF_SOURCES}, "inputs": inputs}
+    return {**{key: value for key, value in about.items() if key not in SOURCE_KEYS}, "inputs": inputs}
 
 
-def fit_together(path: str | Path, other: str | Path) -> bool:
-    """Return whether two intact files can be of one study: neither was made from another version of the other.
+def is_consistent(path: str | Path, other: str | Path) -> bool:
+    """Return whether two intact files can belong to one study.
 
-    Nor from other versions of a common input. Files whose seals do not name their inputs are taken to fit.
+    They cannot if one was made from another version of the other, or both from different versions of a common input.
+    Files whose seals do not name their inputs count as consistent.
     """
     abouts = [read_seal(each)[0] for each in (path, other)]
     made_of = [{about["file"]: digest_of(about), **about["inputs"]} for about in abouts if "inputs" in about]
@@ -179,15 +182,15 @@ def fit_together(path: str | Path, other: str | Path) -> bool:
 
 
 def first_difference(found: Mapping[str, Any], expected: Mapping[str, Any]) -> str:
-    """Return the key of two descriptions whose difference explains most; empty if there is none."""
+    """Return the first key in which two descriptions differ, the most telling first; empty if they are equal."""
     keys = {**expected, **found}
-    differing = [key for key in keys if canonical(found.get(key)) != canonical(expected.get(key))]
+    differing = [key for key in keys if canonical_json(found.get(key)) != canonical_json(expected.get(key))]
     return min(differing, key=lambda key: (key != "file", key in _LAST), default="")
 
 
-def told_difference(key: str, found: Mapping[str, Any], expected: Mapping[str, Any]) -> str:
-    """Return the difference between two descriptions in a key, in words."""
-    one, other = found.get(key), json.loads(canonical(expected)).get(key)
+def describe_difference(key: str, found: Mapping[str, Any], expected: Mapping[str, Any]) -> str:
+    """Describe the difference between two descriptions in a key."""
+    one, other = found.get(key), json.loads(canonical_json(expected)).get(key)
     if key == "command" and one and other:
         return f"is another run: {difference(one, other)}"
     if key == "sources" and one and other:
@@ -201,10 +204,10 @@ def told_difference(key: str, found: Mapping[str, Any], expected: Mapping[str, A
             one, other = list(one), list(other)
     if place[0] == "inputs" and len(place) > 1:
         return f"was made from another {place[1]}"
-    values = f"got {_words(one)}, expected {_words(other)}"
+    values = f"got {_format_value(one)}, expected {_format_value(other)}"
     return f"is another file: {values}" if place == ["file"] else f"was made with {'.'.join(place)}: {values}"
 
 
-def _words(value: Any) -> str:
+def _format_value(value: Any) -> str:
     text = "nothing" if value is None else value if isinstance(value, str) else json.dumps(value)
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"

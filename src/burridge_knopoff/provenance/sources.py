@@ -1,8 +1,7 @@
-"""The origin of a result: the software, and a fingerprint of its sources without comments and docstrings.
+"""The software, and the fingerprint of the sources of a result, without comments and docstrings.
 
-Snakemake looks at a rule and its script only, not at what the script imports. This module follows the imports from the
-module or script that makes a result to every file of the package that it reaches, whether the import is at the top of a
-file or inside a function.
+Snakemake compares only a rule and its script, not the modules that the script imports. This module follows the imports,
+at the top of a file or inside a function, from the module or script that makes a result to every file of the package.
 """
 
 from __future__ import annotations
@@ -17,20 +16,20 @@ from burridge_knopoff.version import __version__
 SOFTWARE = f"burridge-knopoff {__version__}"
 PACKAGE = Path(__file__).parents[1]
 
-#: Code that moves bytes, reads arguments or names sources: it decides no number, so that changes of it remake nothing.
+#: Code that moves bytes, reads arguments or names sources. No number depends on it, so its changes invalidate nothing.
 PLUMBING = ("__init__.py", "cli/", "kernel/__init__.py", "provenance/", "running/command.py", "version.py")
-#: How the kernel is compiled decides its numbers.
+#: Results depend on how the kernel is compiled.
 COMPILATION = PACKAGE / "provenance/compilation.py"
 
-#: Files of a folder that its modules read, besides Python.
+#: Suffixes of the files that modules read from their folder, in addition to Python.
 ASSETS = (".css", ".jinja", ".js", ".yaml")
 
-# Comments and strings. Python's own tokenizer and parser would take ten times as long, in every job.
+# Comments and strings. Python's own tokenizer and parser take ten times as long, in every job.
 _TEXT = r'"{3}(?:[^"\\]|\\.|"(?!""))*"{3}'
 _WORD = re.compile(rf"""#[^\n]*|{_TEXT}|"(?:[^"\\]|\\.)*"|'(?:[^'\\]|\\.)*'""", re.DOTALL)
 # A string at the top of a file or after a colon.
 _DOCSTRING = re.compile(rf"(\A(?:#[^\n]*\n)*|:[ \t]*\n)\s*{_TEXT}[ \t]*$", re.DOTALL | re.MULTILINE)
-# Words of C++ that are, or may hold, what looks like a comment; the group is a comment.
+# Tokens of C++ that are, or may contain, what looks like a comment; the group is a comment.
 _CPP = re.compile(
     r"""R"(\w*)\((?s:.*?)\)\1"|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'|\b\d[\w'.]*|(?P<comment>//.*|/\*(?s:.*?)\*/)"""
 )
@@ -38,21 +37,21 @@ _IMPORT = re.compile(r"^[ \t]*(?:from\s+(\S+)\s+)?import\s+(\([^)]*\)|.+)", re.M
 
 
 def provenance(module: str) -> dict[str, str]:
-    """Return the provenance attributes for results of a module of the package, given by its full name.
+    """Return the provenance attributes for results of a module, given by its full name.
 
-    They do not depend on user, host, time or commit, so that equal inputs give equal bytes.
+    They do not depend on user, host, time or commit: equal inputs give equal bytes.
     """
     return {"software": SOFTWARE, "source_module": module, "source_fingerprint": source_fingerprint(module)}
 
 
 @cache
 def source_fingerprint(*entries: str | Path) -> str:
-    """Return 16 hexadecimal digits for the code that decides the results of these modules or scripts.
+    """Return 16 hexadecimal digits for the code on which the results of these modules or scripts depend.
 
     entries : names of modules, such as burridge_knopoff.summaries.lyapunov, or paths of Python files
     Raises OSError if a file cannot be read.
     """
-    # Ordered by name, since the order of paths depends on where they are and how they are written.
+    # In the order of the names, since that of the paths depends on the place of the checkout.
     digests = sorted((_name(path), code_digest(path)) for path in sources_of(*entries))
     return hashlib.sha256("".join(f"{name} {digest}\n" for name, digest in digests).encode()).hexdigest()[:16]
 
@@ -65,7 +64,7 @@ def sources_of(*entries: str | Path) -> tuple[Path, ...]:
         path = waiting.pop()
         if path not in found:
             found.add(path)
-            waiting += _needs(path)
+            waiting += _imported_files(path)
     return tuple(sorted(found, key=str))
 
 
@@ -76,9 +75,9 @@ def _name(path: Path) -> str:
 
 @cache
 def files_of(module: str) -> list[Path]:
-    """Return the files of a module: its Python file and files that it reads; empty for others.
+    """Return the files of a module: its Python file and the files that it reads; empty for other modules.
 
-    Those of the compiled module are all of its sources.
+    The files of the compiled module are all of its sources.
     """
     path = PACKAGE.joinpath(*module.split(".")[1:])
     if path == PACKAGE / "kernel" / "_core":
@@ -109,25 +108,25 @@ def _code(path: Path) -> str:
 def code_of(text: str) -> str:
     """Return Python code without comments, docstrings, empty lines and trailing blanks."""
     text = _WORD.sub(lambda word: "" if word[0][0] == "#" else word[0], text)
-    return _without_blanks(_DOCSTRING.sub(r"\1", text))
+    return _strip_blank_lines(_DOCSTRING.sub(r"\1", text))
 
 
 def code_of_cpp(text: str) -> str:
     """Return C++ code without comments, empty lines and trailing blanks."""
-    return _without_blanks(_CPP.sub(lambda word: " " if word["comment"] else word[0], text))
+    return _strip_blank_lines(_CPP.sub(lambda word: " " if word["comment"] else word[0], text))
 
 
-def _without_blanks(text: str) -> str:
+def _strip_blank_lines(text: str) -> str:
     return "\n".join(line.rstrip() for line in text.splitlines() if line.strip())
 
 
-#: {ending of a file: function that returns its code without comments}.
+#: {suffix of a file: function that returns its code without comments}
 CODE = {".py": code_of, ".cpp": code_of_cpp, ".h": code_of_cpp}
 
 
 @cache
-def _needs(path: Path) -> list[Path]:
-    """Return the files of the package's modules that a file imports, without plumbing."""
+def _imported_files(path: Path) -> list[Path]:
+    """Return the files of the package's modules that a file imports, except plumbing."""
     modules = set()
     for start, names in _IMPORT.findall(_code(path) if path.suffix == ".py" else ""):
         for name in re.findall(r"([\w.]+)(?:\s+as\s+\w+)?", names):

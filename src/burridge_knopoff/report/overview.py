@@ -15,7 +15,7 @@ from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.record import git_commit
 from burridge_knopoff.provenance.sources import provenance
-from burridge_knopoff.study.formatting import counted, text
+from burridge_knopoff.study.formatting import format_count, text
 from burridge_knopoff.study.study import Study, all_points
 
 #: Distributions whose versions are reported.
@@ -30,7 +30,7 @@ def opening(study: Study) -> str:
     laws = study.laws
     words = f"{', '.join(laws[:-1])} and {laws[-1]} friction laws" if len(laws) > 1 else f"{laws[0]} friction law"
     varied = ", ".join(f"{name} = {values}" for name, values in _parameters(study).items())
-    return f"{counted(study.blocks, 'block')}, {varied}, {words}"
+    return f"{format_count(study.blocks, 'block')}, {varied}, {words}"
 
 
 def _parameters(study: Study) -> dict[str, str]:
@@ -51,7 +51,8 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
     models = {law: study.model(law, **first) for law in study.laws}
     there = " at the first point" if study.is_plane else ""
     chain = next(iter(models.values())).chain
-    without = [("Left out by the config", ", ".join(study.left_out))] if study.left_out and not study.is_plane else []
+    omitted = () if study.is_plane else study.omitted_stages
+    without = [("Left out by the config", ", ".join(omitted))] if omitted else []
     return [
         ("Blocks", f"N = {chain.blocks}"),
         (f"Chain{there}", chain_text(chain)),
@@ -74,7 +75,8 @@ def _parameter_rows(study: Study) -> list[tuple[str, str]]:
     """Return a row for each parameter that varies, and one for v."""
     words = _parameters(study)
     rows = {
-        name: f"{name} = {words[name]}: {counted(len(values), 'value')}" for name, values in study.parameters.items()
+        name: f"{name} = {words[name]}: {format_count(len(values), 'value')}"
+        for name, values in study.parameters.items()
     }
     rows.setdefault("v", f"v = {words['v']}")
     kinds = {"a": "Friction parameter", "v": "Driver velocity"}

@@ -8,7 +8,7 @@ import xarray
 from burridge_knopoff.attractors.lookup import branch_names, side_name
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.show.formatting import table
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 
 
 def called(found: xarray.Dataset, branch: int, side: int) -> str:
@@ -30,7 +30,7 @@ def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> lis
             (
                 called(found, one["branch"].item(), one["side"].item()),
                 f"{kind.words}{f' {points}' if points else f', locked: period {period:.5g}' if locked else ''}",
-                plain(with_error(one["mean_distance"].item(), one["mean_distance_error"].item())),
+                to_ascii(with_error(one["mean_distance"].item(), one["mean_distance_error"].item())),
                 " ".join(f"{value:z7.4f}" for value in one["lyapunov_exponent"].values),
                 *(column[slot] for column in columns.values()),
             )

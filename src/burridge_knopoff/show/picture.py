@@ -15,11 +15,11 @@ from burridge_knopoff.figures.distance import FLOOR, linear_top
 from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_section
 from burridge_knopoff.figures.slip_events import draw_run
 from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled, write_figure
-from burridge_knopoff.provenance.seal import fit_together
+from burridge_knopoff.provenance.seal import is_consistent
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.catalogue import summarize
-from burridge_knopoff.values import cut, shown
+from burridge_knopoff.values import cut, format_value
 
 #: Name of the module that makes the catalogue file of a run.
 CATALOGUE_FILE = "slip_events"
@@ -33,7 +33,9 @@ WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
 def check_format(path: str | Path) -> None:
     """Raise ValueError, one line, if the suffix of a picture's name is not a known format."""
     if Path(path).suffix not in FORMATS:
-        raise ValueError(f"{cut(str(path), 200)}: got {shown(Path(path).suffix)}, expected {' | '.join(FORMATS)}")
+        raise ValueError(
+            f"{cut(str(path), 200)}: got {format_value(Path(path).suffix)}, expected {' | '.join(FORMATS)}"
+        )
 
 
 def write_picture(result: Result, path: str | Path) -> str:
@@ -87,7 +89,7 @@ def _beside(result: Result, name: str) -> Result:
         known = f"summary/{name}.nc" in result.files
         reason = f": {error}" if path.exists() or known else ", which is not next to it"
         raise ValueError(f"{result.path}: its figure also needs {name}.nc{reason}") from None
-    if not fit_together(result.path, path):
+    if not is_consistent(result.path, path):
         raise ValueError(f"{result.path}: its figure also needs {name}.nc, but {path} is of another study")
     return other
 

@@ -15,7 +15,7 @@ from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.show.formatting import listed, paragraph
 from burridge_knopoff.show.result import Result
-from burridge_knopoff.study.formatting import counted, plain, with_error
+from burridge_knopoff.study.formatting import format_count, to_ascii, with_error
 
 
 def point_lines(result: Result) -> list[str]:
@@ -75,12 +75,12 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
     chain = Chain(point.sizes["block"], **given)
     status = Status(point["status"].item()).name.lower()
     yield "status", f"{status} at tau = {point['end_time'].item():g}"
-    yield "<J>", plain(with_error(point["mean_distance"].item(), point["mean_distance_error"].item()))
+    yield "<J>", to_ascii(with_error(point["mean_distance"].item(), point["mean_distance_error"].item()))
     motion = motion.at_speed(point["v"].item())
     yield "motion", words_of(motion_of_run(run, chain.is_mirror_symmetric, motion), motion)
     exponents = list(zip(run["lyapunov_exponent"], run["lyapunov_error"], strict=True))
     if exponents and not np.isnan(run["lyapunov_exponent"]).all():
-        yield "exponents", ", ".join(plain(with_error(*map(float, one))) for one in exponents)
+        yield "exponents", ", ".join(to_ascii(with_error(*map(float, one))) for one in exponents)
         if run["lyapunov_infinite_count"] > 0:
             yield "", f"at least {run['lyapunov_infinite_count']} of all {2 * chain.blocks} are -infinity"
     else:
@@ -99,7 +99,7 @@ def _given(value: Any) -> Any:
 
 def _kept(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     sampled = point["time"].values[np.isfinite(point["distance"].values)]
-    yield "J(tau)", f"{counted(len(sampled), 'sample')}{_span(sampled)}"
+    yield "J(tau)", f"{format_count(len(sampled), 'sample')}{_span(sampled)}"
     direction = point["crossing_direction"].values
     up, down = int((direction > 0).sum()), int((direction < 0).sum())
     yield "section W = 0", f"{up} upward and {down} downward crossings{_span(point['crossing_time'].values)}"
@@ -114,7 +114,7 @@ def _kept(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
             )
     # A run that ended early did not reach its last part.
     time = point["trajectory_time"].values[np.isfinite(point["velocity"].values).all(axis=1)]
-    yield "trajectory", f"positions and velocities at {counted(len(time), 'time')}{_span(time)}"
+    yield "trajectory", f"positions and velocities at {format_count(len(time), 'time')}{_span(time)}"
 
 
 def _span(time: np.ndarray) -> str:

@@ -1,4 +1,4 @@
-"""Values that `snakemake --config` changes: from Snakemake's reading of them, and back to text."""
+"""Values given by `snakemake --config`: converted from Snakemake's reading of them, and back to text."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from burridge_knopoff.study.yaml_file import plain_value
 
 
 def of_command_line(value: Any) -> Any:
-    """Return a value that Snakemake has read from --config as a config file would have given it.
+    """Return the value that a config file would give, from a value that Snakemake has read from --config.
 
-    Snakemake reads `basins={pixels: 16}` as YAML with texts for numbers. Quoted and unquoted values cannot be told
-    apart.
+    Snakemake reads `basins={pixels: 16}` as YAML with texts for numbers. Quoted and unquoted values cannot be
+    distinguished.
     """
     if isinstance(value, Mapping):
         return {key: of_command_line(item) for key, item in value.items()}
@@ -32,9 +32,9 @@ def config_entries(overrides: Mapping[str, Any]) -> Iterable[str]:
 
 
 def config_arguments(config_file: str | Path | None, overrides: Mapping[str, Any]) -> list[str]:
-    """Return what names a study to `snakemake` by its config, from the folder of the run.
+    """Return the arguments of `snakemake` that select a config, relative to the current folder.
 
-    config_file : None for the one that `snakemake` takes by itself
+    config_file : None for the one that `snakemake` uses by default
     """
     named = [] if config_file is None else ["--configfile", os.path.relpath(config_file)]
     return [*named, *(["--config", *config_entries(overrides)] if overrides else [])]

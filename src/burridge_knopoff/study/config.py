@@ -1,7 +1,7 @@
 """The config of a study: every key with its range, default and description.
 
-Most keys are settings of the library, under the same names. This module adds the keys that only a study has, and puts
-all of them together. `CONFIG.form` fills in the defaults or refuses a config; rules.py checks the keys against each
+Most keys are settings of the library, under the same names. This module adds the keys that only a study has and
+combines all of them. `CONFIG.form` fills in the defaults or refuses a config; rules.py checks the keys against each
 other.
 """
 
@@ -15,6 +15,7 @@ from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings, EdgeSettings, PhaseSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.continuation.settings import RefinementSettings
+from burridge_knopoff.laws import LAWS
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
 from burridge_knopoff.model.initial import STATE_NAME, InitialState
@@ -27,18 +28,18 @@ from burridge_knopoff.running.section import SECTION_KEYS
 from burridge_knopoff.running.settings import SOLVERS, TIME, Settings
 from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS, PAPER_PHASES
 from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES
-from burridge_knopoff.values import joined
+from burridge_knopoff.values import full_key
 
 NUMBER = Number(-HUGE, HUGE)
 A = Number(0.0, 100.0)
 
 
 def _values(one: Number, longest: float) -> Several:
-    """Return a list of numbers and of ranges, with the values from, from + step, … to; see `grid.values_of`."""
+    """Return the range of a list of numbers and of ranges {from, to, step}; see `grid.values_of`."""
     steps = {
         "from": Field(one, "first value"),
         "to": Field(one, "last value"),
-        "step": Field(Number(0.0, longest, above=True), "distance between values; it divides the range"),
+        "step": Field(Number(0.0, longest, above=True), "distance between values, which divides the range"),
     }
     return Several(Either((one, Keys(steps))), 1)
 
@@ -47,35 +48,49 @@ VALUES = _values(A, 100.0)
 SOME_VALUES = Several(A, 0, 100, distinct=True)
 
 PARAMETER_NAME = Text(
-    "letters, digits and _, a letter first; of one block or spring as mass[1]",
+    "letters, digits and _, a letter first; mass[1] for one block or spring",
     r"[A-Za-z][A-Za-z0-9_]*(\[[0-9]+\])?",
 )
 STUDY_NAME = Text("letters, digits, _ and -, at most 64, a letter or digit first", "[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 
 
 class LawKeys(Range):
-    """The description of a law: `law` or `formula`, and numbers under any other names."""
+    """The description of a law: `law` or `formula`, and parameters under any other names."""
+
+    fields: Mapping[str, Field] = {
+        "law": Field(OneOf(tuple(LAWS)), "built-in law, to use it under another name"),
+        "formula": Field(
+            Text(), "friction over the static friction of the block, as a function of u, a and other names"
+        ),
+    }
+    #: Range of a parameter.
+    number = NUMBER
 
     def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
         if not isinstance(value, Mapping):
             return None
-        kinds = {"law": Text(), "formula": Text()}
-        return {name: kinds.get(name, NUMBER).form(item, joined(key, name)) for name, item in value.items()}
+        known = {name: field.range for name, field in self.fields.items()}
+        return {name: known.get(name, self.number).form(item, full_key(key, name)) for name, item in value.items()}
 
     def __str__(self) -> str:
-        return "law or formula, and numbers; {} for a built-in law with its defaults"
+        return "law or formula, and parameters; {} for a built-in law with its defaults"
 
 
-def _part(kind: type, *without: str, **other: Field) -> dict[str, Field]:
-    """Return the settings of a class, without those in `without` and with those in `other` replaced."""
+def _settings_of(kind: type, *without: str, **other: Field) -> dict[str, Field]:
+    """Return the settings of a class except those in `without`, with those in `other` replaced."""
     return {name: other.get(name, field) for name, field in fields_of(kind).items() if name not in without}
 
 
-def _section(fields: Mapping[str, Field], default: Any = None) -> Field:
-    return Field(Keys(fields), "", {} if default is None else default)
+def _section(description: str, fields: Mapping[str, Field]) -> Field:
+    return Field(Keys(fields), description, {})
 
 
-def _as_in_study(field: Field) -> Field:
+def _optional_section(description: str, fields: Mapping[str, Field]) -> Field:
+    """Return a section without which the study has no such stage."""
+    return Field(Keys(fields), f"{description}; without this key there are none", FOLLOWS)
+
+
+def _study_default(field: Field) -> Field:
     return replace(field, description=f"{field.description}; by default the study's", default=FOLLOWS)
 
 
@@ -91,75 +106,75 @@ AGREEMENT = {
         0.1,
     ),
     "standard_errors": Field(
-        ERRORS, "undecided if the difference lies within this many standard errors of that tolerance", 3.0
+        ERRORS,
+        "the comparison is undecided if the difference lies within this many standard errors of that tolerance",
+        3.0,
     ),
 }
 COMPARED = {
     "a": Field(
         replace(SOME_VALUES, least=1),
-        "values of the grid whose points are simulated again with every other solver that can do the law; by default "
-        f"those of {', '.join(map(str, PAPER_COMPARED))} in the grid, else figures.a",
+        "values of a on the grid at which every other solver that applies to the law repeats the runs; by default "
+        f"those of {', '.join(map(str, PAPER_COMPARED))} that are on the grid, or figures.a if none is",
         FOLLOWS,
     ),
     "step": replace(_SETTINGS["step"], description="step of rk4 in this comparison", default=0.0025),
 }
 FIGURES = {
-    "a": Field(A, f"value of the grid in figures of single runs; by default the one nearest to {PAPER_A}", FOLLOWS),
+    "a": Field(A, f"value of a on the grid in figures of single runs; by default that nearest to {PAPER_A}", FOLLOWS),
     "law": Field(Text(), "friction law in figures of single runs; by default the study's first", FOLLOWS),
 }
 BASINS = {
     "a": Field(
         Named(Text(), SOME_VALUES),
-        "values of the grid with a basin map, for each law; by default those in the grid of "
-        + "; ".join(f"{law}: {', '.join(map(str, values))}" for law, values in PAPER_BASINS.items())
-        + "; other laws: as the first of these",
+        "values of a on the grid for which basins are mapped, by law; by default those of "
+        + " and ".join(f"{', '.join(map(str, values))} ({law})" for law, values in PAPER_BASINS.items())
+        + f" that are on the grid; other laws as {next(iter(PAPER_BASINS))}",
         {},
     ),
     "pixels": fields_of(BasinSettings)["pixels"],
     "initial": Field(
         Text(),
-        "initial state with the remaining positions and velocities of the plane; by default the study's first",
+        "initial state that gives the other positions and all velocities of the plane; by default the study's first",
         FOLLOWS,
     ),
-    **_part(BasinSettings, "pixels"),
+    **_settings_of(BasinSettings, "pixels"),
 }
 PHASES = {
     "a": Field(
         SOME_VALUES,
-        "values of the grid at which initial states are drawn by the phases of their end blocks; by default, for the "
-        f"paper's chain, those of {', '.join(map(str, PAPER_PHASES))} in the grid",
+        "values of a on the grid for which initial states are defined by the phases of their end blocks; by default, "
+        f"for the paper's chain, those of {', '.join(map(str, PAPER_PHASES))} that are on the grid",
         FOLLOWS,
     ),
-    **_part(PhaseSettings),
+    **_settings_of(PhaseSettings),
 }
 EDGES = {
     "a": Field(
         replace(VALUES, each=A, distinct=True),
-        "values of the grid at which the boundaries between basins are followed to edge states; by default all",
+        "values of a on the grid at which the boundaries between basins are followed to edge states; by default all",
         FOLLOWS,
     ),
-    **_part(EdgeSettings),
+    **_settings_of(EdgeSettings),
 }
 CATALOGUE = {
     "a": Field(
         replace(VALUES, each=A, distinct=True),
-        "values of the grid with a catalogue of slip events; by default all",
+        "values of a on the grid with a catalogue of slip events; by default all",
         FOLLOWS,
     ),
     "initial": Field(Text(), "initial state of these runs; by default the study's first", FOLLOWS),
-    **_part(CatalogueSettings, **{name: _as_in_study(_CATALOGUE[name]) for name in ("transient", "window")}),
+    **_settings_of(CatalogueSettings, **{name: _study_default(_CATALOGUE[name]) for name in ("transient", "window")}),
 }
 TWO_BLOCKS = {
-    "a": Field(
-        VALUES, "friction parameters for the comparison of two blocks", [{"from": 0.01, "to": 0.4, "step": 0.01}]
-    ),
-    "samples": Field(SAMPLES, "number of initial states for the comparison of two blocks", 8),
+    "a": Field(VALUES, "friction parameters at which the laws are compared", [{"from": 0.01, "to": 0.4, "step": 0.01}]),
+    "samples": Field(SAMPLES, "number of random initial states for this comparison", 8),
 }
 CHAINS = {
     "blocks": Field(
         Several(Whole(2, 64), 1, distinct=True),
-        "numbers of blocks, which make longer chains a part of the study; by default they are made for the target "
-        f"`chains` alone, for {CHAIN_LENGTHS[0]} to {CHAIN_LENGTHS[-1]} blocks",
+        "numbers of blocks of the chains that belong to the study; by default none do, and the target `chains` "
+        f"computes those of {CHAIN_LENGTHS[0]} to {CHAIN_LENGTHS[-1]} blocks",
         FOLLOWS,
     ),
     "a": Field(VALUES, "friction parameters", [0.005, {"from": 0.01, "to": 0.16, "step": 0.01}, 0.18, 0.2, 0.25, 0.3]),
@@ -169,59 +184,62 @@ CHAINS = {
     "samples": _SAMPLE["samples"],
     "symmetric_samples": replace(_SAMPLE["symmetric_samples"], range=SAMPLES),
     **{key: _SAMPLE[key] for key in ("seed", "position", "velocity")},
-    **_part(Watch, "synchronization_threshold"),
-    "two_blocks": _section(TWO_BLOCKS),
+    **_settings_of(Watch, "synchronization_threshold"),
+    "two_blocks": _section("comparison of the laws for two blocks", TWO_BLOCKS),
 }
 
 CONFIG = Keys(
     {
         "study": Field(STUDY_NAME, "name of the study and of its folder in results/"),
         "a": Field(
-            VALUES, "friction parameters, in any order; a range includes both ends, and step divides it", FOLLOWS
+            VALUES,
+            "friction parameters, in any order; a range includes both ends, and step divides its length",
+            FOLLOWS,
         ),
         "grid": Field(
             Named(PARAMETER_NAME, _values(NUMBER, HUGE)),
-            "instead of a: values of a and of other parameters, each combined with each; see below",
+            "values of a and of other parameters, in place of the key a; every combination is simulated",
             {},
         ),
-        "a_digits": Field(Whole(1, 15), "decimals of a, and of all parameters of grid, in file names", 4),
+        "a_digits": Field(Whole(1, 15), "number of decimals of a and of the other parameters in file names", 4),
         "initial": Field(
             Named(STATE_NAME, Keys(_STATE, "; {} for one of the paper's"), 1),
-            "initial states by name, each with position U(0) and velocity U'(0): one number for all blocks, one a "
-            "block, or drawn; minus: {} and plus: {} are the paper's and need no numbers",
+            "initial states by name, each with position U(0) and velocity U'(0): one number for all blocks, one per "
+            "block, or random; minus: {} and plus: {} are the paper's states",
         ),
         "without": Field(
             Several(OneOf(tuple(STAGES)), distinct=True),
-            "stages to leave out, together with the stages that use their results",
+            "stages to leave out; stages that use their results are left out as well",
             [],
         ),
-        "laws": Field(
-            Named(LAW_NAME, LawKeys(), 1), "friction laws by name; see below", {law: {} for law in PAPER_LAWS}
-        ),
-        "chain": _section(_part(Chain)),
-        **_part(Model),
-        **_part(
+        "laws": Field(Named(LAW_NAME, LawKeys(), 1), "friction laws by name", {law: {} for law in PAPER_LAWS}),
+        "chain": _section("blocks and springs, by default the paper's", _settings_of(Chain)),
+        **_settings_of(Model),
+        **_settings_of(
             Settings,
             solver=Field(
                 Either((_SOLVER, Named(LAW_NAME, _SOLVER))),
-                f"{_SETTINGS['solver'].description}; one for all laws, or {{linearized: map}} for some",
+                f"{_SETTINGS['solver'].description}; one for all laws, or by law, such as {{linearized: map}}",
                 _SETTINGS["solver"].default,
             ),
             transient=replace(_SETTINGS["transient"], range=TIME),
-            section=Field(SECTION_KEYS, "", {}),
+            section=Field(SECTION_KEYS, "Poincaré section W = 0", {}),
             events=Field(OneOf(("window", "all")), _SETTINGS["events"].description.partition(" | none")[0], "window"),
         ),
         "synchronization_threshold": fields_of(MotionSettings)["synchronization_threshold"],
-        "motion": _section(_part(MotionSettings, "synchronization_threshold", "section")),
-        "agreement": _section(AGREEMENT),
-        "solvers": _section(COMPARED),
-        "figures": _section(FIGURES),
-        "attractors": _section(_part(SearchSettings)),
-        "refine": _section(_part(RefinementSettings)),
-        "basins": _section(BASINS),
-        "phases": _section(PHASES),
-        "edges": _section(EDGES, FOLLOWS),
-        "chains": _section(CHAINS),
-        "catalogue": _section(CATALOGUE, FOLLOWS),
+        "motion": _section(
+            "criteria by which kinds of motion are distinguished",
+            _settings_of(MotionSettings, "synchronization_threshold", "section"),
+        ),
+        "agreement": _section("comparison of each law with the first", AGREEMENT),
+        "solvers": _section("comparison of the solvers", COMPARED),
+        "figures": _section("runs in the figures of single runs", FIGURES),
+        "attractors": _section("search for attractors", _settings_of(SearchSettings)),
+        "refine": _section("changes of the attractors between the values of a", _settings_of(RefinementSettings)),
+        "basins": _section("maps of basins of attraction", BASINS),
+        "phases": _section("initial states defined by the phases of their blocks", PHASES),
+        "edges": _optional_section("edge states on the boundaries between basins", EDGES),
+        "chains": _section("synchronization of chains of other lengths", CHAINS),
+        "catalogue": _optional_section("catalogues of slip events", CATALOGUE),
     }
 )

@@ -22,7 +22,7 @@ MINUS = "\u2212"
 
 
 def text(value: Any) -> str:
-    """Format a number with DIGITS significant digits; anything else as it is, and a dash for None or NaN."""
+    """Format a number with DIGITS significant digits; return other values as text, and a dash for None or NaN."""
     if value is None:
         return "–"
     if isinstance(value, bool) or not isinstance(value, int | float | np.number):
@@ -37,8 +37,8 @@ def text(value: Any) -> str:
 def with_error(value: Any, error: Any = None) -> str:
     """Format value ± error with two significant digits of the error and as many decimals of the value.
 
-    An error of exactly three digits, such as half a step of a grid, keeps all three. No decimals are added to a value
-    stored with fewer digits than its error asks for. Without an error, or if it is 0, the value alone.
+    An error of exactly three digits, such as half a step of a grid, keeps all three. A value that is stored with fewer
+    digits than its error requires gets no more decimals. If the error is missing or 0, only the value is formatted.
     """
     numbers = [isinstance(item, int | float) and not isinstance(item, bool) for item in (value, error)]
     if not all(numbers) or not math.isfinite(value) or not math.isfinite(error) or error <= 0.0:
@@ -60,21 +60,21 @@ def with_error(value: Any, error: Any = None) -> str:
     return shown.replace("-", MINUS)
 
 
-def plain(shown: str) -> str:
-    """Return a formatted number in ASCII."""
+def to_ascii(shown: str) -> str:
+    """Return a formatted number in ASCII characters."""
     return shown.replace(MINUS, "-").replace("±", "+-").replace("–", "nan").replace("∞", "infinity")
 
 
-def counted(number: int, noun: str) -> str:
-    """Return a number with its noun: 1 file, 2 files."""
+def format_count(number: int, noun: str) -> str:
+    """Return a count with its noun: 1 file, 2 files."""
     return f"{number} {noun}{'' if number == 1 else 's'}"
 
 
 def span(low: str, high: str) -> str:
-    """Return `low to high`, or one of them if they read the same."""
+    """Return `low to high`, or one of them if they are equal."""
     return low if low == high else f"{low} to {high}"
 
 
 def friction_words(laws: Iterable[Law]) -> str:
-    """Return laws with their names and numbers for a reader."""
+    """Describe laws by their names, formulas and parameters."""
     return "; ".join(f"{law.name}: {law.words}" for law in laws)

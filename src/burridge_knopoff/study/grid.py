@@ -8,18 +8,18 @@ from itertools import pairwise
 from typing import Any
 
 from burridge_knopoff.model.parameters import plain_name
-from burridge_knopoff.values import refusal, shown
+from burridge_knopoff.values import format_value, refusal
 
-#: Limit on the values of a list and on the points of a study. Planning so many jobs takes Snakemake minutes; in
-#: stretches, seconds.
+#: Limit on the values of a list and on the points of a study. Snakemake plans so many jobs in minutes, or in seconds if
+#: each job makes a chunk of points.
 MAXIMUM_POINTS = 100_000
 
-#: Names that a parameter of a grid cannot have, since file names or dimensions have them.
-_TAKEN = ("law", "initial", "solver", "stretch", "exponent")
+#: Names that a parameter of a grid cannot have, since wildcards or dimensions have them.
+_RESERVED = ("law", "initial", "solver", "chunk", "exponent")
 
 
-def given_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a config as it is written, with either `a` or `grid`; a `grid` of a alone becomes `a`.
+def resolve_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a config as given, with either `a` or `grid`; a grid of a alone becomes `a`.
 
     Raises ValueError, one line, if it has both or neither, or a grid without a.
     """
@@ -30,13 +30,13 @@ def given_grid(config: Mapping[str, Any]) -> Mapping[str, Any]:
         return config
     # A complete config has an empty list.
     if config.get("a", []) != []:
-        raise ValueError(f"a: got {shown(config['a'])} beside grid, expected one of them")
+        raise ValueError(f"a: got {format_value(config['a'])} together with grid, expected one of them")
     if "a" not in grid:
         raise ValueError("grid.a: missing, expected friction parameters; a single one is enough")
     plain = [plain_name(f"{name}") for name in grid]
     for name in plain:
-        if name in _TAKEN or plain.count(name) > 1:
-            raise refusal("grid", name, "another name of the law's number")
+        if name in _RESERVED or plain.count(name) > 1:
+            raise refusal("grid", name, "another name for the law's parameter")
     others = {key: value for key, value in config.items() if key not in ("a", "grid")}
     return {**others, "grid": grid} if len(grid) > 1 else {**others, "a": grid["a"]}
 

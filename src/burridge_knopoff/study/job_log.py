@@ -14,7 +14,7 @@ from burridge_knopoff.provenance.seal import REMEDY
 _TAIL = 20_000
 #: Longer reasons are cut.
 _LONGEST = 500
-# The calls of a traceback. The message is what follows without indentation; it may have several lines.
+# The calls of a traceback are indented. The message that follows is not; it may have several lines.
 _CALLS = re.compile(r"\A(?:[ \t].*\n?|\n)*")
 # The class of our own errors adds nothing to the message.
 _CLASS = re.compile(r"^burridge_knopoff(\.\w+)+: ")
@@ -23,7 +23,7 @@ _TRACEBACK = "Traceback (most recent call last):\n"
 
 SILENT = "no error in its log: it was killed, or could not start"
 FULL = "no error in its log: no space left on its disk"
-#: The message of `bk` after Ctrl-C, behind the name of its command.
+#: The message of `bk` after Ctrl-C, which follows the name of its command.
 INTERRUPTED = "interrupted, nothing was written"
 #: With fewer bytes left on the disk, there may have been no room for a log.
 ROOM = 1 << 16
@@ -32,26 +32,26 @@ ROOM = 1 << 16
 _NO_FAILURE = re.compile(r"note: |.+: \d+, [\d.]+ s, the longest [\d.]+ s")
 
 
-def last_words(log: str | Path) -> str:
+def failure_reason(log: str | Path) -> str:
     """Return, in one line, the error of the last traceback in a log, or its last line if that reports a failure.
 
-    Without the command that remakes a bad file, which is that of all jobs that read it: see `remedies`.
+    The command that recreates a bad file is cut off: all jobs that read the file name it, and `remedies` collects it.
     """
-    words = _last_words(log).partition(REMEDY)[0]
+    words = _last_error(log).partition(REMEDY)[0]
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
 
 
 def remedies(logs: Iterable[str | Path]) -> list[str]:
-    """Return the commands that remake the bad files at which jobs stopped, one for all files of a study."""
+    """Return the commands that recreate the bad files at which jobs stopped: one for all files of a study."""
     files: dict[str, dict[str, None]] = {}
     for log in logs:
-        if command := _last_words(log).partition(REMEDY)[2]:
+        if command := _last_error(log).partition(REMEDY)[2]:
             head, option, file = command.rpartition(" -R ")
             files.setdefault(head + option, {})[file] = None
     return [head + " ".join(named) for head, named in files.items()]
 
 
-def _last_words(log: str | Path) -> str:
+def _last_error(log: str | Path) -> str:
     try:
         text = Path(log).read_bytes()[-_TAIL:].decode("utf-8", errors="replace")
     except OSError:
@@ -62,22 +62,22 @@ def _last_words(log: str | Path) -> str:
     return _CLASS.sub("", " ".join(said.split()))
 
 
-def interrupted(logs: Sequence[str | Path], *, stopping: bool = False) -> bool:
-    """Tell whether Ctrl-C ended a job.
+def is_interrupted(logs: Sequence[str | Path], *, stopping: bool = False) -> bool:
+    """Return whether Ctrl-C ended a job.
 
-    stopping : whether the run was interrupted, which leaves nothing in the log of a job that had not started
+    stopping : whether the run was interrupted, which leaves the log of a job that had not started empty
     """
     # `bk` writes a line. Scripts write a traceback, as does `bk` before it has read its command.
-    said = [words for log in logs if (words := last_words(log))]
+    said = [words for log in logs if (words := failure_reason(log))]
     return any(words.endswith((f": {INTERRUPTED}", "KeyboardInterrupt")) for words in said) or (stopping and not said)
 
 
-def failure(job: str, logs: Sequence[str | Path]) -> str:
+def failure_line(job: str, logs: Sequence[str | Path]) -> str:
     """Return the line that reports a failed job: the job, the reason and the path of its log."""
-    reason = next((words for log in logs if (words := last_words(log))), FULL if _is_full(logs) else SILENT)
+    reason = next((words for log in logs if (words := failure_reason(log))), FULL if _is_full(logs) else SILENT)
     return f"failed: {job}: {reason} (log {', '.join(map(str, logs)) or 'none'})"
 
 
 def _is_full(logs: Sequence[str | Path]) -> bool:
-    """Tell whether a disk that holds the logs is full."""
+    """Return whether the disk of any log is full."""
     return any(shutil.disk_usage(nearest_folder(Path(log).parent)).free < ROOM for log in logs)

@@ -1,4 +1,4 @@
-"""From the config of a study to the study: defaults, and checks of the keys against each other."""
+"""Builds a study from its config: fills in the defaults and checks the keys against each other."""
 
 from __future__ import annotations
 
@@ -17,28 +17,29 @@ from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.running.loading import is_quasistatic
 from burridge_knopoff.study import rules
 from burridge_knopoff.study.config import CONFIG
-from burridge_knopoff.study.grid import given_grid, parameters_of
+from burridge_knopoff.study.grid import parameters_of, resolve_grid
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.study.yaml_file import ConfigError
 from burridge_knopoff.values import refusal
 
 
 def load_study(config: Mapping[str, Any], file: str, written: Mapping[str, Any] | None = None) -> Study:
-    """Complete a config with its defaults, and check it against its ranges and the rules between its keys.
+    """Return the study of a config, completed with defaults and checked against the ranges and the rules between keys.
 
     file : name of the config file, for messages
-    written : content of the file if the command line changes it; errors that this content lacks are blamed on --config
+    written : content of the file if the command line changes it; errors without which this content is free are reported
+        as errors of --config
     Raises ConfigError, one line: file, key, value, expected values.
     """
     folder = Path(file).parent
     try:
         return _study(config, folder)
     except ValueError as error:
-        place = file if written in (None, config) or _fault(written, folder) == str(error) else "--config"
+        place = file if written in (None, config) or _config_error(written, folder) == str(error) else "--config"
         raise ConfigError(f"{place}: {error}") from error
 
 
-def _fault(config: Mapping[str, Any], folder: Path) -> str:
+def _config_error(config: Mapping[str, Any], folder: Path) -> str:
     try:
         _study(config, folder)
     except ValueError as error:
@@ -51,13 +52,13 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     springs = chain_keys.get("springs") if isinstance(chain_keys, Mapping) else None
     # The config of a record names the file of springs with the digest of its content.
     is_new = isinstance(springs, str) and not has_digest(springs)
-    # Any other name is refused below, with its key.
+    # A name that cannot be printed is refused below.
     if isinstance(chain_keys, Mapping) and is_new and f"{springs}".isprintable():
         config = {**config, "chain": {**chain_keys, "springs": display_path(folder / f"{springs}")}}
-    config = given_grid(config)
+    config = resolve_grid(config)
     # Use the types of YAML: lists instead of tuples.
     filled = json.loads(json.dumps(CONFIG.form(config, "")))
-    # Keep ranges as the user wrote them; `parameters` has the values.
+    # Ranges stay as the user wrote them; `parameters` has the values.
     filled.update({"a": [], **{key: config[key] for key in ("a", "grid") if key in config}})
     study = Study(filled, parameters_of(filled))
     values = list(study.grid.values())
@@ -68,34 +69,34 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     rules.fill_chains(filled)
     rules.fill_names(filled)
     rules.check_size(filled, study.parameters)
-    others = study.others
+    others = study.other_values
     rules.check_models(filled, values, others)
     chains = [study.model(study.laws[0], values[0], **each).chain for each in others]
     chain = chains[0]
     if is_new:
         chain.check_springs()
-    # Results may be read where the file of springs is not; it was checked when the study ran.
+    # Results may be read on a machine without the file of springs, which was checked when the study ran.
     has_springs = chain.springs is None or is_new
     for law in study.laws if has_springs else ():
         for each in chains:
             study.settings(law).check_chain(each)
     # The default is three exponents; a single block has only two.
     filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponents_of(chain)
-    with rules.under("basins."):
+    with rules.error_prefix("basins."):
         settings_from(BasinSettings, filled["basins"])
-    with rules.under("chains."):
+    with rules.error_prefix("chains."):
         settings_from(Sample, filled["chains"])
     rules.fill_values(filled, set(values), study.blocks, study.shown_a)
     rules.fill_catalogue(filled, values)
     rules.fill_edges(filled, values)
-    with rules.under("catalogue."):
+    with rules.error_prefix("catalogue."):
         loading = settings_from(CatalogueSettings, filled.get("catalogue", {})).loading
         for law, name in product(study.laws, study.catalogue_a):
             is_quasistatic(loading, study.model(law, study.grid[name]), filled["solver"][law])
-    for law in study.laws if has_springs and "solvers" not in study.left_out else ():
+    for law in study.laws if has_springs and "solvers" not in study.omitted_stages else ():
         for solver in study.other_solvers(law):
-            with rules.under("solvers."):
+            with rules.error_prefix("solvers."):
                 study.settings(law, solver).check_chain(chain)
-    rules.check_jobs(filled, study.blocks, study.left_out)
-    rules.leave_out(filled, study.left_out)
+    rules.check_jobs(filled, study.blocks, study.omitted_stages)
+    rules.leave_out(filled, study.omitted_stages)
     return study

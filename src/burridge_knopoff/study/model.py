@@ -10,7 +10,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import at
 
-#: Keys of a config that define a model, besides the number of blocks.
+#: Keys of a config that define a model, except the number of blocks.
 MODEL_KEYS = ("laws", "chain", "v", "contact")
 
 
@@ -24,8 +24,8 @@ def model_of(
 ) -> Model:
     """Return the model of a study under one of its laws, at one a.
 
-    blocks : of the chain, instead of the config's; others : values of the study's other parameters
-    Raises ValueError if there is none.
+    blocks : number of blocks, by default the config's; others : values of the study's other parameters
+    Raises ValueError if a value is out of range.
     """
     chain = Chain(**{**config["chain"], **({} if blocks is None else {"blocks": blocks})})
     model = Model(chain, law_of(law, a, config["laws"][law]), config["v"], config["contact"])

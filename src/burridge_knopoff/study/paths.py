@@ -1,4 +1,4 @@
-"""Where the point files of a study lie in its results."""
+"""Paths of the point files in the results of a study."""
 
 from __future__ import annotations
 
@@ -8,9 +8,9 @@ from burridge_knopoff.model.parameters import plain_name
 
 
 def point_file(parameters: Iterable[str]) -> str:
-    """Return the path of a point, in the folder `points`, with the name of each parameter's value as a wildcard.
+    """Return the path of a point in the folder `points`, with the name of each parameter's value as a wildcard.
 
-    The value of `mass[3]` follows after an underscore: `a0.0200_mass_3_1.2000.nc`.
+    An underscore precedes the value of `mass[3]`: `a0.0200_mass_3_1.2000.nc`.
     """
     plain = {name: plain_name(name) for name in parameters}
     parts = [f"{word}{'' if word == name else '_'}{{{word}}}" for name, word in plain.items()]
@@ -21,5 +21,5 @@ def point_file(parameters: Iterable[str]) -> str:
 POINT = point_file(["a"])
 #: Pattern of the name of a value in a file name.
 VALUE = r"-?\d+\.\d+"
-#: Path of the empty file that marks a finished stretch of points, in the results.
-STRETCH = "stretches/{stretch}.done"
+#: Path of the empty file that marks a finished chunk of points, in the results.
+CHUNK = "chunks/{chunk}.done"

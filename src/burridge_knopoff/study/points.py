@@ -1,4 +1,4 @@
-"""Making some points of a study, those that are not there yet."""
+"""Simulates those of some points of a study that are missing, damaged or out of date."""
 
 from __future__ import annotations
 
@@ -14,15 +14,15 @@ from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.runner import TOGETHER, run_together
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import prepare
-from burridge_knopoff.study.formatting import counted
+from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.study import Study
 
 
 def make_points(study: Study, points: Sequence[Mapping[str, str]], folder: Path) -> int:
-    """Make those of some points that are missing, damaged or out of date; return how many were made.
+    """Simulate those of some points that are missing, damaged or out of date; return how many there were.
 
     points : their wildcards; folder : `points` of the results
-    Raises RuntimeError, one line that names the first point that failed and its command, when all others are made.
+    Raises RuntimeError if a point fails, after all others are done: one line with the first such point and its command.
     """
     wanted, failed = [], []
     for point in points:
@@ -34,15 +34,15 @@ def make_points(study: Study, points: Sequence[Mapping[str, str]], folder: Path)
         except BadFile:
             wanted.append((path, command, run))
     for first in range(0, len(wanted), TOGETHER):
-        failed += _make_together(wanted[first : first + TOGETHER])
+        failed += _simulate_together(wanted[first : first + TOGETHER])
     if failed:
-        more = f"; {counted(len(failed) - 1, 'more point')} of this stretch failed" if len(failed) > 1 else ""
+        more = f"; {format_count(len(failed) - 1, 'more point')} of this chunk failed" if len(failed) > 1 else ""
         raise RuntimeError(f"{failed[0]}{more}")
     return len(wanted) - len(failed)
 
 
-def _make_together(wanted: Sequence[tuple[Path, str, tuple[Model, InitialState, Settings]]]) -> list[str]:
-    """Make points, given by their files, commands and runs; return for each that failed a line that says why."""
+def _simulate_together(wanted: Sequence[tuple[Path, str, tuple[Model, InitialState, Settings]]]) -> list[str]:
+    """Simulate points, given by their files, commands and runs; return a line for each failure, with the reason."""
     failed, prepared = [], []
     for path, command, run in wanted:
         try:

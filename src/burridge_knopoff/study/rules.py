@@ -29,12 +29,12 @@ from burridge_knopoff.values import MOST_NUMBERS, refusal
 
 #: States labelled at once for each pair of nearby states: basins/pair_separation.py.
 _STATES_OF_A_PAIR = 2
-#: Numbers in a list of a config: the command of a run has to hold them.
+#: Most numbers in a list of a config, since the command of a run contains them.
 MOST_LISTED = 1024
 
 
 @contextmanager
-def under(place: str) -> Iterator[None]:
+def error_prefix(place: str) -> Iterator[None]:
     """Prefix the message of a ValueError raised inside with a place."""
     try:
         yield
@@ -58,24 +58,24 @@ def fill_states(config: Mapping[str, Any]) -> None:
 
 
 def fill_blocks(config: Mapping[str, Any]) -> None:
-    """Fill in the number of blocks, from the springs or the initial states; every state must have as many."""
-    chain, told = config["chain"], {}
+    """Fill in the number of blocks, from the springs or the initial states, and require it of every state."""
+    chain, blocks = config["chain"], {}
     sections = {"chain": chain, **{f"initial.{name}": state for name, state in config["initial"].items()}}
     for section, values in sections.items():
         for key, value in values.items():
             if isinstance(value, list) and len(value) > MOST_LISTED:
-                raise refusal(f"{section}.{key}", value, f"at most {MOST_LISTED} numbers in a list, or drawn numbers")
+                raise refusal(f"{section}.{key}", value, f"at most {MOST_LISTED} numbers in a list, or random numbers")
     for name, state in config["initial"].items():
-        with under(f"initial.{name}."):
-            told[name] = InitialState(name, **state).blocks
-    lists = {name: told[name] for name, state in config["initial"].items() if list in map(type, state.values())}
+        with error_prefix(f"initial.{name}."):
+            blocks[name] = InitialState(name, **state).blocks
+    lists = {name: blocks[name] for name, state in config["initial"].items() if list in map(type, state.values())}
     if len({*lists.values()}) > 1:
         counts = ", ".join(f"{name}: {count}" for name, count in lists.items())
         raise ValueError(f"initial: got different numbers of positions ({counts}), expected one for all states")
     if not {"blocks", "grid", "springs"} & chain.keys():
-        chain["blocks"] = next(iter(lists.values()), max(count or 0 for count in told.values()))
+        chain["blocks"] = next(iter(lists.values()), max(count or 0 for count in blocks.values()))
         if not chain["blocks"]:
-            raise ValueError("chain.blocks: missing, expected the number of blocks, which drawn states do not tell")
+            raise ValueError("chain.blocks: missing, expected the number of blocks, which random states do not fix")
     chain["blocks"] = Chain(**chain).blocks
     for name, count in lists.items():
         if count != chain["blocks"]:
@@ -86,10 +86,8 @@ def fill_names(config: dict[str, Any]) -> None:
     """Check the names of laws and states in other keys, and fill in the default names."""
     laws, state, solver = config["laws"], next(iter(config["initial"])), config["solver"]
     for name, description in laws.items():
-        kind = description.get("law", name)
-        if "formula" not in description and kind not in LAWS:
-            key = f"laws.{name}{'.law' if 'law' in description else ''}"
-            raise refusal(key, kind, f"{' | '.join(LAWS)}, or a formula")
+        if name not in LAWS and not {"law", "formula"} & description.keys():
+            raise refusal(f"laws.{name}", name, f"{' | '.join(LAWS)}, or a formula")
     known, first = OneOf(tuple(laws)), next(iter(laws))
     known.form(config["figures"].setdefault("law", first), "figures.law")
     Several(known).form(config["chains"].setdefault("laws", [first]), "chains.laws")
@@ -106,20 +104,20 @@ def _by_law(allowed: Range, usual: Mapping[str, Any]) -> Keys:
 def check_models(
     config: Mapping[str, Any], grid: Iterable[float], others: Sequence[Mapping[str, float]] = ({},)
 ) -> None:
-    """Check the chain, every law at every point where it is used, its solver, and that every initial state can start.
+    """Check the chain, every law at every point where it is used, its solver, and that a run can begin at every state.
 
-    grid, others : values of a, and of the other parameters, each of which goes with each a
+    grid, others : values of a, and the combinations of the other parameters, all of which are simulated at each a
     """
     chain, laws = Chain(**config["chain"]), config["laws"]
     for name, solver in config["solver"].items():
         tapes = []
         for a in grid:
-            with under("laws."):
+            with error_prefix("laws."):
                 law = law_of(name, a, laws[name])
             tapes.append(law.tape)
             base = Model(chain, law, config["v"], config["contact"])
             for values in others:
-                with under(f"grid ({name} law, a = {a:g}): " if values else ""):
+                with error_prefix(f"grid ({name} law, a = {a:g}): " if values else ""):
                     model = at(base, values) if values else base
                 if solver == "map" and not model.has_closed_form:
                     known = " | ".join(solver for solver in SOLVERS if solver != "map")
@@ -134,10 +132,10 @@ def check_models(
     for key, section, names in (("chains", chains, chains["laws"]), ("chains.two_blocks", chains["two_blocks"], laws)):
         for name in names:
             for a in section["a"]:
-                with under(f"{key}.a: got {a:g}, at which laws."):
+                with error_prefix(f"{key}.a: got {a:g}, at which laws."):
                     law_of(name, a, laws[name])
     for name, state in config["initial"].items():
-        with under(f"initial.{name}."):
+        with error_prefix(f"initial.{name}."):
             model.numbers_of(InitialState(name, **state))
 
 
@@ -147,14 +145,14 @@ def _reason(model: Model) -> str:
         return "as its friction is not linear in the speed"
     if not model.chain.is_uniform:
         return (
-            "which needs a row with open ends, masses of 1, no dashpots, and one number each for coupling, pulling and "
-            "threshold"
+            "which requires a row with open ends, masses of 1, no dashpots, and one number each for coupling, pulling "
+            "and threshold"
         )
     return f"as a slope steeper than {model.chain.damping_limit:g} overdamps the blocks"
 
 
 def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int, shown: float) -> None:
-    """Check the values of a in all sections against the grid and fill in defaults; `shown` is that of single runs."""
+    """Check the values of a in all sections against the grid and fill in defaults; shown : that of single runs."""
     chain = Chain(**config["chain"])
     of_paper = chain == Chain(3)
     maps = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in config["laws"]}
@@ -181,7 +179,7 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
 
 
 def fill_catalogue(config: dict[str, Any], grid: Collection[float]) -> None:
-    """Check the values of a and the initial state of catalogues, and fill in the study's, if there are catalogues."""
+    """If the study has catalogues, check their values of a and initial state, and fill in the defaults."""
     if "catalogue" not in config:
         return
     section = config["catalogue"]
@@ -193,13 +191,13 @@ def fill_catalogue(config: dict[str, Any], grid: Collection[float]) -> None:
 
 
 def fill_edges(config: dict[str, Any], grid: Collection[float]) -> None:
-    """Check the values of a at which edge states are found, and fill in all of the grid, if they are."""
+    """If the study has edge states, check their values of a; by default all values of the grid."""
     if "edges" in config:
         _fill_grid(config["edges"], "edges", grid)
 
 
 def _fill_grid(section: dict[str, Any], name: str, grid: Collection[float]) -> None:
-    """Check that the values of a in a section are on the grid, and fill in all of the grid by default."""
+    """Check that the values of a in a section are on the grid; by default all values of the grid."""
     for a in section.setdefault("a", list(grid)):
         if a not in grid:
             raise refusal(f"{name}.a", a, "a value of the grid")
@@ -207,14 +205,14 @@ def _fill_grid(section: dict[str, Any], name: str, grid: Collection[float]) -> N
 
 
 def fill_chains(config: Mapping[str, Any]) -> None:
-    """Convert the lists of a of longer chains to numbers."""
+    """Convert the lists of a for chains of other lengths to numbers."""
     chains = config["chains"]
     chains["a"] = values_of(chains["a"], "chains.a")
     chains["two_blocks"]["a"] = values_of(chains["two_blocks"]["a"], "chains.two_blocks.a")
 
 
 def leave_out(config: Mapping[str, Any], stages: Collection[str]) -> None:
-    """Clear the values of a of stages that are left out."""
+    """Remove the values of a of stages that are left out."""
     for name in {"solvers", "phases"} & set(stages):
         config[name]["a"] = []
     if "basins" in stages:
@@ -222,7 +220,7 @@ def leave_out(config: Mapping[str, Any], stages: Collection[str]) -> None:
 
 
 def check_size(config: Mapping[str, Any], parameters: Mapping[str, Collection[str]]) -> None:
-    """Check that Snakemake can plan the points of a study; parameters : the values of each."""
+    """Check that Snakemake can plan the points of a study; parameters : the values of each parameter."""
     states, laws = config["initial"], config["laws"]
     points = len(laws) * len(states) * prod(map(len, parameters.values()))
     if points > MAXIMUM_POINTS:
@@ -234,7 +232,7 @@ def check_size(config: Mapping[str, Any], parameters: Mapping[str, Collection[st
 
 
 def check_jobs(config: Mapping[str, Any], blocks: int, without: Collection[str]) -> None:
-    """Check that no job of a study holds too many numbers; config : with all defaults; without : stages left out."""
+    """Check that no job of a study holds too many numbers; config : with defaults; without : stages left out."""
     attractors, basins, phases, chains = (config[name] for name in ("attractors", "basins", "phases", "chains"))
     oscillating = len(phases["amplitude"]) * len(phases["phase_difference"]) * phases["samples"]
     kept = len(phases["a"]) * max(len(phases["inner_share"]), blocks - 2)

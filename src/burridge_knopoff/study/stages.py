@@ -1,6 +1,6 @@
 """Stages that a config can leave out; their rules are in `jobs`."""
 
-#: {stage: the stage whose results it uses, or empty}
+#: {stage: the stage whose results it uses, or an empty text}
 STAGES = {
     "attractors": "",
     "bifurcations": "attractors",
@@ -14,5 +14,5 @@ STAGES = {
     "claims": "",
 }
 
-#: Numbers of blocks of longer chains that are asked for by name.
+#: Numbers of blocks of the chains that the target `chains` computes by default.
 CHAIN_LENGTHS = list(range(2, 11))

@@ -62,12 +62,12 @@ class Study:
 
     @property
     def is_plane(self) -> bool:
-        """Whether the study varies other parameters besides a."""
+        """Whether the study varies parameters in addition to a."""
         return len(self.parameters) > 1
 
     @property
-    def others(self) -> list[dict[str, float]]:
-        """The values of the parameters besides a, at each point of their grid."""
+    def other_values(self) -> list[dict[str, float]]:
+        """The combinations of the values of all parameters except a."""
         names = [name for name in self.parameters if name != "a"]
         return [
             dict(zip(names, values, strict=True))
@@ -96,7 +96,7 @@ class Study:
         return self.config["figures"]["law"]
 
     def shown_runs(self, wildcards: Mapping[str, str]) -> dict[str, Any]:
-        """Return `points` for the figures of single runs; for one initial state if a wildcard names it."""
+        """Return `points` for the figures of single runs, with one initial state if a wildcard names it."""
         points, law = self.points, self.shown_law
         initial = {name: state for name, state in points["initial"].items() if wildcards.get("initial", name) == name}
         only = {key: {law: points[key][law]} for key in ("laws", "settings")}
@@ -109,8 +109,8 @@ class Study:
 
     @property
     def chain_description(self) -> dict[str, Any]:
-        """The chain as arguments of `Chain`; of several, that of the first point."""
-        chain, first = self.config["chain"], self.model(self.laws[0], self.shown_a, **self.others[0]).chain
+        """The arguments of `Chain`; those of the first point if the chain varies."""
+        chain, first = self.config["chain"], self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain
         varied = {(single_of(name) or (name,))[0] for name in self.parameters}
         return {key: getattr(first, key) if key in varied else value for key, value in chain.items()}
 
@@ -122,27 +122,27 @@ class Study:
     @property
     def is_mirror_symmetric(self) -> bool:
         """Whether the chain is its own mirror image."""
-        return self.model(self.laws[0], self.shown_a, **self.others[0]).chain.is_mirror_symmetric
+        return self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain.is_mirror_symmetric
 
     @property
     def has_synchronized_orbit(self) -> bool:
-        """Whether there is a summary of the synchronized orbit, which is that of three blocks."""
+        """Whether there is a summary of the synchronized orbit, which is computed for three blocks."""
         return self.blocks == 3 and self.is_mirror_symmetric
 
     @property
     def proved_laws(self) -> list[str]:
-        """The laws for which the synchronized orbit and its loss are proved."""
+        """The laws for which the synchronized orbit and its loss of stability are proved."""
         return [law for law in self.laws if is_covered(self.model(law, self.shown_a))]
 
     @property
-    def left_out(self) -> tuple[str, ...]:
-        """Stages that the config leaves out, together with the stages that use their results; all in a plane."""
+    def omitted_stages(self) -> tuple[str, ...]:
+        """Stages that the config leaves out and those that use their results; all stages if several parameters vary."""
         without = STAGES if self.is_plane else self.config["without"]
         return tuple(stage for stage, needed in STAGES.items() if stage in without or needed in without)
 
     @property
     def chain_lengths(self) -> list[int]:
-        """Numbers of blocks of longer chains; chains of these numbers are a part of the study if its config has any."""
+        """Numbers of blocks of the chains of other lengths."""
         return self.config["chains"].get("blocks", CHAIN_LENGTHS)
 
     @property
@@ -154,12 +154,12 @@ class Study:
     @property
     def catalogue_a(self) -> list[str]:
         """Names of the values of a with a catalogue of slip events."""
-        chosen = [] if "catalogue" in self.left_out else self.config.get("catalogue", {}).get("a", [])
+        chosen = [] if "catalogue" in self.omitted_stages else self.config.get("catalogue", {}).get("a", [])
         return [name for name, value in self.grid.items() if value in chosen]
 
     @property
     def single_length_key(self) -> str:
-        """Key of the chain that fixes its length: a list, or a file of springs; empty if none."""
+        """Key of the chain that fixes its length, a list or a file of springs; empty if there is none."""
         chain = self.config["chain"]
         return next((key for key, value in chain.items() if isinstance(value, list) or key == "springs"), "")
 
@@ -179,14 +179,14 @@ class Study:
         return model_of(self.config, law, a, others=others)
 
     def other_solvers(self, law: str) -> list[str]:
-        """Return the other solvers that can do a law at the compared values, besides the one that makes the points."""
+        """Return the solvers, except that of the points, that apply to a law at the compared values of a."""
         others = [solver for solver in SOLVERS if solver != self.config["solver"][law]]
         if "map" in others and not all(self.model(law, a).has_closed_form for a in self.config["solvers"]["a"]):
             others.remove("map")
         return others
 
     @property
-    def compared(self) -> dict[str, float]:
+    def compared_values(self) -> dict[str, float]:
         """The values of a at which solvers are compared, by their names in file names."""
         return {name: value for name, value in self.grid.items() if value in self.config["solvers"]["a"]}
 
@@ -195,27 +195,26 @@ class Study:
         grid = self.parameters[parameter]
         if name not in grid:
             meant = next((known for known, value in grid.items() if value == float(name)), "")
-            told = f"the name of this {parameter} is {parameter}{meant}"
-            reason = told if meant else f"{parameter} is not in its grid"
-            raise ConfigError(f"{parameter}{name}: not a point of study {self.name}: {reason}")
+            remedy = f"write {parameter}{meant}" if meant else f"this {parameter} is not on its grid"
+            raise ConfigError(f"{parameter}{name}: not a point of study {self.name}; {remedy}")
         return grid[name]
 
     def settings(self, law: str, solver: str | None = None) -> Settings:
         """Return the settings of the runs with a law.
 
-        solver : a solver other than that of the study's points
-        Raises ConfigError if it is not one of `other_solvers`.
+        solver : one of `other_solvers`; by default that of the points
+        Raises ConfigError for any other solver.
         """
         config = {**self.config, "solver": solver or self.config["solver"][law]}
         if solver is not None:
             if solver not in self.other_solvers(law):
                 allowed = " | ".join(self.other_solvers(law))
-                raise ConfigError(f"{law}/{solver}: not a comparison of study {self.name}: {allowed} for this law")
+                raise ConfigError(f"{law}/{solver}: not a comparison of study {self.name}; expected {allowed}")
             config["step"] = config["solvers"]["step"]
             if solver == "rk4":
                 config["lyapunov_exponents"] = 0
         if config["solver"] != "rk4":
-            # The other solvers have no step: a change of it must not rerun their points.
+            # The other solvers have no step, so that a change of the step must not repeat their points.
             del config["step"]
         return settings_from(Settings, config)
 
@@ -228,8 +227,8 @@ class Study:
     ) -> tuple[Model, InitialState, Settings]:
         """Return model, initial state and settings of a grid point given by its wildcards.
 
-        solver : a solver other than that of the study's points
-        Raises ConfigError if a value is not in the grid, or the solver is not one of `other_solvers`.
+        solver : one of `other_solvers`; by default that of the points
+        Raises ConfigError if a value is not on the grid, and for any other solver.
         """
         names = {self.wildcards[word]: name for word, name in {"a": a, **others}.items()}
         values = {parameter: self.value(name, parameter) for parameter, name in names.items()}
@@ -241,7 +240,7 @@ class Study:
 
     @property
     def points(self) -> dict[str, Any]:
-        """Everything that decides the point files, in the types of a config."""
+        """All settings on which the point files depend, in the types of a config."""
         return {
             **{key: self.config[key] for key in MODEL_KEYS},
             "initial": {name: dict(state) for name, state in self.config["initial"].items()},
@@ -259,15 +258,15 @@ def all_points(study: Study) -> list[dict[str, str]]:
 
 
 def solver_points(study: Study) -> list[dict[str, str]]:
-    """Return the wildcards of every point that another solver repeats."""
-    points = [point for point in all_points(study) if point["a"] in study.compared]
+    """Return the wildcards of every run that repeats a point with another solver."""
+    points = [point for point in all_points(study) if point["a"] in study.compared_values]
     return [{**point, "solver": solver} for point in points for solver in study.other_solvers(point["law"])]
 
 
 def remarks(study: Study, given: Mapping[str, Any]) -> list[str]:
-    """Return what a study goes without although one might look for it, a line each; given : its config as written."""
+    """Return a line for each part that a user may expect and the study lacks; given : its config as written."""
     if study.blocks == 1:
         return ["one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks"]
-    if given.get("basins") and "basins" not in study.left_out and not study.basin_maps:
-        return ["basins: no map: give basins.a; none of its usual values is in the grid"]
+    if given.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
+        return ["basins: no map, since no default value of basins.a is on the grid; set basins.a"]
     return []

@@ -1,4 +1,4 @@
-"""Reading YAML files: strictly, with a one-line error."""
+"""Reads YAML files strictly, with errors of one line."""
 
 from __future__ import annotations
 
@@ -10,24 +10,24 @@ from typing import Any
 import yaml
 
 from burridge_knopoff.provenance.files import display_path
-from burridge_knopoff.values import joined
+from burridge_knopoff.values import full_key
 
 _TAG = "tag:yaml.org,2002:"
 
 
-#: Limit on the values of a file: with aliases of aliases, a file of 500 bytes could fill any memory.
+#: Limit on the values of a file: nested aliases in a file of 500 bytes could fill any memory.
 MOST_VALUES = 10_000_000
 
 
 class ConfigError(ValueError):
-    """A config that is refused; the message is one line: file, key, value, expected values."""
+    """The error of a refused config; the message is one line: file, key, value, expected values."""
 
 
 class _Loader(yaml.SafeLoader):
-    """A loader with decimal numbers, and mappings whose keys are distinct texts.
+    """A loader that reads decimal numbers only, and mappings whose keys are distinct texts.
 
-    YAML reads 1e-6 as text, 010 as eight, 1:30 as ninety and 1_0 as ten. Here the first is a number and the others are
-    texts.
+    PyYAML reads 1e-6 as text, 010 as eight, 1:30 as ninety and 1_0 as ten. Here the first is a number and the others
+    are texts.
     """
 
     yaml_implicit_resolvers = {  # noqa: RUF012
@@ -41,9 +41,9 @@ class _Loader(yaml.SafeLoader):
         for key, _ in node.value:
             place = f"(line {key.start_mark.line + 1})"
             if key.tag not in (f"{_TAG}str", f"{_TAG}merge"):
-                raise ConfigError(f"got {joined('', str(key.value))} {place} as a key, expected text")
+                raise ConfigError(f"got {full_key('', str(key.value))} {place} as a key, expected text")
             if key.value in seen:
-                raise ConfigError(f"{joined('', key.value)}: stands twice {place}; once is allowed")
+                raise ConfigError(f"{full_key('', key.value)}: given twice {place}, expected once")
             seen.add(key.value)
         return node
 
@@ -54,9 +54,9 @@ _Loader.add_implicit_resolver(f"{_TAG}float", re.compile(f"({_FLOAT})$"), list("
 
 
 def _size(node: yaml.Node, known: dict[yaml.Node, float]) -> float:
-    """Return the number of values in a node with its aliases expanded; known : of nodes visited before."""
+    """Return the number of values in a node with its aliases expanded; known : the numbers of nodes visited before."""
     if node not in known:
-        # Infinite until counted, in case the node contains itself.
+        # The node may contain itself: its number is infinite until it is counted.
         known[node] = math.inf
         inside = node.value if isinstance(node, yaml.CollectionNode) else ()
         parts = [part for item in inside for part in (item if isinstance(item, tuple) else (item,))]
@@ -79,7 +79,7 @@ def read_config(path: str | Path) -> dict[str, Any]:
     """Return the content of a study's config file, not validated; raises ConfigError as `read_yaml` does."""
     content = read_yaml(path)
     if not isinstance(content, dict):
-        found = "nothing" if content is None else joined("", content)
+        found = "nothing" if content is None else full_key("", content)
         raise ConfigError(f"{display_path(path)}: got {found}, expected keys with values")
     return content
 
@@ -95,7 +95,7 @@ def read_yaml(path: str | Path) -> Any:
         loader = _Loader(Path(path).read_text(encoding="utf-8-sig"))
         node = loader.get_single_node()
         if node is not None and _size(node, {}) > MOST_VALUES:
-            raise ConfigError(f"more than {MOST_VALUES} values, with its aliases written out")
+            raise ConfigError(f"more than {MOST_VALUES} values, with aliases expanded")
         return None if node is None else loader.construct_document(node)
     except ConfigError as error:
         reason = f"{error}"

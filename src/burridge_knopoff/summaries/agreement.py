@@ -21,7 +21,7 @@ from burridge_knopoff.motion.kind import (
     MotionKind,
     same_result,
 )
-from burridge_knopoff.study.formatting import counted
+from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
@@ -241,7 +241,7 @@ def _agreement_text(row: xarray.Dataset) -> str:
         )
     if failed := int((verdict < 0).sum()):
         text += (
-            f" At {counted(failed, 'value')} of a the comparison is undetermined: a run did not complete, its kind of "
-            "motion is undetermined, or the difference of <J> is close to the tolerance."
+            f" At {format_count(failed, 'value')} of a the comparison is undetermined: a run did not complete, its "
+            "kind of motion is undetermined, or the difference of <J> is close to the tolerance."
         )
     return text

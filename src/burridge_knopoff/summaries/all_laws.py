@@ -100,7 +100,7 @@ def branch_numbers(
 
 
 def number_in_order(parts: Sequence[xarray.Dataset], numbers: Sequence[Mapping[int, int]]) -> dict[int, int]:
-    """Return {number of a branch: its place in the order in which branches appear along a}, those of the first law first.
+    """Return {number of a branch: its place in the order in which branches appear along a, first under the first law}.
 
     parts : of the laws, see `one_law`; numbers : for each law {number of a branch in its part: common number}
 

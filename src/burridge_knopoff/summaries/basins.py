@@ -22,7 +22,7 @@ from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.study.formatting import plain, with_error
+from burridge_knopoff.study.formatting import to_ascii, with_error
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.map_rows import map_rows
 
@@ -263,11 +263,11 @@ def _exponent_text(one: xarray.Dataset) -> str:
     if kind == ExponentKind.UNKNOWN:
         return "uncertainty exponent undetermined: too few pairs differ"
     change, error = one["exponent_change"].item(), one["exponent_change_error"].item()
-    changes = f"it changes by {plain(with_error(change, error))} over the separations"
+    changes = f"it changes by {to_ascii(with_error(change, error))} over the separations"
     if kind == ExponentKind.VARYING:
         return f"no single uncertainty exponent: {changes}"
     alpha, error = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
-    return f"uncertainty exponent {plain(with_error(alpha, error))} ({changes})"
+    return f"uncertainty exponent {to_ascii(with_error(alpha, error))} ({changes})"
 
 
 def _coordinates(first: np.ndarray, last: np.ndarray) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""A study of several parameters through the real Snakefile: a job for each stretch, and a file for each point."""
+"""A study of several parameters through the real Snakefile: a job for each chunk, and a file for each point."""
 
 import os
 import signal
@@ -26,7 +26,7 @@ batches: 2
 RESULTS = "results/plane"
 POINTS = f"{RESULTS}/points/nonlinear/pair"
 A = ("0.0500", "0.3000")
-POINT, MARK = f"{POINTS}/a0.3000_v0.0500.nc", f"{RESULTS}/stretches/0000.done"
+POINT, MARK = f"{POINTS}/a0.3000_v0.0500.nc", f"{RESULTS}/chunks/0000.done"
 
 
 @pytest.fixture(scope="module")
@@ -85,7 +85,7 @@ def test_nothing_is_made_twice(copy):
 def test_a_point_that_is_gone_or_damaged_is_made_again_alone(copy, damage):
     before, content = times(copy), (copy.folder / POINT).read_bytes()
     damage(copy.folder / POINT)
-    assert f"{MARK}: a point of it is missing or was changed: it is made again" in copy.ok()
+    assert f"{MARK}: a point of this chunk is missing or was changed: it is made again" in copy.ok()
     after = times(copy)
     assert {name for name in before if after[name] != before[name]} == {POINT}
     assert (copy.folder / POINT).read_bytes() == content
@@ -113,7 +113,7 @@ def test_another_value_makes_its_points_only(copy):
 
 
 @pytest.mark.slow
-def test_a_killed_stretch_goes_on_where_it_stopped(tmp_path):
+def test_a_killed_chunk_resumes_where_it_stopped(tmp_path):
     study = Study(tmp_path / "killed", PLANE.replace("window: 200", "window: 60000"))
     command = study.command(MARK)
     with subprocess.Popen(command, cwd=study.folder, env=study.environment(), start_new_session=True) as run:
@@ -133,7 +133,7 @@ def test_a_killed_stretch_goes_on_where_it_stopped(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("grid:", "a: [0.1]\ngrid:", ["study.yaml: a: got [0.1] beside grid, expected one of them"]),
+        ("grid:", "a: [0.1]\ngrid:", ["study.yaml: a: got [0.1] together with grid, expected one of them"]),
         ("v: [0.05, 0.1]", "speed: [1]", ["speed: not a parameter of this model, expected a | v"]),
         (
             "v: [0.05, 0.1]",

@@ -1,4 +1,4 @@
-"""A stretch: those of its points that are missing, damaged or out of date."""
+"""A chunk: those of its points that are missing, damaged or out of date."""
 
 import sys
 
@@ -7,14 +7,14 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 from pathlib import Path
 
 from burridge_knopoff.provenance.record import read_study_record
-from burridge_knopoff.provenance.seal import canonical, identity
+from burridge_knopoff.provenance.seal import canonical_json, identity
+from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.points import make_points
-from burridge_knopoff.study.stretches import stretches
 from burridge_knopoff.study.study import Study
 
 folder = Path(snakemake.params.folder)
 record = read_study_record(folder)
 study = Study(record["config"], record["grid"])
-if identity(canonical(study.points)) != snakemake.params.points:
+if identity(canonical_json(study.points)) != snakemake.params.points:
     raise ValueError(f"{folder}: was given to another config while this job waited; run snakemake again")
-make_points(study, stretches(study)[snakemake.wildcards.stretch], folder / "points")
+make_points(study, chunks(study)[snakemake.wildcards.chunk], folder / "points")
