@@ -1,4 +1,4 @@
-"""A picture of a file of results: J, section and velocities of a run; the figure of a summary."""
+"""A picture of a result file: J, section points and velocities of a run, or the figure of a summary."""
 
 from __future__ import annotations
 
@@ -51,9 +51,9 @@ def write_picture(result: Result, path: str | Path) -> str:
     if result.is_part:
         summary = f"summary/{result.name}.nc"
         whole = f": {result.study_path(summary)}" if summary in result.files else ""
-        raise ValueError(f"{result.path}: no figure shows a part of a summary, only the whole one{whole}")
+        raise ValueError(f"{result.path}: no picture of a part of a summary; plot the whole summary{whole}")
     figure = _figure_of(result)
-    inputs = [result if name == result.name else _beside(result, name) for name in figure.inputs]
+    inputs = [result if name == result.name else _open_neighbour(result, name) for name in figure.inputs]
     module = import_module(f"burridge_knopoff.figures.{figure.name}")
     try:
         drawn = module.draw(*(one.data for one in inputs), **_from_study(result, figure))
@@ -67,25 +67,25 @@ def write_picture(result: Result, path: str | Path) -> str:
 
 
 def _figure_of(result: Result) -> Description:
-    """Return the figure of a summary: the one with its name, else the one that needs the fewest other files."""
+    """Return the figure of a summary: the one with its name, otherwise the one that needs the fewest other files."""
     figures = [
         figure
         for figure in figure_descriptions()
         if result.name in figure.inputs and (result.study or set(figure.from_study) <= WITHOUT_STUDY.keys())
     ]
     if not figures:
-        raise ValueError(f"{result.path}: no figure shows a file of {result.name}")
+        raise ValueError(f"{result.path}: there is no picture of {result.name}")
     return min(figures, key=lambda figure: (figure.name != result.name, len(figure.inputs)))
 
 
-def _beside(result: Result, name: str) -> Result:
+def _open_neighbour(result: Result, name: str) -> Result:
     """Return another summary that a figure needs, from the same folder."""
     path = result.path.with_name(f"{name}.nc")
     try:
         other = open_result(path)
     except ValueError as error:
         known = f"summary/{name}.nc" in result.files
-        reason = f": {error}" if path.exists() or known else ", which is not next to it"
+        reason = f": {error}" if path.exists() or known else ", which is not in the same folder"
         raise ValueError(f"{result.path}: its figure also needs {name}.nc{reason}") from None
     if not fit_together(result.path, path):
         raise ValueError(f"{result.path}: its figure also needs {name}.nc, but {path} is of another study")

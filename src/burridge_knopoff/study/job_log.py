@@ -74,8 +74,12 @@ def interrupted(logs: Sequence[str | Path], *, stopping: bool = False) -> bool:
 
 def failure(job: str, logs: Sequence[str | Path]) -> str:
     """Return the line that reports a failed job: the job, the reason and the path of its log."""
-    reason = next((words for log in logs if (words := last_words(log))), FULL if _is_full(logs) else SILENT)
-    return f"failed: {job}: {reason} (log {', '.join(map(str, logs)) or 'none'})"
+    return f"failed: {job}: {failure_reason(logs)} (log {', '.join(map(str, logs)) or 'none'})"
+
+
+def failure_reason(logs: Sequence[str | Path]) -> str:
+    """Return the reason why a job failed, from its logs: FULL or SILENT if they contain none."""
+    return next((words for log in logs if (words := last_words(log))), FULL if _is_full(logs) else SILENT)
 
 
 def _is_full(logs: Sequence[str | Path]) -> bool:
