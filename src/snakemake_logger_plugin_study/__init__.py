@@ -65,7 +65,7 @@ class LogHandler(LogHandlerBase):
         #: Whether there is something to do, also in a dry run, and whether Snakemake ended with an error.
         self._has_begun = self._has_stopped = False
         self._display: Lines | Picture | None = None
-        #: Failed jobs with an empty log, and their logs: after Ctrl-C a job may fail before Snakemake reports the signal.
+        #: Failed jobs with an empty log, and their logs: a job may fail by Ctrl-C before Snakemake reports the signal.
         self._silent_jobs: list[tuple[str, list[str]]] = []
         #: Reasons of failures that have been written.
         self._reasons: set[str] = set()
@@ -111,7 +111,9 @@ class LogHandler(LogHandlerBase):
                 self._silent_jobs.append((job.name, logs))
                 return ""
             return None if is_whole else self._failure(job.name, logs)
-        text = "" if event in _ROUTINE else replacement(record.getMessage()) if event in (None, LogEvent.ERROR) else None
+        if event in _ROUTINE:
+            return None if shows_routine else ""
+        text = replacement(record.getMessage()) if event in (None, LogEvent.ERROR) else None
         return None if text == "" and shows_routine else text
 
     def _update(self, record: Any) -> None:

@@ -1,4 +1,4 @@
-"""The plan of a run, which is not in Snakemake's log: its jobs, their dependencies and stages, and its results folder."""
+"""The plan of a run, which is not in Snakemake's log: its jobs, their dependencies and stages, its results folder."""
 
 from __future__ import annotations
 

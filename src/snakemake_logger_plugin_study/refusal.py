@@ -26,7 +26,10 @@ _REPLACEMENTS = (
     # Written with every few jobs.
     (re.compile(r"\ASelect jobs to execute"), ""),
     # A dry run ends with a table of its stages instead.
-    (re.compile(r"\A(Reasons:\n|This was a dry-run |Some jobs were triggered by provenance |Rules with provenance )"), ""),
+    (
+        re.compile(r"\A(Reasons:\n|This was a dry-run |Some jobs were triggered by provenance |Rules with provenance)"),
+        "",
+    ),
     # The failed job is reported right after, with the reason from its log.
     (re.compile(r"\ARuleException:\s+CalledProcessError "), ""),
     # Written by --report for each file that is not made; the error that follows names one of them.
@@ -127,8 +130,7 @@ def cores_of_command_line(arguments: Sequence[str]) -> int:
         name, equals, _ = entry.partition("=")
         if not (equals and _NAME.fullmatch(name)):
             if equals and len(name) == 1:
-                raise ConfigError(
-                    f"--config: {name} cannot be set here (Snakemake requires keys of two letters); set it in the config file"
-                )
+                reason = "cannot be set here (Snakemake requires keys of two letters); set it in the config file"
+                raise ConfigError(f"--config: {name} {reason}")
             raise ConfigError(f"--config: got {shown(entry)}, expected key=value")
     return int(options.cores) if options.cores.isdecimal() else 0

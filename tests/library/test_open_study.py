@@ -88,7 +88,9 @@ def test_groups_are_trees_of_their_files(results):
     assert study["/"][point].identical(study[point])
 
 
-@pytest.mark.parametrize("path", ["summary/lyapunow", "points/{0}/{1}/a{2}".format(*MISSING), "point", "summary/lyap"])
+@pytest.mark.parametrize(
+    "path", ["summary/lyapunow", f"points/{MISSING[0]}/{MISSING[1]}/a{MISSING[2]}", "point", "summary/lyap"]
+)
 def test_what_is_not_there_is_named(results, path):
     study = open_study(results)
     assert path not in study
@@ -141,9 +143,10 @@ def test_a_file_that_is_damaged_or_not_of_the_study_is_named(results, tmp_path, 
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     damage(tmp_path / name)
     said = []
-    for read in (lambda folder: open_study(folder)[name.removesuffix(".nc")], lambda folder: open_result(folder / name)):
+    study = open_study(tmp_path)
+    for read in (lambda: study[name.removesuffix(".nc")], lambda: open_result(tmp_path / name)):
         with pytest.raises(ValueError, match=reason) as caught:
-            read(tmp_path)
+            read()
         said.append(str(caught.value))
     assert said[0] == said[1]
     assert said[0].startswith(f"{tmp_path / name}: ")

@@ -99,7 +99,10 @@ LINES = {
     "long": (["--configfile", "x" * 300], ["xxx: cannot be read: File name too long"]),
     "no_value": ([*CONFIG, "--config", "window"], ["--config: got 'window', expected key=value"]),
     "no_key": ([*CONFIG, "--config", "=7000"], ["--config: got '=7000', expected"]),
-    "short_key": ([*CONFIG, "--config", "a=0.1"], ["--config: a cannot be set here (Snakemake requires keys of two letters); set it in the config file"]),
+    "short_key": (
+        [*CONFIG, "--config", "a=0.1"],
+        ["--config: a cannot be set here", "two letters); set it in the config file"],
+    ),
     "unknown_key": ([*CONFIG, "--config", "windows=7000"], ["--config: windows: unknown key"]),
     "bad_value": ([*CONFIG, "--config", "window=long"], ["--config: window: 'long'", "a number"]),
     "not_finite": ([*CONFIG, "--config", "window=nan"], ["window: nan", "a number"]),

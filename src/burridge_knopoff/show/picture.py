@@ -21,25 +21,26 @@ from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.catalogue import summarize
 from burridge_knopoff.values import cut, shown
 
-#: Name of the module that makes the catalogue file of a run.
+#: Name of the catalogue file of a run, which is that of the module that makes it.
 CATALOGUE_FILE = "slip_events"
 
 FORMATS = (".png", ".pdf", ".svg")
 
-#: Arguments of figures taken from the study, for a file that belongs to none.
+#: Arguments that figures take from the study, for a file that belongs to none.
 WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
 
 
 def check_format(path: str | Path) -> None:
-    """Raise ValueError, one line, if the suffix of a picture's name is not a known format."""
+    """Raise ValueError, one line, unless the suffix of a picture is a known format."""
     if Path(path).suffix not in FORMATS:
         raise ValueError(f"{cut(str(path), 200)}: got {shown(Path(path).suffix)}, expected {' | '.join(FORMATS)}")
 
 
 def write_picture(result: Result, path: str | Path) -> str:
-    """Draw a file of results as a picture, and describe the picture in a line.
+    """Draw a picture of a result file, and return its description in a line.
 
-    Raises ValueError, one line, if no figure shows such a file, or if another file that the figure needs is missing.
+    Raises ValueError, one line, if there is no picture of such a file, or if the figure needs another file that is
+    missing.
     """
     if result.is_point:
         write_figure(draw_point(result.data), path)
@@ -56,7 +57,7 @@ def write_picture(result: Result, path: str | Path) -> str:
     inputs = [result if name == result.name else _open_neighbour(result, name) for name in figure.inputs]
     module = import_module(f"burridge_knopoff.figures.{figure.name}")
     try:
-        drawn = module.draw(*(one.data for one in inputs), **_from_study(result, figure))
+        drawn = module.draw(*(one.data for one in inputs), **_study_arguments(result, figure))
     except (AttributeError, KeyError, IndexError, ValueError):
         names = " with ".join(str(one.path) for one in inputs)
         old = any(not one.of_these_sources for one in inputs)
@@ -92,7 +93,7 @@ def _open_neighbour(result: Result, name: str) -> Result:
     return other
 
 
-def _from_study(result: Result, figure: Description) -> dict[str, Any]:
+def _study_arguments(result: Result, figure: Description) -> dict[str, Any]:
     if not result.study:
         return {name: WITHOUT_STUDY[name] for name in figure.from_study}
     study = Study(result.record["config"], result.record["grid"])

@@ -33,7 +33,8 @@ def point_lines(result: Result, width: int = UNLIMITED) -> list[str]:
         ("made by", result.made_by),
     ]
     # The command is not wrapped, so that it can be copied.
-    return [*wrapped([head], width), "", *table((), rows, width), "", f"reproduce with: {attributes['history']} --out FILE"]
+    command = f"reproduce with: {attributes['history']} --out FILE"
+    return [*wrapped([head], width), "", *table((), rows, width), "", command]
 
 
 def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
@@ -106,7 +107,9 @@ def _contents(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     blocks = range(1, point.sizes["block"] + 1)
     for name, words in (("event", "with the states of all blocks"), ("earlier_event", "before them, without states")):
         moved = point[f"{name}_block"].values[point[f"{name}_kind"].values == 0]
-        stops = f"; stops of each block: {list_numbers([(moved == block).sum() for block in blocks])}" if len(moved) else ""
+        stops = (
+            f"; stops of each block: {list_numbers([(moved == block).sum() for block in blocks])}" if len(moved) else ""
+        )
         if name == "event" or point.sizes[name]:
             yield (
                 "stops and starts" if name == "event" else "",

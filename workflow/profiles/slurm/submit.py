@@ -113,7 +113,7 @@ def earlier_jobs(targets, study, newest, live):
 
 
 def requests(properties, attempt):
-    """Return the options of sbatch for a job. Memory and time grow with each attempt, since they may have been short."""
+    """Return the options of sbatch for a job; memory and time, which may have been short, grow with each attempt."""
     resources = properties["resources"]
     options = [
         "--nodes=1",
