@@ -62,7 +62,7 @@ def test_bad_input_is_refused_in_one_line(options, words):
 
 @pytest.mark.slow
 def test_a_model_of_its_own():
-    """Labels of a map for a law by formula in an asymmetric chain, and a short form that says the same."""
+    """Labels of a map for a law by formula in an asymmetric chain, and of its equivalent short form."""
     law = FormulaLaw(0.1, "1/(1 + a*u)**p", p=1.2)
     chain = Chain(3, coupling=(1.0, 1.2))
     options = {"pixels": 4, "samples": 10, "transient": 1000.0, "window": 1000.0}

@@ -1,4 +1,4 @@
-"""One run in one call: initial states as they come to mind, settings by name, and what is refused."""
+"""One run in one call: all forms of initial states, settings by name, and refused arguments."""
 
 import inspect
 import typing

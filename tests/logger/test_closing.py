@@ -68,7 +68,7 @@ def test_a_whole_study():
         f"points: kind of motion undetermined at 2 of 5 (kind in {FOLDER}/agreement.nc)",
         "report: results/paper/report.html",
     ]
-    # A single point says nothing of summaries.
+    # The lines about a single point do not mention summaries.
     assert lines(*done(POINT), wanted=["simulate"]) == ["study paper: done in 1 s on 1 core", f"made: {POINT}"]
 
 
@@ -154,7 +154,7 @@ def test_bad_files_are_remade_by_one_command_and_by_no_other():
 
 
 def test_a_run_that_was_interrupted():
-    """A job of which the log tells no end did not run to its end, even if its file is there."""
+    """A job whose end is not in the log did not run to its end, even if its file exists."""
     Path("x.nc").touch()
     told = "study paper: stopped after 1 s: 1 job did not run"
     assert lines(("x", RUNNING, ["x.nc"], [])) == [told, "made: nothing", AGAIN]

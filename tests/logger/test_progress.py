@@ -1,4 +1,4 @@
-"""The progress display: its words, what the Snakefile tells it, and that no message is lost."""
+"""The progress display: its text, the plan that the Snakefile gives it, and that no message is lost."""
 
 import io
 import os
@@ -203,7 +203,7 @@ TOLD = f"failed: simulate a=0.0800: {SILENT} (log x.log)"
 
 
 def test_a_job_that_ctrl_c_ends_before_it_has_begun_is_interrupted(written, tmp_path):
-    """Its log is empty, and its failure may be told before Snakemake says that it was Ctrl-C."""
+    """Its log is empty, and Snakemake may report its failure before it reports Ctrl-C."""
     end = record("Terminating processes on user request, this might take some time.")
     for last in ((FAILURE, end), (end, FAILURE)):
         lines = written(*BEGUN, *last, results="results/x")
@@ -233,7 +233,7 @@ def test_routine_is_replaced_and_all_else_is_written(written):
     hidden = record("RuleException:\nCalledProcessError in file x.smk", level=ERROR)
     said = written(*ROUTINE, *plain, hidden, start(1), FAILURE, record("the end"))
     assert said == [BEGIN, "Building DAG of jobs...", "careful", TOLD, "the end"]
-    # Snakemake 9.22 tells of a failure twice; a job that is tried again may fail again.
+    # Snakemake 9.22 reports a failure twice; a repeated job may fail again.
     again = "failed: simulate a=0.0800: for the same reason (log x.log)"
     assert written(*BEGUN, FAILURE, FAILURE, start(1), FAILURE) == [BEGIN, TOLD, again]
 
@@ -248,7 +248,7 @@ def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch
     (tmp_path / "x.nc").touch()
     last = ["study x: done in 0 s on 1 core", "made: x.nc, x.nc", "report: results/x/report.html"]
     assert written(*ROUTINE, start(2), end(2), **run) == [BEGIN, *last]
-    # The end of a job is not in the log with --quiet progress, nor is anything said with --quiet all.
+    # With --quiet progress the log does not contain the ends of jobs; with --quiet all nothing is written.
     assert written(*BEGUN, start(2), quiet={Quietness.PROGRESS}, **run) == [BEGIN, *last]
     assert written(*BEGUN, start(2), quiet={Quietness.ALL}, **run) == []
     monkeypatch.setattr(plugin, "closing_lines", lambda *given, **options: 1 / 0)

@@ -1,4 +1,4 @@
-"""`bk show`: points and summaries in words and as pictures; what is no file of ours is refused in a line."""
+"""`bk show`: points and summaries in words and as pictures; other files are refused in a line."""
 
 import shlex
 import shutil
@@ -120,7 +120,7 @@ def test_every_summary_in_words(study):
     [("mean_distance", "⟨J⟩ versus a. The time average ⟨J⟩"), ("basins", "Basins of attraction. Basin maps over")],
 )
 def test_a_summary_as_its_figure(study, tmp_path, capsys, name, words):
-    """With the summaries and the properties of the study that the figure takes besides."""
+    """With the other summaries and the properties of the study that the figure needs."""
     assert f"x.pdf: {words} " in shown(capsys, study / f"summary/{name}.nc", "--plot", tmp_path / "x.pdf")
     assert (tmp_path / "x.pdf").read_bytes().startswith(b"%PDF")
 

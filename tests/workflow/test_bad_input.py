@@ -1,4 +1,4 @@
-"""Broken configs and command lines: one line that says what is wrong, and nothing written."""
+"""Broken configs and command lines: one line that names the error, and nothing written."""
 
 import json
 import shutil
@@ -14,7 +14,7 @@ from tests.bad_configs import BAD_FILES, FIRST_OF_KEYS, GOOD
 from tests.workflow.conftest import TINY, Study
 from tests.workflow.snakemake import run_snakemake
 
-# What Snakemake says of itself at every start.
+# Snakemake's own first lines.
 ANNOUNCED = ("Using workflow specific profile", "Assuming unrestricted shared filesystem", "Building DAG of jobs")
 
 # What Snakemake makes before it reads the Snakefile: empty folders, and its log.

@@ -51,7 +51,7 @@ def plain(text):
 @pytest.mark.slow
 def test_a_terminal_shows_stages_and_time_left(study):
     command = [argument for argument in study.command(*[]) if argument != "--nocolor"]
-    # So many that the display is drawn anew while some are still to come.
+    # Enough points for the display to be redrawn before the last one.
     code, written = on_a_terminal([*command[:2], "points", *command[2:]], study.folder)
     text = plain(written)
     assert code == 0, text
@@ -90,7 +90,7 @@ def test_without_a_terminal(finished):
     assert "curves" not in stages
     assert sum(int(count) for count in re.findall(r"\d+", stages)) == int(total)
     progress = [line for line in lines if re.search(rf"all \d+ of {total} jobs; \d+ % done", line)]
-    # Snakemake's own last lines come before those of the study; 9.22 tells no time.
+    # Snakemake's own last lines come before those of the study; version 9.22 writes no time.
     told = [line.split(":")[0] for line in lines[begin + 1 : end] if not line.startswith("Elapsed time:")]
     told.remove("the figures of the paper are in results/tiny/figures")
     assert told == [*progress, "Complete log(s)"]
@@ -147,7 +147,7 @@ def test_failed_jobs_are_named_with_their_logs(copy):
     assert lines[end + 2] == "made: nothing"
     remake = rf"this command recreates the bad files and continues: snakemake -c2 .* -R {path}"
     assert re.fullmatch(remake, lines[end + 3])
-    # It was told when it happened as well, in the same line and without Snakemake's block of all input files.
+    # The same line was written when the job failed, without Snakemake's block of all input files.
     assert lines.count(told) == 2
     assert "Error in rule" not in run.stderr
 
@@ -156,7 +156,7 @@ def test_no_defect_of_the_last_lines_fails_a_run(copy):
     summary = copy.folder / "results" / "tiny" / "summary" / "mean_distance.nc"
     times = summary.stat()
     summary.write_text("damaged")
-    # As old as it was: what depends on it is not made again.
+    # With its old modification time nothing that depends on it is recomputed.
     os.utime(summary, ns=(times.st_atime_ns, times.st_mtime_ns))
     output = copy.ok("summary", "figures", "-R", "figure_equilibrium", "--rerun-triggers", "params")
     assert "study tiny: done in" in output

@@ -30,7 +30,7 @@ def test_the_critical_values_are_proved(finished):
 
 
 def test_it_depends_on_the_model_alone(copy):
-    """Not on the grid or on the runs; other laws are none of its."""
+    """It depends neither on the grid nor on the runs nor on other laws."""
     assert "Nothing to be done" in copy.ok("proof", "-n")
     copy.config.write_text(TINY.replace("a: [0.05, 0.08", "a: [0.06, 0.08").replace("window: 200", "window: 300"))
     assert "Nothing to be done" in copy.ok("proof", "-n")

@@ -1,4 +1,4 @@
-"""What an edit makes out of date, as Snakemake plans it: what `jobs` tells, which tests/jobs try key by key."""
+"""What an edit makes out of date in Snakemake's plan: the same as in `jobs`, which tests/jobs check key by key."""
 
 import contextlib
 import subprocess
@@ -27,12 +27,12 @@ def planned(study, *roots):
 
 @pytest.fixture(scope="module")
 def studied(finished, tmp_path_factory):
-    """The finished study with a copy of the tree that is to be edited and mended again."""
+    """The finished study with a copy of the tree, which tests edit and restore."""
     folder = tmp_path_factory.mktemp("studied")
     for name in ("Snakefile", "profiles", "config", "src", "workflow", "pyproject.toml", "Makefile"):
         subprocess.run(["cp", "-a", str(REPOSITORY / name), str(folder)], check=True)
     study = copied(finished.folder, folder / "study", folder)
-    # Neither where the sources lie nor where the results do makes a difference.
+    # The folders of the sources and of the results do not matter.
     assert jobs(study.ok("-n", "-p")) == {}
     return study
 

@@ -1,4 +1,4 @@
-"""A study of several parameters through the real Snakefile: a job for each stretch, and a file for each point."""
+"""A study of several parameters through the real Snakefile: a job for each chunk, and a file for each point."""
 
 import os
 import signal
@@ -52,6 +52,8 @@ def times(study):
 
 def test_the_whole_study_is_made_and_read(plane):
     assert "points: all 8 completed" in plane.output
+    # Its figures over the parameters are not those of the paper.
+    assert "paper" not in plane.output
     results = plane.folder / RESULTS
     assert {path.stem for path in (results / "figures").glob("grid_*.png")} == {
         "grid_distance",

@@ -88,7 +88,7 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
         yield "exponents", "none"
     yield "events", f"{point['event_count'].item()} stops and starts in the whole run"
     yield (
-        "least",
+        "minimum",
         f"friction Phi of a slipping block {run['least_friction']:.4g}, spring force on a stuck block "
         f"{run['least_spring_force']:.4g}",
     )
