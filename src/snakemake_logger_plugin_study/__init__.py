@@ -22,7 +22,7 @@ from burridge_knopoff.study.job_log import failure, failure_reason, interrupted
 from burridge_knopoff.study.yaml_file import ConfigError
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.display import Lines, Picture, dry_run_lines, first_figures_line, first_line
-from snakemake_logger_plugin_study.durations import measured
+from snakemake_logger_plugin_study.durations import measured_seconds
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import (
     cores_of_command_line,
@@ -136,7 +136,7 @@ class LogHandler(LogHandlerBase):
                 job.output, job.log = record.output, record.log or []
                 job.state = RUNNING
             case LogEvent.JOB_FINISHED if done := self._run.jobs.get(record.job_id):
-                done.seconds, done.state = measured(done.benchmark, done.threads), DONE
+                done.seconds, done.state = measured_seconds(done.benchmark, done.threads), DONE
                 if done.name in PLAN.first and (line := first_figures_line(self._run, PLAN.first)):
                     self._write(line)
             case LogEvent.JOB_ERROR if failed := self._run.jobs.get(record.jobid):

@@ -53,7 +53,7 @@ def dry_run_lines(run: Run) -> list[str]:
     head = "stage", "jobs", "CPU time"
     rows = [head, *((stage.name, str(stage.jobs), format_estimate(stage.work)) for stage in (*stages, total))]
     name_width, count_width = (max(len(row[column]) for row in rows) for column in (0, 1))
-    size = sum(run.durations.shipped(job.rule)[1] for job in run.jobs.values())
+    size = sum(run.durations.shipped_cost(job.rule)[1] for job in run.jobs.values())
     disk = f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{max(round(size / 1e6), 1)} MB"
     return [
         *(f"{name:{name_width}}  {count:>{count_width}}  {cpu}" for name, count, cpu in rows),
@@ -132,7 +132,7 @@ class Picture:
         # The terminal wraps long lines, so that a command in a message can be copied.
         self._console = Console(file=text.stream, no_color=text.nocolor, highlight=False, soft_wrap=True)
         self._live = Live(
-            get_renderable=self.drawn,
+            get_renderable=self.picture,
             console=self._console,
             refresh_per_second=2,
             transient=True,
@@ -142,7 +142,7 @@ class Picture:
         self._live.start()
         text.setStream(FileProxy(self._console, text.stream))
 
-    def drawn(self) -> Group:
+    def picture(self) -> Group:
         """Return the current picture: stages, all jobs with the time left, and the jobs that have run for long."""
         now, table = time.monotonic(), Table.grid(padding=(0, 1))
         stages = self._run.stages(now)

@@ -23,12 +23,12 @@ SHIPPED: dict[str, list[list[float]]] = json.loads(FILE.read_text(encoding="utf-
 _OTHERS = [[median(column) for column in zip(*(rows[0] for rows in SHIPPED.values()), strict=True)]]
 
 
-def measured(benchmark: str | Path, threads: int) -> float | None:
+def measured_seconds(benchmark: str | Path, threads: int) -> float | None:
     """Return the duration of a job in seconds, times its threads, from its benchmark file; None if it has none."""
     return next((wall * threads for wall, *_ in job_costs(Path(benchmark))), None)
 
 
-def shipped(rule: str, work: float) -> tuple[float, float]:
+def shipped_cost(rule: str, work: float) -> tuple[float, float]:
     """Return the shipped CPU time of a job in seconds and its bytes, interpolated linearly between its two rows."""
     first, *more = SHIPPED.get(rule, _OTHERS)
     last = more[0] if more else first
@@ -48,9 +48,9 @@ class Durations:
     work: Mapping[str, float] = field(default_factory=dict)
     last: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
-    def shipped(self, rule: str) -> tuple[float, float]:
+    def shipped_cost(self, rule: str) -> tuple[float, float]:
         """Return the shipped CPU time in seconds, and the bytes, of a job of this study."""
-        return shipped(rule, self.work.get(rule, self.work.get("all points", 0.0)))
+        return shipped_cost(rule, self.work.get(rule, self.work.get("all points", 0.0)))
 
     def expected(self, rules: Collection[str], finished: Mapping[str, Sequence[float]]) -> dict[str, float]:
         """Return {rule: expected seconds of a job, times its threads}.
@@ -60,8 +60,8 @@ class Durations:
         known = {**self.last, **finished}
         taken = sum(map(sum, known.values()))
         # The ratio of durations on this machine to the shipped ones.
-        ratio = taken / sum(len(jobs) * self.shipped(rule)[0] for rule, jobs in known.items()) if known else 1.0
-        return {rule: fmean(known[rule]) if rule in known else ratio * self.shipped(rule)[0] for rule in rules}
+        ratio = taken / sum(len(jobs) * self.shipped_cost(rule)[0] for rule, jobs in known.items()) if known else 1.0
+        return {rule: fmean(known[rule]) if rule in known else ratio * self.shipped_cost(rule)[0] for rule in rules}
 
 
 def work_of(jobs: Jobs) -> dict[str, float]:

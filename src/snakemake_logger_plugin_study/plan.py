@@ -10,7 +10,7 @@ from typing import Any
 from snakemake.logging import logger
 
 from burridge_knopoff.jobs.jobs import Jobs
-from snakemake_logger_plugin_study.durations import Durations, measured, work_of
+from snakemake_logger_plugin_study.durations import Durations, measured_seconds, work_of
 from snakemake_logger_plugin_study.run import Job, Run
 
 
@@ -50,7 +50,7 @@ class Plan:
         """Return {rule: seconds of each of its jobs in the last run, times their threads}."""
         last = defaultdict(list)
         for job in self.workflow.dag.jobs:
-            if job.benchmark and (seconds := measured(job.benchmark, int(job.threads))) is not None:
+            if job.benchmark and (seconds := measured_seconds(job.benchmark, int(job.threads))) is not None:
                 last[job.rule.name].append(seconds)
         return last
 

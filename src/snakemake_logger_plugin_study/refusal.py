@@ -25,6 +25,8 @@ _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
 _REPLACEMENTS = (
     # Written with every few jobs.
     (re.compile(r"\ASelect jobs to execute"), ""),
+    # The closing lines have the time of the run, without that of planning it.
+    (re.compile(r"\AElapsed time: "), ""),
     # A dry run ends with a table of its stages instead.
     (
         re.compile(r"\A(Reasons:\n|This was a dry-run |Some jobs were triggered by provenance |Rules with provenance)"),

@@ -50,7 +50,7 @@ def test_labels_are_those_of_whole_runs():
         ({"first_position": (1.0, 1.0)}, "first_position"),
         ({"window": 0.0}, "window: 0.0"),
         ({"windows": 10.0}, "windows: not a setting"),
-        ({"law": Model(Chain(3), law_of("linearized", 0.08))}, "beside a model"),
+        ({"law": Model(Chain(3), law_of("linearized", 0.08))}, "together with a model"),
         ({"chain": Chain(4)}, "initial state 'minus'"),
         ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "one_sided"),
     ],

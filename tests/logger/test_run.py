@@ -3,7 +3,7 @@
 import pytest
 
 from snakemake_logger_plugin_study import durations
-from snakemake_logger_plugin_study.durations import SHIPPED, Durations, measured, shipped
+from snakemake_logger_plugin_study.durations import SHIPPED, Durations, measured_seconds, shipped_cost
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
 
 ROWS = {"short": [[1.0, 1.0, 100.0]], "long": [[1.0, 10.0, 50.0], [3.0, 30.0, 150.0]]}
@@ -68,10 +68,10 @@ def test_finished_jobs_give_the_speed_of_the_machine():
 
 
 def test_the_tree_ships_durations_on_a_line():
-    assert [shipped("long", work)[0] for work in (0.0, 1.0, 2.0, 3.0, 9.0)] == [10.0, 10.0, 20.0, 30.0, 90.0]
-    assert shipped("long", 2.0)[1] == 100.0
-    assert shipped("short", 0.0) == shipped("short", 9.0) == (1.0, 100.0)
-    assert shipped("unknown", 1.0)[0] > 0.0
+    assert [shipped_cost("long", work)[0] for work in (0.0, 1.0, 2.0, 3.0, 9.0)] == [10.0, 10.0, 20.0, 30.0, 90.0]
+    assert shipped_cost("long", 2.0)[1] == 100.0
+    assert shipped_cost("short", 0.0) == shipped_cost("short", 9.0) == (1.0, 100.0)
+    assert shipped_cost("unknown", 1.0)[0] > 0.0
     assert run(job("long"), work=2.0).forecast(0.0) == 20.0
 
 
@@ -122,11 +122,11 @@ def test_a_job_that_was_not_planned_is_added():
 
 def test_a_benchmark_file_holds_the_seconds_of_all_threads(tmp_path):
     path = tmp_path / "x.tsv"
-    assert measured(path, 2) is None
+    assert measured_seconds(path, 2) is None
     path.write_text("s\th:m:s\tcpu_time\n2.5000\t0:00:02\tNA\n")
-    assert measured(path, 2) == 5.0
+    assert measured_seconds(path, 2) == 5.0
     path.write_text("s\n")
-    assert measured(path, 2) is None
+    assert measured_seconds(path, 2) is None
 
 
 def test_what_the_tree_ships():

@@ -9,7 +9,7 @@ from burridge_knopoff.dataset.variables import flag
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.running.status import ENDS, Status
 from burridge_knopoff.show.digests import NO_EVENT, catalogue, lyapunov, mean_distance, slip_events, values_where
-from burridge_knopoff.show.formatting import table, wrapped
+from burridge_knopoff.show.formatting import table, wrap_lines
 
 A = np.array([0.0, 0.05, 0.1, 0.15])
 
@@ -76,6 +76,6 @@ def test_a_table_is_wrapped_to_a_width():
 
 
 def test_a_line_is_wrapped_and_no_word_is_broken():
-    assert wrapped(["a line", "  a longer line", "unbreakable-word"], 10) == [
+    assert wrap_lines(["a line", "  a longer line", "unbreakable-word"], 10) == [
         *("a line", "  a longer", "    line", "unbreakable-word")
     ]

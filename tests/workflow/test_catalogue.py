@@ -179,7 +179,7 @@ def test_a_catalogue_whose_run_diverged_is_a_failure(tmp_path, capsys):
     said = study.ok()
     summary = "results/runaway/summary/catalogue.nc"
     assert f"catalogues: 1 of 2 did not complete: diverged 1 (status in {summary})\n" in said
-    assert f"catalogues: 1 of 2 without events (event_count in {summary})\n" in said
+    assert "no slip event" not in said
     results = study.folder / "results/runaway"
     assert main(["check", str(results)]) == 3
     path = results / "catalogues/linearized/a1.9000.nc"

@@ -1,4 +1,4 @@
-"""Damaged and foreign files: the stage that reads one stops with its name, the reason and the command that recreates it."""
+"""Damaged and foreign files: the job that reads one stops with its name, the reason and the command to recreate it."""
 
 import hashlib
 import os

@@ -22,7 +22,7 @@ def abouts(rule):
     return of_job
 
 
-def shown_in_report(path, shown):
+def mark_for_report(path, shown):
     """Return a file, marked for `snakemake --report` if that shows it."""
     if shown is None:
         return path

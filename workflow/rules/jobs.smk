@@ -14,7 +14,7 @@ for declared in JOBS.defined.values():
             **({"points": points_of(declared)} if declared.points else {}),
         output:
             [
-                shown_in_report(f"{RESULTS}/{form}", declared.shown.get(form))
+                mark_for_report(f"{RESULTS}/{form}", declared.shown.get(form))
                 for form in declared.files
             ],
         log:

@@ -21,7 +21,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print a description of a file, and draw it."""
-    from burridge_knopoff.show.formatting import terminal_width, wrapped
+    from burridge_knopoff.show.formatting import terminal_width, wrap_lines
     from burridge_knopoff.show.result import open_result
 
     if options.plot is not None:
@@ -36,5 +36,5 @@ def run(options: argparse.Namespace) -> int:
     width = terminal_width()
     print("\n".join(lines_of(result, width)))
     if options.plot is not None:
-        print("\n".join(["", *wrapped([write_picture(result, options.plot)], width)]))
+        print("\n".join(["", *wrap_lines([write_picture(result, options.plot)], width)]))
     return 0

@@ -26,12 +26,12 @@ def terminal_width() -> int:
     return shutil.get_terminal_size((UNLIMITED, 24)).columns
 
 
-def wrapped(lines: Iterable[str], width: int) -> list[str]:
+def wrap_lines(lines: Iterable[str], width: int) -> list[str]:
     """Return lines of at most a width; continuation lines are indented, and no word is broken."""
-    return [part for line in lines for part in _parts(line, width, indent="    ")]
+    return [part for line in lines for part in _wrap(line, width, indent="    ")]
 
 
-def _parts(line: str, width: int, *, indent: str = "") -> list[str]:
+def _wrap(line: str, width: int, *, indent: str = "") -> list[str]:
     if len(line) <= width:
         return [line]
     return wrap(line, width, subsequent_indent=indent, break_long_words=False, break_on_hyphens=False)
@@ -54,7 +54,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], width: int = UNLIM
         widths[widths.index(widest)] -= 1
     lines = []
     for row in cells:
-        columns = [_parts(cell, column) for cell, column in zip(row, widths, strict=True)]
+        columns = [_wrap(cell, column) for cell, column in zip(row, widths, strict=True)]
         for parts in zip_longest(*columns, fillvalue=""):
             lines.append("  ".join(part.ljust(column) for part, column in zip(parts, widths, strict=True)).rstrip())
     return lines

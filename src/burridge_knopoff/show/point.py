@@ -13,7 +13,7 @@ from burridge_knopoff.motion.kind import motion_of_run, words_of
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.show.formatting import UNLIMITED, list_numbers, table, wrapped
+from burridge_knopoff.show.formatting import UNLIMITED, list_numbers, table, wrap_lines
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.study.formatting import counted, plain, with_error
 
@@ -30,11 +30,11 @@ def point_lines(result: Result, width: int = UNLIMITED) -> list[str]:
         ("", ""),
         *_contents(point),
         ("", ""),
-        ("made by", result.made_by),
+        ("made by", result.origin),
     ]
     # The command is not wrapped, so that it can be copied.
     command = f"reproduce with: {attributes['history']} --out FILE"
-    return [*wrapped([head], width), "", *table((), rows, width), "", command]
+    return [*wrap_lines([head], width), "", *table((), rows, width), "", command]
 
 
 def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:

@@ -1,4 +1,4 @@
-"""Opening a file of results, whether point or summary."""
+"""Result files: points and summaries, with the study to which they belong."""
 
 from __future__ import annotations
 
@@ -72,7 +72,7 @@ class Result:
         return MotionSettings(**config["motion"], **others)
 
     @property
-    def made_by(self) -> str:
+    def origin(self) -> str:
         """The software and the sources that made the file, and whether the sources have changed since, in a line."""
         attributes = self.data.attrs
         words = f"{attributes['software']}, {attributes['source_module']} {attributes['source_fingerprint']}"

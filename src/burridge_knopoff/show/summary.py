@@ -13,7 +13,7 @@ import xarray
 from burridge_knopoff.provenance.sources import PACKAGE
 from burridge_knopoff.show.attractors import attractor_table
 from burridge_knopoff.show.digests import DIGESTS
-from burridge_knopoff.show.formatting import UNLIMITED, describe_values, table, wrapped
+from burridge_knopoff.show.formatting import UNLIMITED, describe_values, table, wrap_lines
 from burridge_knopoff.show.result import Result
 
 #: Global attributes that the page shows elsewhere, or that are the same in all files.
@@ -35,15 +35,19 @@ def summary_lines(result: Result, width: int = UNLIMITED) -> list[str]:
     It has the question that the summary answers, its dimensions, its digest if there is one, and its variables.
     """
     data = result.data
-    lines = wrapped([f"{result.path}: {data.attrs.get('title', result.name)}", *_question(result)], width)
+    lines = wrap_lines([f"{result.path}: {data.attrs.get('title', result.name)}", *_question(result)], width)
     lines += ["", "dimensions", *table((), [(f"  {name}", text) for name, text in _dimensions(data)], width), ""]
     if text := digest(result):
-        lines += [*wrapped(text.rstrip().splitlines(), width), ""]
+        lines += [*wrap_lines(text.rstrip().splitlines(), width), ""]
     lines += ["variables", *table((), [_described(data[name]) for name in data.data_vars], width), ""]
     if settings := [(f"  {key}", _text(value)) for key, value in data.attrs.items() if key not in _ELSEWHERE]:
         lines += ["settings", *table((), settings, width), ""]
     # The history may be a command, which is not wrapped, so that it can be copied.
-    return [*lines, *wrapped([f"made by {result.made_by}"], width), f"history: {data.attrs.get('history', 'unknown')}"]
+    return [
+        *lines,
+        *wrap_lines([f"made by {result.origin}"], width),
+        f"history: {data.attrs.get('history', 'unknown')}",
+    ]
 
 
 def _described(variable: xarray.DataArray) -> tuple[str, str, str]:
