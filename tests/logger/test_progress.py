@@ -313,13 +313,14 @@ def test_a_defect_of_the_display_hides_no_message(written, monkeypatch):
 
 def test_snakemake_has_the_messages_that_are_replaced():
     """Its own words: here it shows that a version has changed them."""
-    from snakemake import exceptions, workflow
+    from snakemake import exceptions
+    from snakemake.api import Workflow
     from snakemake.scheduling import job_scheduler
 
     assert replacement("Select jobs to execute...") == ""
     assert '"Select jobs to execute..."' in getsource(job_scheduler)
     assert replacement("Elapsed time: 0:07:00.875591") == ""
-    assert "Elapsed time: " in getsource(workflow)
+    assert "Elapsed time: " in getsource(Workflow)
     missing = exceptions.MissingRuleException("x.nc")
     assert replacement(exceptions.format_exception_to_string(missing)) == (
         "x.nc: unknown target (misspelt, or part of a stage disabled by `without`)"
