@@ -26,7 +26,7 @@ include: "workflow/rules/jobs.smk"
 
 
 rule all:
-    """Make the whole study: all points, summaries and figures, and the report."""
+    """Compute the whole study: all points, summaries and figures, and the report."""
     default_target: True
     input:
         rules.points.input,

@@ -1,9 +1,9 @@
-"""The last words of a run: what was made, where, how long it took, what it says, and what failed."""
+"""The closing lines of a run: what it made, where, how long it took, its main results, and what failed."""
 
 from __future__ import annotations
 
 import json
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -12,12 +12,12 @@ import numpy as np
 from burridge_knopoff.claims.formats import untestable
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, READING
 from burridge_knopoff.study.formatting import format_count
-from burridge_knopoff.study.job_log import failure_line, is_interrupted, remedies
-from snakemake_logger_plugin_study.display import elapsed
-from snakemake_logger_plugin_study.run import DONE, FAILED, Run
+from burridge_knopoff.study.job_log import SILENT, failure_line, failure_reason, is_interrupted, remedies
+from snakemake_logger_plugin_study.display import format_elapsed
+from snakemake_logger_plugin_study.run import DONE, FAILED, Job, Run
 
-#: Names in a line, failed jobs with a line each, and files that are named one by one, at most.
-MOST_NAMES, MOST_FAILED, FEW_FILES = 8, 10, 3
+#: Largest numbers of names in a line, of lines about failures, and of files that are named one by one.
+MOST_NAMES, MOST_FAILURES, FEW_FILES = 8, 10, 3
 
 
 def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[str]:
@@ -25,22 +25,20 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
 
     stopped : whether Snakemake ended with an error, as after a signal that came when the last job was done
     """
-    results, ended, done = Path(run.results), run.of(FAILED), run.of(DONE)
+    results, ended, done = Path(run.results), run.jobs_in(FAILED), run.jobs_in(DONE)
     missed = len(run.jobs) - len(ended) - len(done)
     failed = [job for job in ended if not is_interrupted(job.log, stopping=run.stopping)]
-    made = _made(results, [path for job in done for path in job.output])
+    made = _made_files(results, [path for job in done for path in job.output])
     if ended or missed or stopped:
         counts = ((len(failed), "failed"), (len(ended) - len(failed), "interrupted"), (missed, "did not run"))
         reasons = ", ".join(f"{format_count(count, 'job')} {what}" for count, what in counts if count)
-        told = sorted((job.name, job.log) for job in failed)
         return [
-            f"study {results.name}: stopped after {elapsed(seconds)}: {reasons or 'not at its end'}",
-            *(failure_line(*job) for job in told[:MOST_FAILED]),
-            *([f"failed: and {len(told) - MOST_FAILED} more"] if len(told) > MOST_FAILED else []),
+            f"study {results.name}: stopped after {format_elapsed(seconds)}: {reasons or 'before its end'}",
+            *_failures(failed),
             made,
-            *(_continuing(remedies(path for job in failed for path in job.log))),
+            *_remedies(failed),
         ]
-    lines = [f"study {results.name}: done in {elapsed(seconds)}", made]
+    lines = [f"study {results.name}: done in {format_elapsed(seconds)} {run.capacity}", made]
     # Older summaries say nothing about the run.
     for rule, (name, read) in _READERS.items():
         if rule in run.wanted:
@@ -51,14 +49,28 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
     return lines
 
 
-def _continuing(remedies: Sequence[str]) -> list[str]:
-    """Return how to continue: the command of the run would stop at the same bad files again."""
-    if not remedies:
-        return ["the same command goes on where this run stopped"]
-    return [f"this command recreates the bad files and continues: {command}" for command in remedies]
+def _failures(failed: Sequence[Job]) -> list[str]:
+    """Return a line for each reason why jobs failed, with the first of these jobs and its log."""
+    alike: dict[str, list[Job]] = defaultdict(list)
+    for job in sorted(failed, key=lambda job: job.name):
+        alike[failure_reason(job.log)].append(job)
+    lines = []
+    for first, *others in list(alike.values())[:MOST_FAILURES]:
+        lines.append(failure_line(f"{first.name}{f' and {len(others)} more' if others else ''}", first.log))
+    more = len(alike) - MOST_FAILURES
+    return [*lines, f"failed: for {more} more reasons"] if more > 0 else lines
 
 
-def _made(results: Path, made: Sequence[str]) -> str:
+def _remedies(failed: Sequence[Job]) -> list[str]:
+    """Return how to continue; the command of the run helps only if it would not fail again."""
+    if commands := remedies(path for job in failed for path in job.log):
+        return [f"this command recreates the bad files and continues: {command}" for command in commands]
+    if all(failure_reason(job.log) == SILENT for job in failed):
+        return ["Run the same command again to continue."]
+    return ["Finished results are kept; the same command would fail again until the cause is removed."]
+
+
+def _made_files(results: Path, made: Sequence[str]) -> str:
     if len(made) <= FEW_FILES:
         return f"made: {', '.join(made) or 'nothing'}"
     inside = [Path(path).relative_to(results).parts for path in made if Path(path).is_relative_to(results)]
@@ -67,14 +79,14 @@ def _made(results: Path, made: Sequence[str]) -> str:
     return f"files made in {results}: {', '.join([*(f'{name} {count}' for name, count in folders.items()), *names])}"
 
 
-def _claims(path: Path) -> list[str]:
+def _verdicts(path: Path) -> list[str]:
     read = json.loads(path.read_text(encoding="utf-8"))
     ledger, reasons = path.with_suffix(".md"), untestable(read["claims"])
     if list(reasons.values()) == [read["claims"]]:
-        return [f"claims of the paper: none is judged ({ledger})", f"  {next(iter(reasons))}"]
+        return [f"no claim of the paper could be tested ({ledger})", f"  {next(iter(reasons))}"]
     independent = read["independent_counts"]
     counts = ", ".join(f"{verdict} {count}" for verdict, count in independent.items())
-    lines = [f"claims of the paper, {sum(independent.values())} independent ones: {counts} ({ledger})"]
+    lines = [f"{sum(independent.values())} independent claims of the paper: {counts} ({ledger})"]
     for verdict in (FAILS, CONVENTION, READING):
         names = [claim["name"] for claim in read["claims"] if claim["verdict"] == verdict]
         more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
@@ -82,7 +94,7 @@ def _claims(path: Path) -> list[str]:
     return lines
 
 
-def _flags(path: Path, name: str) -> Counter[str]:
+def _flag_counts(path: Path, name: str) -> Counter[str]:
     """Return how often each meaning of a flag variable occurs."""
     import netCDF4
 
@@ -93,8 +105,8 @@ def _flags(path: Path, name: str) -> Counter[str]:
         return Counter(meanings[value] for value in variable[:].flat)
 
 
-def _incomplete(path: Path, what: str = "points") -> list[str]:
-    counts = _flags(path, "status")
+def _completion(path: Path, what: str = "points") -> list[str]:
+    counts = _flag_counts(path, "status")
     total, completed = counts.total(), counts.pop("completed", 0)
     reasons = ", ".join(f"{name} {count}" for name, count in sorted(counts.items()))
     words = f"{total - completed} of {total} did not complete: {reasons} (status in {path})"
@@ -102,26 +114,26 @@ def _incomplete(path: Path, what: str = "points") -> list[str]:
 
 
 def _catalogues(path: Path) -> list[str]:
-    import netCDF4
+    import xarray
 
-    with netCDF4.Dataset(path) as dataset:
-        count = np.asarray(dataset["event_count"][:])
-    empty = int((count == 0).sum())
-    words = f"catalogues: {empty} of {count.size} without events (event_count in {path})"
-    return [*_incomplete(path, "catalogues"), *([words] if empty else [])]
+    from burridge_knopoff.show.digests import catalogue
+
+    with xarray.open_dataset(path) as summary:
+        words = catalogue(summary)
+    return [*_completion(path, "catalogues"), *([f"catalogues: {words} (event_count in {path})"] if words else [])]
 
 
 def _undetermined(path: Path, kind: str = "kind") -> list[str]:
-    counts = _flags(path, kind)
-    said = f"kind of motion undetermined at {counts['undetermined']} of {counts.total()} ({kind} in {path})"
-    return [f"points: {said}"] if counts["undetermined"] else []
+    counts = _flag_counts(path, kind)
+    count = counts["undetermined"]
+    return [f"points: kind of motion undetermined at {count} of {counts.total()} ({kind} in {path})"] if count else []
 
 
-#: {rule: (its file below results, the lines about it)}
+#: {rule: (its file in the results, function that returns the lines about it)}
 _READERS: dict[str, tuple[str, Callable[[Path], list[str]]]] = {
-    "claims": ("summary/claims.json", _claims),
-    "mean_distance": ("summary/mean_distance.nc", _incomplete),
-    "grid": ("summary/grid.nc", lambda path: [*_incomplete(path), *_undetermined(path, "run_kind")]),
+    "claims": ("summary/claims.json", _verdicts),
+    "mean_distance": ("summary/mean_distance.nc", _completion),
+    "grid": ("summary/grid.nc", lambda path: [*_completion(path), *_undetermined(path, "run_kind")]),
     "agreement": ("summary/agreement.nc", _undetermined),
     "catalogue": ("summary/catalogue.nc", _catalogues),
     "report": ("report.html", lambda path: [f"report: {path}"]),

@@ -1,4 +1,4 @@
-"""What shows a run while it runs: a picture on a terminal, elsewhere a line now and then; and its words."""
+"""The display of a run: stages at the bottom of a terminal, or a line from time to time; and the text of both."""
 
 from __future__ import annotations
 
@@ -18,16 +18,17 @@ from rich.text import Text
 from burridge_knopoff.study.formatting import format_count
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Run
 
-#: Seconds between two lines at least, and after which there is one even if no such share of all jobs was done.
+#: Least time in seconds between two lines; time after which a line is due in any case; share of the run after which one
+#: is due.
 SHORTEST, LONGEST, STEP = 10.0, 60.0, 0.05
-#: Seconds after which a job is named in the picture, and how many are at most.
+#: Seconds after which the picture names a running job, and the largest number of jobs that it names.
 LONG_JOB, LONG_JOBS = 5.0, 4
-#: Columns of a bar, and of a terminal too narrow for bars.
+#: Width of a bar, and of a terminal without room for bars.
 BAR_WIDTH, NARROW = 30, 64
 
 
-def about(seconds: float) -> str:
-    """Return a duration no more precise than an estimate is: a few seconds, about 40 s, about 3 min, about 2.5 h."""
+def format_estimate(seconds: float) -> str:
+    """Return an estimated duration: a few seconds, about 40 s, about 3 min, about 2.5 h."""
     if seconds < 10:
         return "a few seconds"
     if seconds < 55:
@@ -37,8 +38,8 @@ def about(seconds: float) -> str:
     return f"about {seconds / 3600:.1f} h"
 
 
-def elapsed(seconds: float) -> str:
-    """Return a duration as 12 s, 5 min 12 s or 2 h 5 min."""
+def format_elapsed(seconds: float) -> str:
+    """Return a measured duration: 12 s, 5 min 12 s or 2 h 5 min."""
     minutes, rest = divmod(round(seconds), 60)
     hours, minutes = divmod(minutes, 60)
     if hours:
@@ -46,38 +47,45 @@ def elapsed(seconds: float) -> str:
     return f"{minutes} min {rest} s" if minutes else f"{rest} s"
 
 
-def cost(run: Run) -> str:
-    """Return in a line what a run would cost that has not begun."""
-    expected, jobs = run.expected(), run.jobs.values()
-    cpu, size = sum(expected[job.rule] for job in jobs), sum(run.durations.shipped(job.rule)[1] for job in jobs)
+def dry_run_lines(run: Run) -> list[str]:
+    """Return the jobs of a planned run by stage as a table, and the time and the disk space that it takes."""
+    *stages, total = run.stages(0.0)
+    head = "stage", "jobs", "CPU time"
+    rows = [head, *((stage.name, str(stage.jobs), format_estimate(stage.work)) for stage in (*stages, total))]
+    name_width, count_width = (max(len(row[column]) for row in rows) for column in (0, 1))
+    size = sum(run.durations.shipped_cost(job.rule)[1] for job in run.jobs.values())
     disk = f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{max(round(size / 1e6), 1)} MB"
-    cores = format_count(int(run.cores), "core")
-    return f"a run takes {about(run.forecast(0.0))} on {cores}: {about(cpu)} of CPU time, and {disk} of disk"
+    return [
+        *(f"{name:{name_width}}  {count:>{count_width}}  {cpu}" for name, count, cpu in rows),
+        f"a run takes {format_estimate(run.forecast(0.0))} {run.capacity} and {disk} of disk space "
+        "(snakemake -n -p lists the jobs)",
+    ]
 
 
-def beginning(run: Run, now: float) -> str:
-    """Return what a run says first: its jobs, and the time that they take."""
-    *stages, (_, jobs) = run.counts()
-    words = ", ".join(f"{stage} {states.total()}" for stage, states in stages)
-    return f"{format_count(jobs.total(), 'job')}: {words}; {outlook(run, now)}"
+def first_line(run: Run, now: float) -> str:
+    """Return the first line of a run: its jobs by stage, and the time that it takes."""
+    *stages, total = run.stages(now)
+    words = ", ".join(f"{stage.name} {stage.jobs}" for stage in stages)
+    return f"{format_count(total.jobs, 'job')}: {words}; {format_estimate(run.time_left(now))} {run.capacity}"
 
 
-def progress(run: Run, now: float) -> str:
-    """Return a line about a run: the stages at work, all jobs, and the outlook."""
-    *stages, (_, jobs) = run.counts()
-    words = [f"{stage} {states[DONE]} of {states.total()}" for stage, states in stages if states[RUNNING]]
-    percent = 100 * jobs[DONE] // jobs.total()
-    return ", ".join([*words, f"all {jobs[DONE]} of {jobs.total()} ({percent} %)", outlook(run, now)])
+def progress_line(run: Run, now: float) -> str:
+    """Return a line about a run: the running stages, the jobs done, the share of the time, and the outlook."""
+    *stages, total = run.stages(now)
+    words = [f"{stage.name} {stage.counts[DONE]} of {stage.jobs}" for stage in stages if stage.counts[RUNNING]]
+    jobs = ", ".join([*words, f"all {total.counts[DONE]} of {format_count(total.jobs, 'job')}"])
+    return f"{jobs}; {int(100 * total.share_done)} % done, {outlook(run, now)}"
 
 
 def outlook(run: Run, now: float) -> str:
-    """Return how many jobs failed, how many cannot run for that, and the time left."""
-    counts = ((len(run.of(FAILED)), "failed"), (len(run.blocked()), "cannot run"))
-    return ", ".join([*(f"{count} {what}" for count, what in counts if count), f"{about(run.time_left(now))} left"])
+    """Return the number of failed jobs, of jobs that therefore cannot run, and the time left."""
+    counts = ((len(run.jobs_in(FAILED)), "failed"), (len(run.blocked()), "cannot run"))
+    failures = [f"{count} {what}" for count, what in counts if count]
+    return ", ".join([*failures, f"{format_estimate(run.time_left(now))} left"])
 
 
-def first_figures(run: Run, rules: Sequence[str]) -> str:
-    """Return where the figures of some rules lie if all of them are made, and nothing if not."""
+def first_figures_line(run: Run, rules: Sequence[str]) -> str:
+    """Return where the figures of some rules are once all of them are drawn, and an empty text before."""
     jobs = [job for job in run.jobs.values() if job.name in rules]
     if any(job.state != DONE for job in jobs):
         return ""
@@ -86,46 +94,45 @@ def first_figures(run: Run, rules: Sequence[str]) -> str:
 
 
 class Lines(threading.Thread):
-    """Says progress lines from a thread of its own, as long jobs leave nothing in the log."""
+    """Writes progress lines from its own thread, since long jobs leave nothing in the log."""
 
-    def __init__(self, run: Run, say: Callable[[str], None]) -> None:
+    def __init__(self, run: Run, write: Callable[[str], None]) -> None:
         super().__init__(daemon=True)
-        self._run, self._say = run, say
-        self._time, self._done = time.monotonic(), 0
+        self._run, self._write = run, write
+        self._time, self._share = time.monotonic(), 0.0
         self._closed = threading.Event()
         self.start()
 
     def run(self) -> None:
-        """Say a line whenever one is due."""
+        """Write a line whenever one is due."""
         while not self._closed.wait(1.0):
             if self.is_due(now := time.monotonic()):
-                self._say(progress(self._run, now))
+                self._write(progress_line(self._run, now))
 
     def is_due(self, now: float) -> bool:
-        """Tell whether it is time for a line, and reckon with it."""
-        _, jobs = self._run.counts()[-1]
-        done, waited = jobs[DONE], now - self._time
-        much = done - self._done >= STEP * jobs.total() or waited >= LONGEST
-        due = much and waited >= SHORTEST and done < jobs.total()
+        """Return whether a line is due, which then counts as written."""
+        total, waited = self._run.stages(now)[-1], now - self._time
+        has_advanced = total.share_done - self._share >= STEP or waited >= LONGEST
+        due = has_advanced and waited >= SHORTEST and total.counts[DONE] < total.jobs
         if due:
-            self._time, self._done = now, done
+            self._time, self._share = now, total.share_done
         return due
 
     def close(self) -> None:
-        """End the thread; no line comes after this."""
+        """End the thread; no line follows."""
         self._closed.set()
         self.join()
 
 
 class Picture:
-    """Draws a line for each stage at the bottom of a terminal; what a handler of the log writes scrolls by over it."""
+    """Draws a line for each stage at the bottom of a terminal; the output of the log handler scrolls above it."""
 
     def __init__(self, run: Run, text: Any) -> None:
         self._run, self._text, self._stream, self._begin = run, text, text.stream, time.monotonic()
-        # Long lines are left to the terminal: a command in a message can be copied.
+        # The terminal wraps long lines, so that a command in a message can be copied.
         self._console = Console(file=text.stream, no_color=text.nocolor, highlight=False, soft_wrap=True)
         self._live = Live(
-            get_renderable=self.drawn,
+            get_renderable=self.picture,
             console=self._console,
             refresh_per_second=2,
             transient=True,
@@ -135,24 +142,25 @@ class Picture:
         self._live.start()
         text.setStream(FileProxy(self._console, text.stream))
 
-    def drawn(self) -> Group:
-        """Return the picture of now: stages, all jobs with the time left, and the jobs that run long."""
-        now, table, counts = time.monotonic(), Table.grid(padding=(0, 1)), self._run.counts()
-        for stage, states in counts:
-            is_all = states is counts[-1][1]
-            at_work = f"{states[RUNNING]} running" if states[RUNNING] and not is_all else ""
-            words = stage, f"{states[DONE]} of {states.total()}", at_work
-            name, *cells = (Text(word, "bold" if at_work or is_all else "dim") for word in words)
-            bar = [ProgressBar(states.total(), states[DONE], BAR_WIDTH)] if self._console.width >= NARROW else []
+    def picture(self) -> Group:
+        """Return the current picture: stages, all jobs with the time left, and the jobs that have run for long."""
+        now, table = time.monotonic(), Table.grid(padding=(0, 1))
+        stages = self._run.stages(now)
+        for stage in stages:
+            is_all = stage is stages[-1]
+            running = f"{stage.counts[RUNNING]} running" if stage.counts[RUNNING] and not is_all else ""
+            words = stage.name, f"{stage.counts[DONE]} of {stage.jobs}", running
+            name, *cells = (Text(word, "bold" if running or is_all else "dim") for word in words)
+            bar = [ProgressBar(1.0, stage.share_done, BAR_WIDTH)] if self._console.width >= NARROW else []
             table.add_row(name, *bar, *cells)
         table.columns[-2].justify = "right"
-        so_far = f"{outlook(self._run, now)}, {elapsed(now - self._begin)} so far"
-        lines = [(so_far, "bold red" if self._run.of(FAILED) else "bold")]
-        running = sorted((job.begin, job.message or job.name) for job in self._run.of(RUNNING))[:LONG_JOBS]
-        lines += [(f"{job}: {elapsed(now - begin)}", "dim") for begin, job in running if now - begin > LONG_JOB]
+        so_far = f"{outlook(self._run, now)}, {format_elapsed(now - self._begin)} so far"
+        lines = [(so_far, "bold red" if self._run.jobs_in(FAILED) else "bold")]
+        jobs = sorted((job.begin, job.message or job.name) for job in self._run.jobs_in(RUNNING))[:LONG_JOBS]
+        lines += [(f"{job}: {format_elapsed(now - begin)}", "dim") for begin, job in jobs if now - begin > LONG_JOB]
         return Group(table, *(Text(*line, no_wrap=True, overflow="ellipsis") for line in lines))
 
     def close(self) -> None:
-        """Take the picture away and give the cursor back."""
+        """Remove the picture and restore the cursor."""
         self._live.stop()
         self._text.setStream(self._stream)

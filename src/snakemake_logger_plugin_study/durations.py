@@ -1,7 +1,7 @@
-"""How long jobs take: the mean over finished jobs of a rule, in this run or the last one, else what the tree ships.
+"""Durations of jobs: the mean of the finished jobs of a rule in this run or the last one, otherwise the shipped value.
 
-`durations.json`, made by `benchmarks/durations.py`, holds for each rule the CPU seconds and the bytes of a job in a
-small and in a large study.
+`durations.json`, written by `benchmarks/durations.py`, contains for each rule the CPU seconds and the bytes of a job in
+a small and in a large study.
 """
 
 from __future__ import annotations
@@ -17,19 +17,19 @@ from burridge_knopoff.report.stages import job_costs
 from burridge_knopoff.study.study import all_points
 
 FILE = Path(__file__).with_name("durations.json")
-#: {rule: rows of the work of a job, its CPU time in seconds and its size in bytes; one row or two, by work}
+#: {rule: one or two rows of the work of a job, its CPU time in seconds and its size in bytes, sorted by work}
 SHIPPED: dict[str, list[list[float]]] = json.loads(FILE.read_text(encoding="utf-8"))
-#: Of a rule that was never measured.
+#: The rows of a rule that was never measured.
 _OTHERS = [[median(column) for column in zip(*(rows[0] for rows in SHIPPED.values()), strict=True)]]
 
 
-def measured(benchmark: str | Path, threads: int) -> float | None:
-    """Return the seconds that a job took, times its threads, from its benchmark file; None if the file has none."""
+def measured_seconds(benchmark: str | Path, threads: int) -> float | None:
+    """Return the duration of a job in seconds, times its threads, from its benchmark file; None if it has none."""
     return next((wall * threads for wall, *_ in job_costs(Path(benchmark))), None)
 
 
-def shipped(rule: str, work: float) -> tuple[float, float]:
-    """Return the CPU time in seconds and the bytes that the tree ships for a job, on the line through its two rows."""
+def shipped_cost(rule: str, work: float) -> tuple[float, float]:
+    """Return the shipped CPU time of a job in seconds and its bytes, interpolated linearly between its two rows."""
     first, *more = SHIPPED.get(rule, _OTHERS)
     last = more[0] if more else first
     share = max(0.0, (work - first[0]) / (last[0] - first[0])) if more else 0.0
@@ -39,18 +39,18 @@ def shipped(rule: str, work: float) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Durations:
-    """How long the jobs of a study take.
+    """Durations of the jobs of a study.
 
-    work : {rule: what one of its jobs has to do}, see `work_of`
+    work : {rule: amount of work of one of its jobs}, see `work_of`
     last : {rule: seconds of each of its jobs in the last run, times their threads}
     """
 
     work: Mapping[str, float] = field(default_factory=dict)
     last: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
-    def shipped(self, rule: str) -> tuple[float, float]:
-        """Return the CPU time in seconds and the bytes that the tree ships for a job of this study."""
-        return shipped(rule, self.work.get(rule, self.work.get("all points", 0.0)))
+    def shipped_cost(self, rule: str) -> tuple[float, float]:
+        """Return the shipped CPU time in seconds, and the bytes, of a job of this study."""
+        return shipped_cost(rule, self.work.get(rule, self.work.get("all points", 0.0)))
 
     def expected(self, rules: Collection[str], finished: Mapping[str, Sequence[float]]) -> dict[str, float]:
         """Return {rule: expected seconds of a job, times its threads}.
@@ -59,12 +59,12 @@ class Durations:
         """
         known = {**self.last, **finished}
         taken = sum(map(sum, known.values()))
-        # How much slower this machine is than the one that the tree ships durations of.
-        ratio = taken / sum(len(jobs) * self.shipped(rule)[0] for rule, jobs in known.items()) if known else 1.0
-        return {rule: fmean(known[rule]) if rule in known else ratio * self.shipped(rule)[0] for rule in rules}
+        # The ratio of durations on this machine to the shipped ones.
+        ratio = taken / sum(len(jobs) * self.shipped_cost(rule)[0] for rule, jobs in known.items()) if known else 1.0
+        return {rule: fmean(known[rule]) if rule in known else ratio * self.shipped_cost(rule)[0] for rule in rules}
 
 
 def work_of(jobs: Jobs) -> dict[str, float]:
-    """Return {rule: what one of its jobs has to do}, in units of its own; other rules read, or draw, "all points"."""
+    """Return {rule: amount of work of one of its jobs}, each in its own unit; other rules read or draw "all points"."""
     work = {rule.name: rule.work for rule in jobs.rules.values() if rule.work}
     return {**work, "all points": len(all_points(jobs.study))}

@@ -1,4 +1,4 @@
-"""What Snakemake's log does not tell of a run: its jobs and what they need, their stages, where its results lie."""
+"""The plan of a run, which is not in Snakemake's log: its jobs, their dependencies and stages, its results folder."""
 
 from __future__ import annotations
 
@@ -10,17 +10,18 @@ from typing import Any
 from snakemake.logging import logger
 
 from burridge_knopoff.jobs.jobs import Jobs
-from snakemake_logger_plugin_study.durations import Durations, measured, work_of
+from snakemake_logger_plugin_study.durations import Durations, measured_seconds, work_of
 from snakemake_logger_plugin_study.run import Job, Run
 
 
 @dataclass
 class Plan:
-    """What the Snakefile says: of a study, whether it is to run or not, and of a run once it begins.
+    """The plan of a study, which the Snakefile fills in, and its run once it begins.
 
-    first : rules of the figures that a reader wants first
-    record : writes that the study was run with its config, also where nothing is to be done
-    workflow : Snakemake's own. No event tells which jobs need which: this is the one place that looks inside Snakemake.
+    first : rules of the figures that are announced as soon as they are drawn
+    record : records that the study was run with its config, even if there is nothing to do
+    workflow : Snakemake's own object. No event contains the dependencies of jobs: only this class reads Snakemake's
+        internals.
     """
 
     results: str = ""
@@ -31,15 +32,15 @@ class Plan:
     run: Run = field(default_factory=Run)
 
     def announce(self) -> None:
-        """Take note of a run that begins; a warning tells if Snakemake's inside is another one, and no time is told."""
+        """Plan the run that begins; if Snakemake's internals have changed, log a warning and plan nothing."""
         try:
             self.run = self.look_ahead()
         except Exception as error:
             self.run = Run(self.results)
-            logger.warning(f"the stages of this run, and its time, cannot be told: {error}")
+            logger.warning(f"the stages and the duration of this run cannot be determined: {error}")
 
     def look_ahead(self) -> Run:
-        """Return the run of the jobs that are to run, with what is known of their durations."""
+        """Return the run of the planned jobs, with their known durations."""
         if self.jobs is None:
             return Run()
         wanted = {job.rule.name for job in self.workflow.dag.jobs}
@@ -49,7 +50,7 @@ class Plan:
         """Return {rule: seconds of each of its jobs in the last run, times their threads}."""
         last = defaultdict(list)
         for job in self.workflow.dag.jobs:
-            if job.benchmark and (seconds := measured(job.benchmark, int(job.threads))) is not None:
+            if job.benchmark and (seconds := measured_seconds(job.benchmark, int(job.threads))) is not None:
                 last[job.rule.name].append(seconds)
         return last
 
@@ -72,5 +73,5 @@ class Plan:
         }
 
 
-#: The Snakefile and the display are in one process.
+#: Shared by the Snakefile and the display, which are in one process.
 PLAN = Plan()

@@ -1,4 +1,4 @@
-"""What Snakemake would answer with a traceback, in a block of lines or not at all is said in one line."""
+"""One-line errors where Snakemake would print a traceback, a block of lines or nothing."""
 
 from __future__ import annotations
 
@@ -18,16 +18,29 @@ from burridge_knopoff.provenance.files import check_folder, display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from burridge_knopoff.values import format_value
 
-#: What Snakemake takes for the name of a key.
+#: The names of keys that Snakemake accepts.
 _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
 
-#: Messages of Snakemake that no event and no field tells apart, and what is said instead.
-_REWORDED = (
-    # It comes with every few jobs.
+#: Messages of Snakemake without an event or a field that identifies them, and the text that replaces them.
+_REPLACEMENTS = (
+    # Written with every few jobs.
     (re.compile(r"\ASelect jobs to execute"), ""),
-    # The failed job itself is told of right after, with what its log says.
+    # The closing lines have the time of the run, without that of planning it.
+    (re.compile(r"\AElapsed time: "), ""),
+    # A dry run ends with a table of its stages instead.
+    (
+        re.compile(r"\A(Reasons:\n|This was a dry-run |Some jobs were triggered by provenance |Rules with provenance)"),
+        "",
+    ),
+    # The failed job is reported right after, with the reason from its log.
     (re.compile(r"\ARuleException:\s+CalledProcessError "), ""),
-    # What a function of a rule raised: one line made for people, among the wildcards and the lines of code.
+    # Written by --report for each file that is not made; the error that follows names one of them.
+    (re.compile(r"\AMissing metadata for file (?P<missing>.+?)\. Maybe metadata was deleted"), ""),
+    (
+        re.compile(r"^File (.+) marked for report but does not exist\.", re.MULTILINE),
+        r"--report: \1 is missing: run the study first, by the same command without --report",
+    ),
+    # The error that a function of a rule raised, one line among the wildcards and the lines of code.
     (re.compile(r"^ *ConfigError: (.+)$", re.MULTILINE), r"\1"),
     (
         re.compile(r"^No rule to produce (.+?) \(if you", re.MULTILINE),
@@ -36,17 +49,18 @@ _REWORDED = (
 )
 
 
-def reworded(message: str) -> str | None:
-    """Return what is said instead of a message of Snakemake, "" for nothing; None if it is said as it is."""
-    for pattern, words in _REWORDED:
-        if found := pattern.search(message):
-            return found.expand(words)
+def replacement(message: str) -> str | None:
+    """Return the text that replaces a message of Snakemake, empty to hide it; None to keep the message."""
+    for pattern, text in _REPLACEMENTS:
+        found = pattern.search(message)
+        if found and not Path(found.groupdict().get("missing", "")).is_file():
+            return found.expand(text)
     return None
 
 
 def provide_cache() -> None:
-    """Give Snakemake a folder for its cache of sources, where the user's cannot be made, as without a home."""
-    # Snakemake would end with a traceback. No study puts anything there, since all its sources are local.
+    """Give Snakemake a temporary folder for its cache of sources if the user's cannot be created, as without a home."""
+    # Otherwise Snakemake ends with a traceback. The folder stays empty, since all sources of a study are local.
     from snakemake.common import get_appdirs
 
     try:
@@ -58,39 +72,40 @@ def provide_cache() -> None:
         atexit.register(shutil.rmtree, os.environ["XDG_CACHE_HOME"], ignore_errors=True)
 
 
-def is_end_by_hand(message: str) -> bool:
-    """Tell whether a message of Snakemake says that Ctrl-C ends the run; no event does."""
+def is_ctrl_c(message: str) -> bool:
+    """Return whether a message of Snakemake says that Ctrl-C ends the run; there is no such event."""
     return message.startswith("Terminating processes on user request")
 
 
-def says_nothing_to_do(message: str) -> bool:
-    """Tell whether a message of Snakemake says that a run has nothing to make."""
+def is_nothing_to_do(message: str) -> bool:
+    """Return whether a message of Snakemake says that there is nothing to do."""
     return message.startswith("Nothing to be done")
 
 
-def several_files(paths: Sequence[str | Path]) -> str:
-    """Return what is said where --configfile has more than one file: Snakemake takes targets after it for files."""
+def _several_files_error(paths: Sequence[str | Path]) -> str:
+    """Return the error if --configfile has several files: Snakemake reads targets that follow it as files."""
     first, second = map(display_path, paths[:2])
     return (
         f"--configfile: got {second} as a second file, expected one file: one file is one study; "
-        f"a target stands before it, as in snakemake {second} --configfile {first}"
+        f"put a target before it: snakemake {second} --configfile {first}"
     )
 
 
-def refused_call(checkout: Path, config_files: Sequence[str | Path]) -> str:
-    """Return why no study is run here from a checkout by these config files, in one line; nothing if it can be."""
-    # Results lie where `snakemake` is called: there it would find the second Snakefile and begin another study.
+def call_error(checkout: Path, config_files: Sequence[str | Path]) -> str:
+    """Return why a checkout cannot run these config files in the current folder, in one line; empty if it can."""
+    # Results are written to the folder in which `snakemake` is called. In `workflow` it would find the second Snakefile
+    # and begin another study.
     if Path.cwd() == checkout / "workflow":
         return f"no study is run in the folder workflow: cd {shlex.quote(str(checkout))}"
     if len(config_files) > 1:
-        return several_files(config_files)
+        return _several_files_error(config_files)
     if " " in sys.executable:
         return f"{sys.executable}: Snakemake cannot run scripts from a path with a space: move the checkout"
     return ""
 
 
-def refused_cluster(submit: str | None) -> str:
-    """Return why no job goes to Slurm by a submit command, in one line: else each job would try for minutes."""
+def cluster_error(submit: str | None) -> str:
+    """Return why a submit command cannot reach Slurm, in one line; otherwise each job would try for minutes."""
     program = Path(submit or "")
     if program.name != "submit.py" or not program.with_name("jobs.py").is_file():
         return ""
@@ -98,11 +113,11 @@ def refused_cluster(submit: str | None) -> str:
     return f"no job is submitted, Slurm does not answer: squeue: {answer.stderr.strip()}" if answer.returncode else ""
 
 
-def checked_cores(arguments: Sequence[str]) -> int:
-    """Return the cores that a command line gives, 0 if it gives no number: Snakemake takes one for a dry run.
+def cores_of_command_line(arguments: Sequence[str]) -> int:
+    """Return the number of cores of a command line, 0 without a number: Snakemake uses one core for a dry run.
 
-    Raises ConfigError, one line, for a config file that cannot be read and for what --config does not take: Snakemake
-    makes its log handlers first and reads the config files next, and nothing of the project runs in between.
+    Raises ConfigError, one line, for a config file that cannot be read and for a malformed --config: Snakemake creates
+    its log handlers before it reads the config files, and no other code of the project runs in between.
     """
     parser = argparse.ArgumentParser(add_help=False, allow_abbrev=False)
     parser.add_argument("--configfile", "--configfiles", nargs="*", action="extend", default=[])
@@ -110,14 +125,14 @@ def checked_cores(arguments: Sequence[str]) -> int:
     parser.add_argument("--cores", "-c", "--jobs", "-j", nargs="?", const="", default="")
     options, _ = parser.parse_known_args(arguments)
     if len(options.configfile) > 1:
-        raise ConfigError(several_files(options.configfile))
+        raise ConfigError(_several_files_error(options.configfile))
     for path in options.configfile:
         read_config(path)
     for entry in options.config:
         name, equals, _ = entry.partition("=")
         if not (equals and _NAME.fullmatch(name)):
-            short = f"; {name} has its place in the config file" if len(name) == 1 else ""
-            raise ConfigError(
-                f"--config: got {format_value(entry)}, expected key=value, the key of two letters or more{short}"
-            )
+            if equals and len(name) == 1:
+                reason = "cannot be set here (Snakemake requires keys of two letters); set it in the config file"
+                raise ConfigError(f"--config: {name} {reason}")
+            raise ConfigError(f"--config: got {format_value(entry)}, expected key=value")
     return int(options.cores) if options.cores.isdecimal() else 0

@@ -1,4 +1,4 @@
-"""A run: its jobs, how far they are, and when they end."""
+"""A run: its jobs, their progress, and the time at which they end."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ FRESH = 2.0
 
 @dataclass
 class Job:
-    """A job that makes files: what is planned and, from `state` on, what became of it.
+    """A job that makes files: its plan and, from `state` on, its progress.
 
-    needs : numbers of the jobs that come before
-    benchmark : the file that Snakemake writes with its duration
-    seconds : how long it took, times its threads; None if it has not finished, or nothing measured it
+    needs : numbers of the jobs on which it depends
+    benchmark : the file with its duration, written by Snakemake
+    seconds : its duration times its threads; None if it has not finished or was not measured
     """
 
     name: str
@@ -39,14 +39,39 @@ class Job:
 
 
 @dataclass
+class Stage:
+    """The jobs of a stage.
+
+    counts : {state: number of jobs}
+    work, work_done : CPU time in seconds, of all its jobs and of the part that is done
+    """
+
+    name: str
+    counts: Counter[str] = field(default_factory=Counter)
+    work: float = 0.0
+    work_done: float = 0.0
+
+    @property
+    def jobs(self) -> int:
+        """Number of its jobs."""
+        return self.counts.total()
+
+    @property
+    def share_done(self) -> float:
+        """The share of its CPU time that is done."""
+        return self.work_done / self.work if self.work else 0.0
+
+
+@dataclass
 class Run:
-    """The jobs of a run. A display reads it in a thread of its own, while jobs begin and end.
+    """The jobs of a run. The display reads them in its own thread while jobs begin and end.
 
     results : folder of the study
     jobs : {number: job}, in the order of the stages
-    wanted : rules of all files that the run is to make or has found up to date
-    durations : how long jobs take, as known before any has begun
-    stopping : whether Ctrl-C has ended it
+    wanted : rules of all requested files, whether the run makes them or they are up to date
+    durations : durations of jobs, as known before the first one begins
+    cores : number of cores, or of simultaneous jobs on a cluster; capacity : the same in words
+    stopping : whether the user has ended the run by Ctrl-C
     """
 
     results: str = ""
@@ -54,29 +79,36 @@ class Run:
     wanted: Collection[str] = ()
     durations: Durations = field(default_factory=Durations)
     cores: float = 1.0
+    capacity: str = "on 1 core"
     stopping: bool = False
-    _told: tuple[float, float] | None = None
+    _last_forecast: tuple[float, float] | None = None
 
     def job(self, number: int, rule: str) -> Job:
-        """Return a job, also one that was not planned."""
+        """Return a job; one that was not planned is added."""
         if number not in self.jobs:
-            # Another thread may walk through the old mapping.
+            # Another thread may iterate over the old mapping.
             self.jobs = {**self.jobs, number: Job(rule, rule, rule)}
         return self.jobs[number]
 
-    def of(self, state: str) -> list[Job]:
+    def jobs_in(self, state: str) -> list[Job]:
         """Return the jobs in a state."""
         return [job for job in self.jobs.values() if job.state == state]
 
-    def counts(self) -> list[tuple[str, Counter[str]]]:
-        """Return (stage, jobs in each state) of each stage, and at last of all."""
-        stages: dict[str, Counter[str]] = defaultdict(Counter)
+    def stages(self, now: float) -> list[Stage]:
+        """Return the progress of each stage, and of all jobs as the last one."""
+        expected, stages, total = self.expected(), dict[str, Stage](), Stage("all")
         for job in self.jobs.values():
-            stages[job.stage][job.state] += 1
-        return [*stages.items(), ("all", sum(stages.values(), Counter()))]
+            work = expected[job.rule] if job.seconds is None else job.seconds
+            running = min(work, (now - job.begin) * job.threads)
+            done = work if job.state == DONE else running if job.state == RUNNING else 0.0
+            for stage in (stages.setdefault(job.stage, Stage(job.stage)), total):
+                stage.counts[job.state] += 1
+                stage.work += work
+                stage.work_done += done
+        return [*stages.values(), total]
 
     def blocked(self) -> set[int]:
-        """Return the numbers of the jobs that cannot run because others failed."""
+        """Return the numbers of the jobs that cannot run because other jobs failed."""
         failed = {number for number, job in self.jobs.items() if job.state == FAILED}
         found = set(failed)
         while more := {number for number, job in self.jobs.items() if not job.needs.isdisjoint(found)} - found:
@@ -84,14 +116,14 @@ class Run:
         return found - failed
 
     def time_left(self, now: float) -> float:
-        """Return how long the run still takes, in seconds, counted down from what was told a moment ago."""
-        if self._told is None or not 0.0 <= now - self._told[0] < FRESH:
-            self._told = now, self.forecast(now)
-        told, seconds = self._told
-        return max(seconds - (now - told), 0.0)
+        """Return the time left in seconds, counted down from the last forecast for a moment."""
+        if self._last_forecast is None or not 0.0 <= now - self._last_forecast[0] < FRESH:
+            self._last_forecast = now, self.forecast(now)
+        then, seconds = self._last_forecast
+        return max(seconds - (now - then), 0.0)
 
     def forecast(self, now: float) -> float:
-        """Return how long the run still takes, in seconds, as a scheduler would run its jobs that fills all cores."""
+        """Return the time left in seconds, for a scheduler that keeps all cores busy."""
         expected, blocked = self.expected(), self.blocked()
         left = {
             number: job
@@ -116,12 +148,12 @@ class Run:
 
 
 def schedule(
-    jobs: Mapping[int, Job], seconds: Mapping[int, float], cores: float, at_work: Mapping[int, float] | None = None
+    jobs: Mapping[int, Job], seconds: Mapping[int, float], cores: float, running_ends: Mapping[int, float] | None = None
 ) -> dict[int, float]:
-    """Return {job: when it ends}, as a scheduler runs jobs that fills all cores: by priority, then in their order.
+    """Return {job: the time at which it ends}, for a scheduler that keeps all cores busy: by priority, then in order.
 
-    jobs : {number: job}; of what a job needs only these are waited for
-    seconds : of those that have not begun; at_work : when the others end
+    jobs : {number: job}; a job waits only for those among them
+    seconds : durations of the jobs that have not begun; running_ends : {running job: the time at which it ends}
     """
     missing = {number: sum(need in jobs for need in job.needs) for number, job in jobs.items()}
     after = defaultdict(list)
@@ -131,7 +163,7 @@ def schedule(
     order = {number: (-job.priority, place, number) for place, (number, job) in enumerate(jobs.items())}
     # Sorted lists are heaps.
     ready = sorted(order[number] for number in seconds if not missing[number])
-    ends = dict(at_work or {})
+    ends = dict(running_ends or {})
     running = sorted((end, number) for number, end in ends.items())
     free, now = cores - sum(jobs[number].threads for number in ends), 0.0
     while ready or running:

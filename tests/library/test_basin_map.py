@@ -50,7 +50,7 @@ def test_labels_are_those_of_whole_runs():
         ({"first_position": (1.0, 1.0)}, "first_position"),
         ({"window": 0.0}, "window: 0.0"),
         ({"windows": 10.0}, "windows: not a setting"),
-        ({"law": Model(Chain(3), law_of("linearized", 0.08))}, "beside a model"),
+        ({"law": Model(Chain(3), law_of("linearized", 0.08))}, "together with a model"),
         ({"chain": Chain(4)}, "initial state 'minus'"),
         ({"initial": InitialState("back", (0.0, 0.0), (0.1, -0.1))}, "one_sided"),
     ],
@@ -62,7 +62,7 @@ def test_bad_input_is_refused_in_one_line(options, words):
 
 @pytest.mark.slow
 def test_a_model_of_its_own():
-    """Labels of a map for a law by formula in an asymmetric chain, and a short form that says the same."""
+    """Labels of a map for a law by formula in an asymmetric chain, and of its equivalent short form."""
     law = FormulaLaw(0.1, "1/(1 + a*u)**p", p=1.2)
     chain = Chain(3, coupling=(1.0, 1.2))
     options = {"pixels": 4, "samples": 10, "transient": 1000.0, "window": 1000.0}

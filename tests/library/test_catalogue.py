@@ -63,7 +63,7 @@ def test_a_run_that_ends_early_has_no_rates():
 
 @pytest.mark.parametrize("form", ["grid", "network"])
 def test_recurrence_on_grids_and_networks(form, tmp_path):
-    """An event of blocks 2 and 5 does not contain 3 and 4: only profiles tell which blocks an event has."""
+    """An event of blocks 2 and 5 does not contain 3 and 4: only profiles list the blocks of an event."""
     if form == "network":
         (tmp_path / "star.txt").write_text("".join(f"1 {k} 9\n" for k in range(2, 10)))
         chain = Chain(springs=str(tmp_path / "star.txt"), pulling=1)

@@ -1,5 +1,6 @@
-"""A study as one tree: points and summaries as their files say, numbers over the grid, and what is missing."""
+"""The results of a study: points and summaries as in their files, scalars over the grid, and missing files."""
 
+import re
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from tests.small_study import run_study
 CONFIG = {"study": "few", "a": [0.05, 0.08, 0.22], "initial": {"minus": {}, "plus": {}}}
 CONFIG |= {"transient": 20, "window": 60, "batches": 2, "event_window": 50}
 SUMMARY = "summary/mean_distance.nc"
+POINT = "points/linearized/plus/a0.0500.nc"
 MISSING = ("nonlinear", "plus", "0.0800")
 
 
@@ -42,14 +44,58 @@ def test_nodes_are_the_files(results):
     study = open_study(results)
     assert len(list(study["summary"])) == 7
     assert len(files) == 11 + 7
+    assert sorted(study) == sorted(["grid", *(str(path.relative_to(results).with_suffix("")) for path in files)])
     for path in files:
         node = study[str(path.relative_to(results).with_suffix(""))]
         with xarray.open_dataset(path) as expected:
             assert node.to_dataset().identical(expected), path
     counts = {study[f"points/linearized/minus/a{a}"].sizes["event"] for a in ("0.0500", "0.2200")}
     assert len(counts) == 2
-    assert study.name == "few"
-    assert study.attrs["transient"] == 20.0
+    assert study.config["transient"] == 20.0
+
+
+def test_a_study_is_shown_on_one_screen(results):
+    lines = repr(open_study(results)).splitlines()
+    assert len(lines) == 4 + 7
+    assert max(map(len, lines)) < 120
+    assert lines[0] == f"<study few in {results}>"
+    assert re.fullmatch("grid +scalars of the points over law 2, initial 2, a 3", lines[1])
+    form = "points/<law>/<initial>/a<a> +11 of 12 points, such as points/linearized/minus/a0.0500"
+    assert re.fullmatch(form, lines[2])
+    assert any(re.fullmatch("summary/lyapunov +Lyapunov exponents and kinds of motion", line) for line in lines)
+
+
+def test_files_are_opened_when_they_are_asked_for(results, tmp_path):
+    """A damaged file does not matter to the others."""
+    shutil.copytree(results, tmp_path, dirs_exist_ok=True)
+    (tmp_path / POINT).write_bytes(b"")
+    (tmp_path / SUMMARY).write_bytes(b"")
+    study = open_study(tmp_path)
+    assert "summary/mean_distance" in repr(study)
+    assert study["points/linearized/plus/a0.2200"].sizes["block"] == 3
+    assert study["summary/lyapunov"].sizes["a"] == 3
+    for path in ("grid", "points", "summary", POINT.removesuffix(".nc"), "/"):
+        with pytest.raises(ValueError, match="is empty"):
+            study[path]
+
+
+def test_groups_are_trees_of_their_files(results):
+    study = open_study(results)
+    assert set(study["points/linearized"].children) == {"minus", "plus"}
+    assert set(study["/points/nonlinear/plus/"].children) == {"a0.0500", "a0.2200"}
+    assert set(study["/"].children) == {"grid", "points", "summary"}
+    point = "points/linearized/plus/a0.0500"
+    assert study["/"][point].identical(study[point])
+
+
+@pytest.mark.parametrize(
+    "path", ["summary/lyapunow", f"points/{MISSING[0]}/{MISSING[1]}/a{MISSING[2]}", "point", "summary/lyap"]
+)
+def test_what_is_not_there_is_named(results, path):
+    study = open_study(results)
+    assert path not in study
+    with pytest.raises(KeyError, match=f"{path}: not among the results in {results}"):
+        study[path]
 
 
 def test_parts_of_arrays_are_read_as_they_are_asked_for(results):
@@ -77,13 +123,6 @@ def test_numbers_over_the_grid(results):
             assert grid[name].attrs.keys() == point[name].attrs.keys()
 
 
-def test_without_points(results):
-    assert set(open_study(results, points=False).children) == {"summary"}
-
-
-POINT = "points/linearized/plus/a0.0500.nc"
-
-
 @pytest.mark.parametrize(
     ("name", "damage", "reason"),
     [
@@ -100,13 +139,14 @@ POINT = "points/linearized/plus/a0.0500.nc"
     ],
 )
 def test_a_file_that_is_damaged_or_not_of_the_study_is_named(results, tmp_path, name, damage, reason):
-    """With the line, and the command that remakes the file, of `bk show`."""
+    """With the same line, and command that recreates the file, as `bk show`."""
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     damage(tmp_path / name)
     said = []
-    for read in (open_study, lambda folder: open_result(folder / name)):
+    study = open_study(tmp_path)
+    for read in (lambda: study[name.removesuffix(".nc")], lambda: open_result(tmp_path / name)):
         with pytest.raises(ValueError, match=reason) as caught:
-            read(tmp_path)
+            read()
         said.append(str(caught.value))
     assert said[0] == said[1]
     assert said[0].startswith(f"{tmp_path / name}: ")
@@ -137,18 +177,17 @@ def test_a_study_that_snakemake_has_made(finished):
 
 
 @pytest.mark.slow
-def test_threads_may_open_studies(results):
+def test_threads_may_open_files(results):
     """In a process of its own, which HDF5 may crash."""
     script = (
         "from concurrent.futures import ThreadPoolExecutor; from burridge_knopoff import open_study\n"
-        f"with ThreadPoolExecutor(8) as pool: print(len([*pool.map(open_study, [{str(results)!r}] * 24)]))"
+        f"study = open_study({str(results)!r})\n"
+        "with ThreadPoolExecutor(8) as pool: print(len([*pool.map(study.__getitem__, [*study] * 3)]))"
     )
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
-    assert (run.returncode, run.stdout) == (0, "24\n")
+    assert (run.returncode, run.stdout) == (0, f"{3 * (1 + 11 + 7)}\n")
 
 
-def test_without_its_attributes_a_tree_is_one_file(results, tmp_path):
-    study = open_study(results)
-    study.attrs.clear()
-    study.to_netcdf(tmp_path / "all.nc")
+def test_the_whole_tree_is_one_file(results, tmp_path):
+    open_study(results)["/"].to_netcdf(tmp_path / "all.nc")
     assert (tmp_path / "all.nc").stat().st_size > 10_000

@@ -28,7 +28,7 @@ TRAIN = Model(Chain(30, coupling=9, pulling=1), law_of("carlson_langer", 3.0), v
 
 
 def equal(one, other):
-    """Tell whether two results have the same bits."""
+    """Return whether two results have the same bits."""
     if type(one) is not type(other):
         return False
     if isinstance(one, np.ndarray):
@@ -101,7 +101,7 @@ def test_a_run_goes_on_from_a_copied_state(model, initial, settings, copied):
 @pytest.mark.parametrize("copied", COPIES.values(), ids=COPIES)
 @pytest.mark.parametrize("options", [{}, {"loading": "quasistatic"}, {"solver": "euler", "step": 0.01}], ids=str)
 def test_a_catalogue_goes_on_from_a_copied_state(options, copied):
-    """The first catalogue ends within an event, whose beginning the copy has to know."""
+    """The first catalogue ends within an event, whose beginning the copy must contain."""
     first = record_events(TRAIN, TRAIN.begin(ROUGH, "tested"), 60.0, **options)
     end = first.final.time
     while options.get("loading") != "quasistatic" and first.final.stuck.all():

@@ -1,4 +1,4 @@
-"""One run in one call: initial states as they come to mind, settings by name, and what is refused."""
+"""One run in one call: all forms of initial states, settings by name, and refused arguments."""
 
 import inspect
 import typing
@@ -79,7 +79,7 @@ def test_settings_are_those_of_both_ways():
 )
 def test_what_a_model_has_is_refused_beside_it(options):
     """It would have no effect, and what is given may be the default of a law."""
-    with pytest.raises(ValueError, match="got some beside a model"):
+    with pytest.raises(ValueError, match="got some together with a model"):
         simulate(MODEL, initial="plus", **options)
 
 

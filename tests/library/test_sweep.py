@@ -103,7 +103,7 @@ def test_a_run_that_does_not_complete_is_there():
         ({"colour": "blue"}, "colour: not a setting"),
         ({"lyapunov_exponents": 7}, "lyapunov_exponents: 7"),
         ({"chain": Chain(4)}, "blocks: 4"),
-        ({"law": Model(Chain(3), law_of("linearized", 0.1)), "chain": Chain(3)}, "beside a model"),
+        ({"law": Model(Chain(3), law_of("linearized", 0.1)), "chain": Chain(3)}, "together with a model"),
         ({"v": [0.1, 0.0]}, "v: 0.0"),
         ({"v": [0.1, 0.1]}, "v: got 0.1 twice"),
         ({"sigma": [0.1]}, "sigma: not a setting or a parameter"),

@@ -1,4 +1,4 @@
-"""The last words of a run."""
+"""The closing lines of a run."""
 
 import json
 from pathlib import Path
@@ -10,6 +10,7 @@ import xarray as xr
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
 from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.show.digests import NO_EVENT
 from burridge_knopoff.study.job_log import INTERRUPTED, SILENT
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
@@ -17,7 +18,7 @@ from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Jo
 STATUSES = dict(enumerate(STATUS_FLAG["flag_meanings"].split()))
 FOLDER = Path("results/paper/summary")
 RULES = {"claims": "claims.json", "mean_distance": "mean_distance.nc", "agreement": "agreement.nc"}
-POINT, AGAIN = "results/paper/points/a.nc", "the same command goes on where this run stopped"
+POINT, AGAIN = "results/paper/points/a.nc", "Run the same command again to continue."
 
 
 def write(claims, statuses, kinds):
@@ -56,9 +57,9 @@ def done(*paths):
 def test_a_whole_study():
     made = [POINT, "results/paper/points/b.nc", "results/paper/summary/claims.json", "results/paper/report.html"]
     assert lines(*done(*made), wanted=(*RULES, "report"), seconds=312.0) == [
-        "study paper: done in 5 min 12 s",
+        "study paper: done in 5 min 12 s on 1 core",
         "files made in results/paper: points 2, summary 1, report.html",
-        "claims of the paper, 6 independent ones: holds 1, holds loosely 0, depends on convention 1, fails 4, "
+        "6 independent claims of the paper: holds 1, holds loosely 0, depends on convention 1, fails 4, "
         "not testable 0 "
         f"({FOLDER}/claims.md)",
         "  fails: claim_0, claim_1, claim_2, claim_3, claim_4, claim_5, claim_6, claim_7 and 2 more",
@@ -67,8 +68,8 @@ def test_a_whole_study():
         f"points: kind of motion undetermined at 2 of 5 (kind in {FOLDER}/agreement.nc)",
         "report: results/paper/report.html",
     ]
-    # A single point says nothing of summaries.
-    assert lines(*done(POINT), wanted=["simulate"]) == ["study paper: done in 1 s", f"made: {POINT}"]
+    # The lines about a single point do not mention summaries.
+    assert lines(*done(POINT), wanted=["simulate"]) == ["study paper: done in 1 s on 1 core", f"made: {POINT}"]
 
 
 def test_catalogues_that_did_not_complete_or_have_no_events():
@@ -78,7 +79,7 @@ def test_catalogues_that_did_not_complete_or_have_no_events():
     found.assign(event_count=(("law", "a"), [[7, 0, 0]])).to_netcdf(path)
     assert lines(wanted=["catalogue"])[2:] == [
         f"catalogues: 1 of 3 did not complete: diverged 1 (status in {path})",
-        f"catalogues: 2 of 3 without events (event_count in {path})",
+        f"catalogues: no slip event at 1 of 3 values: {NO_EVENT} (event_count in {path})",
     ]
 
 
@@ -87,8 +88,8 @@ def test_no_claim_that_can_be_judged_and_all_points_completed():
     claims = [{"name": f"claim_{n}", "verdict": "not testable", "reason": reason} for n in range(5)]
     write({"counts": {"holds": 0, "not testable": 5}, "claims": claims}, [0, 0], [3, 2])
     assert lines() == [
-        *("study paper: done in 1 s", "made: nothing"),
-        *(f"claims of the paper: none is judged ({FOLDER}/claims.md)", f"  {reason}", "points: all 2 completed"),
+        *("study paper: done in 1 s on 1 core", "made: nothing"),
+        *(f"no claim of the paper could be tested ({FOLDER}/claims.md)", f"  {reason}", "points: all 2 completed"),
     ]
 
 
@@ -118,8 +119,20 @@ def test_a_run_that_failed():
     assert lines(*failed, *[("", WAITING, [], [])] * 6, *done("x.nc"), seconds=5.0) == [
         "study paper: stopped after 5 s: 11 jobs failed, 6 jobs did not run",
         "failed: mean: x.nc: is empty (log mean.log)",
-        *(f"failed: simulate a={n}: {SILENT} (log {n}.log)" for n in range(9)),
-        *("failed: and 1 more", "made: x.nc", AGAIN),
+        f"failed: simulate a=0 and 9 more: {SILENT} (log 0.log)",
+        *("made: x.nc", "Finished results are kept; the same command would fail again until the cause is removed."),
+    ]
+    # A job that was killed has no error in its log, and may succeed the next time.
+    assert lines(*failed[1:])[-1] == AGAIN
+
+
+def test_many_reasons_are_not_all_listed():
+    for n in range(12):
+        Path(f"{n}.log").write_text(f"error {n}\n")
+    failed = [(f"job {n:02}", FAILED, [], [f"{n}.log"]) for n in range(12)]
+    assert [line for line in lines(*failed) if line.startswith("failed:")] == [
+        *(f"failed: job {n:02}: error {n} (log {n}.log)" for n in range(10)),
+        "failed: for 2 more reasons",
     ]
 
 
@@ -132,7 +145,8 @@ def test_bad_files_are_remade_by_one_command_and_by_no_other():
         Path(f"{n}.log").write_text(f"Traceback (most recent call last):\n  raise\n{error}\n")
     assert lines(*((f"job {n}", FAILED, [], [f"{n}.log"]) for n in range(7))) == [
         "study paper: stopped after 1 s: 7 jobs failed",
-        *(f"failed: job {n}: results/paper/points/{n % 2}.nc: is empty (log {n}.log)" for n in range(7)),
+        "failed: job 0 and 3 more: results/paper/points/0.nc: is empty (log 0.log)",
+        "failed: job 1 and 2 more: results/paper/points/1.nc: is empty (log 1.log)",
         "made: nothing",
         "this command recreates the bad files and continues: "
         f"{head} results/paper/points/0.nc results/paper/points/1.nc",
@@ -140,9 +154,9 @@ def test_bad_files_are_remade_by_one_command_and_by_no_other():
 
 
 def test_a_run_that_was_interrupted():
-    """A job of which the log tells no end did not run to its end, even if its file is there."""
+    """A job whose end is not in the log did not run to its end, even if its file exists."""
     Path("x.nc").touch()
     told = "study paper: stopped after 1 s: 1 job did not run"
     assert lines(("x", RUNNING, ["x.nc"], [])) == [told, "made: nothing", AGAIN]
     # One that is stopped when its last job was done.
-    assert lines(stopped=True) == ["study paper: stopped after 1 s: not at its end", "made: nothing", AGAIN]
+    assert lines(stopped=True) == ["study paper: stopped after 1 s: before its end", "made: nothing", AGAIN]

@@ -1,4 +1,4 @@
-"""The progress display: its words, what the Snakefile tells it, and that no message is lost."""
+"""The progress display: its text, the plan that the Snakefile gives it, and that no message is lost."""
 
 import io
 import os
@@ -18,28 +18,41 @@ import snakemake_logger_plugin_study as plugin
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.study.job_log import SILENT
 from burridge_knopoff.study.load import load_study
-from snakemake_logger_plugin_study.display import Lines, about, beginning, cost, elapsed, progress
+from snakemake_logger_plugin_study.display import (
+    Lines,
+    dry_run_lines,
+    first_line,
+    format_elapsed,
+    format_estimate,
+    progress_line,
+)
 from snakemake_logger_plugin_study.plan import Plan
-from snakemake_logger_plugin_study.refusal import checked_cores, reworded
+from snakemake_logger_plugin_study.refusal import cores_of_command_line, replacement
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
 
 
 def test_durations_in_words():
     told = {0: "a few seconds", 12: "about 10 s", 48: "about 50 s", 56: "about 1 min", 170: "about 3 min"}
     told |= {5300: "about 88 min", 9000: "about 2.5 h"}
-    assert {seconds: about(seconds) for seconds in told} == told
+    assert {seconds: format_estimate(seconds) for seconds in told} == told
     told = {0.4: "0 s", 59.6: "1 min 0 s", 312: "5 min 12 s", 7500: "2 h 5 min"}
-    assert {seconds: elapsed(seconds) for seconds in told} == told
+    assert {seconds: format_elapsed(seconds) for seconds in told} == told
 
 
 def test_a_cost_in_words(monkeypatch):
     rows = {"short": [[0.0, 3.0, 5e5]], "long": [[0.0, 203.0, 40.6e6]], "huge": [[0.0, 3.0, 2.5e9]]}
     monkeypatch.setattr("snakemake_logger_plugin_study.durations.SHIPPED", rows)
-    jobs = {0: Job("", "", "short"), 1: Job("", "", "long", threads=2)}
-    told = "a run takes about 2 min on 2 cores: about 3 min of CPU time, and 41 MB of disk"
-    assert cost(Run("", jobs, cores=2)) == told
-    told = "a run takes a few seconds on 1 core: a few seconds of CPU time, and 2.5 GB of disk"
-    assert cost(Run("", {0: Job("", "", "huge")}, cores=1)) == told
+    jobs = {number: Job("", "points", "short") for number in range(10)}
+    jobs[10] = Job("", "attractors", "long", threads=2)
+    assert dry_run_lines(Run("", jobs, cores=2, capacity="on 2 cores")) == [
+        "stage       jobs  CPU time",
+        "points        10  about 30 s",
+        "attractors     1  about 3 min",
+        "all           11  about 4 min",
+        "a run takes about 2 min on 2 cores and 46 MB of disk space (snakemake -n -p lists the jobs)",
+    ]
+    told = "a run takes a few seconds on 1 core and 2.5 GB of disk space (snakemake -n -p lists the jobs)"
+    assert dry_run_lines(Run("", {0: Job("", "", "huge")}))[-1] == told
 
 
 def test_a_line_at_the_begin_and_now_and_then(monkeypatch):
@@ -47,11 +60,12 @@ def test_a_line_at_the_begin_and_now_and_then(monkeypatch):
     points = [Job("", "points", state=DONE if number < 120 else WAITING) for number in range(484)]
     jobs = [*points, *(Job("", "summary", needs=frozenset({120})) for _ in range(46))]
     run = Run("", dict(enumerate(jobs)))
-    assert beginning(run, 1.0) == "530 jobs: points 484, summary 46; about 3 min left"
-    points[120].state = RUNNING
-    assert progress(run, 1.0) == "points 120 of 484, all 120 of 530 (22 %), about 3 min left"
+    assert first_line(run, 1.0) == "530 jobs: points 484, summary 46; about 3 min on 1 core"
+    points[120].state, points[120].begin = RUNNING, 1.0
+    assert progress_line(run, 1.0) == "points 120 of 484, all 120 of 530 jobs; 22 % done, about 3 min left"
     points[120].state = FAILED
-    assert progress(run, 1.0) == "all 120 of 530 (22 %), 1 failed, 46 cannot run, about 3 min left"
+    told = "all 120 of 530 jobs; 22 % done, 1 failed, 46 cannot run, about 3 min left"
+    assert progress_line(run, 1.0) == told
 
 
 def test_the_pace_of_lines():
@@ -59,7 +73,7 @@ def test_the_pace_of_lines():
     lines = Lines(run, print)
     lines.close()
     begin, due = lines._time, []
-    for done, after in ((50, 9.9), (50, 10.0), (54, 69.9), (55, 69.9), (55, 129.8), (55, 129.9), (100, 300.0)):
+    for done, after in ((50, 9.9), (50, 10.0), (54, 69.9), (56, 69.9), (56, 129.8), (56, 129.9), (100, 300.0)):
         for number in range(done):
             run.jobs[number].state = DONE
         due.append(lines.is_due(begin + after))
@@ -68,7 +82,7 @@ def test_the_pace_of_lines():
 
 def test_the_cores_of_a_command_line():
     given = {"-c2": 2, "--cores 4": 4, "-j 3": 3, "--cores all": 0, "-j": 0, "-n points": 0}
-    assert {line: checked_cores(line.split()) for line in given} == given
+    assert {line: cores_of_command_line(line.split()) for line in given} == given
 
 
 class AJob(SimpleNamespace):
@@ -120,7 +134,7 @@ def test_a_defect_of_the_plan_is_only_told(caplog):
     plan = Plan("results/x", SimpleNamespace(rules=[SimpleNamespace(name="simulate")]), "study")
     plan.announce()
     assert plan.run == Run("results/x")
-    assert caplog.messages[0].startswith("the stages of this run, and its time, cannot be told: ")
+    assert caplog.messages[0].startswith("the stages and the duration of this run cannot be determined: ")
 
 
 FLAGS = ("printshellcmds", "debug_dag", "verbose", "show_failed_logs", "stdout", "dryrun")
@@ -132,13 +146,16 @@ def written(monkeypatch):
     """Return a function: records given to a handler with these settings -> the lines that it wrote; no terminal.
 
     results, wanted, planned : of the run that the Snakefile announces, and the number of its jobs
+    jobs, cores : the study's jobs, if it has a plan, and arguments of the command line
     """
 
-    def write(*records, results="", wanted=(), planned=2, recording=lambda: None, **settings):
+    def write(*records, results="", wanted=(), planned=2, recording=lambda: None, jobs=None, cores="", **settings):
         stream, settings = io.StringIO(), {**SETTINGS, **settings}
         monkeypatch.setattr(sys, "stderr", stream)
-        jobs = {number: Job("simulate a=0.0800", "points", "simulate") for number in range(1, planned + 1)}
-        monkeypatch.setattr(plugin, "PLAN", Plan(run=Run(results, jobs, wanted), record=recording))
+        monkeypatch.setattr(sys, "argv", ["snakemake", *cores.split()])
+        of_run = {number: Job("simulate a=0.0800", "points", "simulate") for number in range(1, planned + 1)}
+        plan = Plan(jobs=jobs, run=Run(results, of_run, wanted), record=recording)
+        monkeypatch.setattr(plugin, "PLAN", plan)
         handler = plugin.LogHandler(common_settings=SimpleNamespace(**settings), settings=None)
         # As Snakemake does it.
         handler.addFilter(DefaultFilter(**{name: settings[name] for name in signature(DefaultFilter).parameters}))
@@ -181,12 +198,12 @@ BEGUN = (
 )
 ROUTINE = (*BEGUN, end(1), record("None", LogEvent.PROGRESS, done=1, total=1))
 FAILURE = error("x.log")
-BEGIN = "2 jobs: points 2; a few seconds left"
+BEGIN = "2 jobs: points 2; a few seconds on 1 core"
 TOLD = f"failed: simulate a=0.0800: {SILENT} (log x.log)"
 
 
 def test_a_job_that_ctrl_c_ends_before_it_has_begun_is_interrupted(written, tmp_path):
-    """Its log is empty, and its failure may be told before Snakemake says that it was Ctrl-C."""
+    """Its log is empty, and Snakemake may report its failure before it reports Ctrl-C."""
     end = record("Terminating processes on user request, this might take some time.")
     for last in ((FAILURE, end), (end, FAILURE)):
         lines = written(*BEGUN, *last, results="results/x")
@@ -216,8 +233,9 @@ def test_routine_is_replaced_and_all_else_is_written(written):
     hidden = record("RuleException:\nCalledProcessError in file x.smk", level=ERROR)
     said = written(*ROUTINE, *plain, hidden, start(1), FAILURE, record("the end"))
     assert said == [BEGIN, "Building DAG of jobs...", "careful", TOLD, "the end"]
-    # Snakemake 9.22 tells of a failure twice; a job that is tried again may fail again.
-    assert written(*BEGUN, FAILURE, FAILURE, start(1), FAILURE) == [BEGIN, TOLD, TOLD]
+    # Snakemake 9.22 reports a failure twice; a repeated job may fail again.
+    again = "failed: simulate a=0.0800: for the same reason (log x.log)"
+    assert written(*BEGUN, FAILURE, FAILURE, start(1), FAILURE) == [BEGIN, TOLD, again]
 
 
 def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch, tmp_path):
@@ -225,16 +243,16 @@ def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch
     run = {"results": "results/x", "wanted": ["report"]}
     assert written(*BEGUN[:2], record("the end"), **run) == ["the end"]
     last = ["study x: stopped after 0 s: 1 job failed, 1 job did not run", TOLD]
-    last += ["made: nothing", "the same command goes on where this run stopped"]
+    last += ["made: nothing", "Run the same command again to continue."]
     assert written(*BEGUN, FAILURE, **run) == [BEGIN, TOLD, *last]
     (tmp_path / "x.nc").touch()
-    last = ["study x: done in 0 s", "made: x.nc, x.nc", "report: results/x/report.html"]
+    last = ["study x: done in 0 s on 1 core", "made: x.nc, x.nc", "report: results/x/report.html"]
     assert written(*ROUTINE, start(2), end(2), **run) == [BEGIN, *last]
-    # The end of a job is not in the log with --quiet progress, nor is anything said with --quiet all.
+    # With --quiet progress the log does not contain the ends of jobs; with --quiet all nothing is written.
     assert written(*BEGUN, start(2), quiet={Quietness.PROGRESS}, **run) == [BEGIN, *last]
     assert written(*BEGUN, start(2), quiet={Quietness.ALL}, **run) == []
     monkeypatch.setattr(plugin, "closing_lines", lambda *given, **options: 1 / 0)
-    assert "what the run left cannot be told: division by zero" in written(*ROUTINE, **run)
+    assert "the results of the run cannot be determined: division by zero" in written(*ROUTINE, **run)
 
 
 def test_without_a_plan_snakemake_tells(written):
@@ -243,6 +261,26 @@ def test_without_a_plan_snakemake_tells(written):
     assert "study x: stopped after 0 s: 1 job failed" in said
     # As of a job that is not known.
     assert "Error in rule simulate:" in written(FAILURE)
+
+
+def test_a_dry_run_ends_with_its_stages_and_lists_jobs_on_request(written, monkeypatch):
+    monkeypatch.setattr(Plan, "look_ahead", lambda self: self.run)
+    messages = (record("Reasons:\n    (check)"), record("This was a dry-run (flag -n). The order of jobs does not"))
+    plan = (BEGUN[0], start(1), start(2), BEGUN[0], *messages)
+    table = written(*plan, dryrun=True, jobs="study", cores="-c3")
+    assert [line.split()[:2] for line in table[:3]] == [["stage", "jobs"], ["points", "2"], ["all", "2"]]
+    assert re.fullmatch("a run takes .* on 3 cores and .* of disk space .*", table[3])
+    assert len(table) == 4
+    listed = written(*plan, dryrun=True, jobs="study", cores="-c3", printshellcmds=True)
+    assert listed[-4:] == table
+    assert {"Job stats:", "Job 1: simulate it", "Reasons:"} <= set(listed)
+
+
+def test_a_cluster_has_jobs_and_no_cores(written):
+    resources = record("Provided", LogEvent.RESOURCES_INFO, nodes=100, cores=None)
+    assert written(resources, *BEGUN)[0] == "2 jobs: points 2; a few seconds with 100 jobs at a time"
+    unlimited = record("Provided", LogEvent.RESOURCES_INFO, nodes=sys.maxsize)
+    assert written(unlimited, *BEGUN)[0] == BEGIN
 
 
 def test_a_reader_that_goes_ends_no_run(monkeypatch):
@@ -268,19 +306,38 @@ def test_settings_of_snakemake_hold(written, tmp_path):
 
 
 def test_a_defect_of_the_display_hides_no_message(written, monkeypatch):
-    take = plugin.LogHandler._take
-    monkeypatch.setattr(plugin.LogHandler, "_take", lambda self, got: 1 / 0 if got is FAILURE else take(self, got))
+    take = plugin.LogHandler._update
+    monkeypatch.setattr(plugin.LogHandler, "_update", lambda self, got: 1 / 0 if got is FAILURE else take(self, got))
     assert {"ZeroDivisionError: division by zero", TOLD} <= set(written(*BEGUN, FAILURE))
 
 
-def test_snakemake_says_what_is_reworded():
+def test_snakemake_has_the_messages_that_are_replaced():
     """Its own words: here it shows that a version has changed them."""
     from snakemake import exceptions
+    from snakemake.api import Workflow
     from snakemake.scheduling import job_scheduler
 
-    assert reworded("Select jobs to execute...") == ""
+    assert replacement("Select jobs to execute...") == ""
     assert '"Select jobs to execute..."' in getsource(job_scheduler)
+    assert replacement("Elapsed time: 0:07:00.875591") == ""
+    assert "Elapsed time: " in getsource(Workflow)
     missing = exceptions.MissingRuleException("x.nc")
-    assert reworded(exceptions.format_exception_to_string(missing)) == (
+    assert replacement(exceptions.format_exception_to_string(missing)) == (
         "x.nc: unknown target (misspelt, or part of a stage disabled by `without`)"
     )
+
+
+def test_a_report_before_a_run_is_refused_in_a_line(tmp_path):
+    """Snakemake has a warning for each file; that of a file that is there stays."""
+    from snakemake import report
+
+    file = tmp_path / "x.nc"
+    warning = f"Missing metadata for file {file}. Maybe metadata was deleted or it was created"
+    assert replacement(warning) == ""
+    file.touch()
+    assert replacement(warning) is None
+    said = replacement("WorkflowError:\nFile x.png marked for report but does not exist.")
+    assert said == "--report: x.png is missing: run the study first, by the same command without --report"
+    source = getsource(report)
+    assert "Missing metadata for file {}. Maybe metadata " in source
+    assert "File {} marked for report but does not exist." in source

@@ -3,7 +3,7 @@
 import pytest
 
 from snakemake_logger_plugin_study import durations
-from snakemake_logger_plugin_study.durations import SHIPPED, Durations, measured, shipped
+from snakemake_logger_plugin_study.durations import SHIPPED, Durations, measured_seconds, shipped_cost
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run
 
 ROWS = {"short": [[1.0, 1.0, 100.0]], "long": [[1.0, 10.0, 50.0], [3.0, 30.0, 150.0]]}
@@ -68,10 +68,10 @@ def test_finished_jobs_give_the_speed_of_the_machine():
 
 
 def test_the_tree_ships_durations_on_a_line():
-    assert [shipped("long", work)[0] for work in (0.0, 1.0, 2.0, 3.0, 9.0)] == [10.0, 10.0, 20.0, 30.0, 90.0]
-    assert shipped("long", 2.0)[1] == 100.0
-    assert shipped("short", 0.0) == shipped("short", 9.0) == (1.0, 100.0)
-    assert shipped("unknown", 1.0)[0] > 0.0
+    assert [shipped_cost("long", work)[0] for work in (0.0, 1.0, 2.0, 3.0, 9.0)] == [10.0, 10.0, 20.0, 30.0, 90.0]
+    assert shipped_cost("long", 2.0)[1] == 100.0
+    assert shipped_cost("short", 0.0) == shipped_cost("short", 9.0) == (1.0, 100.0)
+    assert shipped_cost("unknown", 1.0)[0] > 0.0
     assert run(job("long"), work=2.0).forecast(0.0) == 20.0
 
 
@@ -88,14 +88,25 @@ def test_the_time_left_is_counted_down_until_it_is_worked_out_again():
     assert [made.time_left(now) for now in (1.5, 2.5)] == [28.5, 20.0]
 
 
+def test_the_share_done_is_one_of_time():
+    """A long job counts as its seconds, a running one as the part that has passed; its counts are those of jobs."""
+    made = run(*[done(1.0)] * 10, job("long", state=RUNNING, threads=2), short(state=FAILED), short())
+    stage, total = made.stages(now=3.0)
+    assert (total.name, total.jobs, total.counts[DONE]) == ("all", 13, 10)
+    assert total.share_done == stage.share_done == (10 + 2 * 3) / (10 + 10 + 1 + 1)
+    # A job that takes longer than expected is not more than done.
+    assert made.stages(now=100.0)[-1].share_done == 20 / 22
+    assert run().stages(0.0)[-1].share_done == 0.0
+
+
 def test_what_a_failed_job_blocks():
     made = run(short(), short(), short(0, 1), short(2), short())
     failed, other, after = (made.jobs[number] for number in (0, 1, 2))
     failed.state, other.state = FAILED, RUNNING
-    assert (made.of(FAILED), made.blocked()) == ([failed], {2, 3})
+    assert (made.jobs_in(FAILED), made.blocked()) == ([failed], {2, 3})
     # Tried again, as on a cluster.
     failed.state = RUNNING
-    assert (made.of(FAILED), made.blocked()) == ([], set())
+    assert (made.jobs_in(FAILED), made.blocked()) == ([], set())
     failed.state, after.needs = FAILED, frozenset({1})
     assert made.blocked() == set()
 
@@ -105,17 +116,17 @@ def test_a_job_that_was_not_planned_is_added():
     walked = made.jobs
     for state, counts in ((WAITING, {WAITING: 1}), (RUNNING, {RUNNING: 1}), (DONE, {DONE: 1})):
         made.job(7, "other").state = state
-        assert made.counts() == [("other", counts), ("all", counts)]
+        assert [(stage.name, stage.counts) for stage in made.stages(0.0)] == [("other", counts), ("all", counts)]
     assert walked == {}
 
 
 def test_a_benchmark_file_holds_the_seconds_of_all_threads(tmp_path):
     path = tmp_path / "x.tsv"
-    assert measured(path, 2) is None
+    assert measured_seconds(path, 2) is None
     path.write_text("s\th:m:s\tcpu_time\n2.5000\t0:00:02\tNA\n")
-    assert measured(path, 2) == 5.0
+    assert measured_seconds(path, 2) == 5.0
     path.write_text("s\n")
-    assert measured(path, 2) is None
+    assert measured_seconds(path, 2) is None
 
 
 def test_what_the_tree_ships():

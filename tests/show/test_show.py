@@ -1,4 +1,4 @@
-"""`bk show`: points and summaries in words and as pictures; what is no file of ours is refused in a line."""
+"""`bk show`: points and summaries in words and as pictures; other files are refused in a line."""
 
 import shlex
 import shutil
@@ -66,8 +66,19 @@ def test_a_point_in_words(point, capsys):
         mean, error = (dataset[name][...].item() for name in ("mean_distance", "mean_distance_error"))
         assert f"<J>               {to_ascii(with_error(mean, error))}\n" in said
         assert f"{dataset['event_count'][...]} stops and starts in the whole run\n" in said
-        assert f"{dataset.history} --out FILE\n" in said
+        assert f"reproduce with: {dataset.history} --out FILE\n" in said
     assert "other sources" not in said
+
+
+def test_a_page_fits_the_terminal(point, monkeypatch, capsys):
+    """Except the command, which can be copied as one line."""
+    whole = shown(capsys, point)
+    assert max(map(len, whole.splitlines())) > 100
+    monkeypatch.setenv("COLUMNS", "70")
+    *lines, command = shown(capsys, point).splitlines()
+    assert max(map(len, lines)) <= 70
+    assert command in whole.splitlines()
+    assert " ".join(" ".join([*lines, command]).split()).count("simulate") == whole.count("simulate")
 
 
 def test_a_point_as_a_picture(point, tmp_path, capsys):
@@ -95,6 +106,7 @@ def test_every_summary_in_words(study):
     for path in files:
         result = open_result(path)
         lines = summary_lines(result)
+        assert max(map(len, summary_lines(result, 80))) <= 110, path
         assert result.name == path.stem
         assert lines[0] == f"{path}: {result.data.attrs['title']}"
         assert lines[1].strip()
@@ -108,7 +120,7 @@ def test_every_summary_in_words(study):
     [("mean_distance", "⟨J⟩ versus a. The time average ⟨J⟩"), ("basins", "Basins of attraction. Basin maps over")],
 )
 def test_a_summary_as_its_figure(study, tmp_path, capsys, name, words):
-    """With the summaries and the properties of the study that the figure takes besides."""
+    """With the other summaries and the properties of the study that the figure needs."""
     assert f"x.pdf: {words} " in shown(capsys, study / f"summary/{name}.nc", "--plot", tmp_path / "x.pdf")
     assert (tmp_path / "x.pdf").read_bytes().startswith(b"%PDF")
 
@@ -130,7 +142,7 @@ def test_a_part_of_a_summary_is_described_and_not_drawn(small_studies, tmp_path,
         assert main(["show", str(path), "--plot", str(tmp_path / "x.png")]) == 2
         out, error = capsys.readouterr()
         assert out.startswith(f"{path}: {name.capitalize()}")
-        words = "no figure shows a part of a summary, only the whole one"
+        words = "no picture of a part of a summary; plot the whole summary"
         assert error == f"bk show: {path}: {words}: {results / f'summary/{name}.nc'}\n"
     assert not (tmp_path / "x.png").exists()
 
@@ -163,7 +175,7 @@ def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
         (tmp_path / "foreign.nc", "not written by this program"),
         (tmp_path / "none.nc", "is missing"),
         (tmp_path, "cannot be read"),
-        (study / "study.json", "has no seal in .study.json.seal (shown are points"),
+        (study / "study.json", "not a result file (bk show reads .nc files)"),
         (inside, f"remake it: cd {shlex.quote(str(root))} && snakemake -c2 -R {inside.relative_to(root)}"),
     ):
         said = shown(capsys, path, code=2)

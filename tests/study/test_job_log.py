@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from burridge_knopoff.running.processes import shared_out
-from burridge_knopoff.study.job_log import SILENT, failure_line, failure_reason, remedies
+from burridge_knopoff.study.job_log import SILENT, failure_line, logged_error, remedies
 
 TRACEBACK = """Traceback (most recent call last):
   File "a.py", line 3, in <module>
@@ -29,9 +29,9 @@ TRACEBACK = """Traceback (most recent call last):
         (TRACEBACK, ""),
     ],
 )
-def test_last_words(tmp_path, text, words):
+def test_logged_error(tmp_path, text, words):
     (tmp_path / "log").write_text(text)
-    last = failure_reason(tmp_path / "log")
+    last = logged_error(tmp_path / "log")
     assert last.startswith(words)
     assert bool(last) == bool(words)
     assert "\n" not in last
@@ -41,7 +41,7 @@ def test_the_command_that_remakes_a_bad_file_is_no_part_of_the_reason(tmp_path):
     """Seven jobs may stop at one file: their reasons are listed one by one, the command once."""
     (tmp_path / "log").write_text(TRACEBACK + "ValueError: a.nc: is empty; remake it: snakemake -c2 -R a.nc\n")
     (tmp_path / "other").write_text(TRACEBACK + "ValueError: wrong\n")
-    assert failure_reason(tmp_path / "log") == "ValueError: a.nc: is empty"
+    assert logged_error(tmp_path / "log") == "ValueError: a.nc: is empty"
     assert remedies([tmp_path / "log"] * 7 + [tmp_path / "other"]) == ["snakemake -c2 -R a.nc"]
 
 
@@ -50,11 +50,11 @@ def test_what_a_long_job_has_done_is_not_why_it_failed(tmp_path, caplog):
     with shared_out(1, tmp_path / "kept") as each:
         each("doubled", abs, [1, 2])
     (tmp_path / "log").write_text(f"{caplog.messages[0]}\n")
-    assert failure_reason(tmp_path / "log") == ""
+    assert logged_error(tmp_path / "log") == ""
 
 
 def test_no_log(tmp_path):
-    assert failure_reason(tmp_path / "log") == ""
+    assert logged_error(tmp_path / "log") == ""
 
 
 @pytest.mark.parametrize(("free", "words"), [(0, "no space left on its disk"), (10**9, "it was killed")])

@@ -20,7 +20,7 @@ from tests.workflow.snakemake import Fork
 
 #: Folders of results/<study> that are compared byte by byte.
 COMPARED = ("points", "summary", "figures", "attractors", "basins", "phases", "solvers")
-#: What is being made when a kill hits a stage.
+#: The file that is being made when a kill hits a stage.
 STAGES = ("points", "attractors", "basins", "solvers", "summary", "figures", "claims", "report")
 #: Touched when Snakemake is started.
 BEGUN = "begun"
@@ -146,14 +146,14 @@ def differences(study: Study, other: Study, *folders: str) -> list[str]:
 
 
 def check_end(study: Study, other: Study, *targets: str, folders: Collection[str] = ()) -> None:
-    """Require that a run goes on without a flag, ends with the files of another study, and leaves no others."""
+    """Require that a run resumes without a flag, ends with the files of another study, and leaves no others."""
     assert go_on(study, *targets) == []
     assert differences(study, other, *folders) == []
     assert temporaries(study) == []
 
 
 def broken(study: Study, faults: Mapping[str, str]) -> dict[str, str]:
-    """Return the environment in which each Python process first runs the code of a key that stands in its command.
+    """Return the environment in which each Python process first runs the code of a key that its command contains.
 
     A script of Snakemake's holds the names of its files itself: its text counts as part of the command.
     """

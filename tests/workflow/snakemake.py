@@ -31,7 +31,7 @@ def become(call):
     sys.argv = sys.orig_argv = call["command"]
 def serve(calls, run):
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
-    # Else each fork looks through all that is imported when it ends, for longer than most of them work.
+    # Otherwise each fork searches everything that is imported when it ends, which takes longer than most of them run.
     gc.freeze()
     while True:
         message, answering, _, _ = socket.recv_fds(calls, 1 << 20, 1)
@@ -40,7 +40,7 @@ def serve(calls, run):
         if not os.fork():
             signal.signal(signal.SIGCHLD, signal.SIG_DFL)
             call, answers = json.loads(message), open(*answering, "w", buffering=1)
-            # Whoever kills the group of a Snakemake kills its scripts.
+            # A signal to the group of a Snakemake also reaches its scripts.
             os.setpgid(0, call["group"])
             process = os.fork()
             if not process:

@@ -1,4 +1,4 @@
-"""Broken configs and command lines: one line that says what is wrong, and nothing written."""
+"""Broken configs and command lines: one line that names the error, and nothing written."""
 
 import json
 import shutil
@@ -14,7 +14,7 @@ from tests.bad_configs import BAD_FILES, FIRST_OF_KEYS, GOOD
 from tests.workflow.conftest import TINY, Study
 from tests.workflow.snakemake import run_snakemake
 
-# What Snakemake says of itself at every start.
+# Snakemake's own first lines.
 ANNOUNCED = ("Using workflow specific profile", "Assuming unrestricted shared filesystem", "Building DAG of jobs")
 
 # What Snakemake makes before it reads the Snakefile: empty folders, and its log.
@@ -87,7 +87,7 @@ CONFIG = ["--configfile", "study.yaml"]
 LINES = {
     "target_behind_configfile": (
         [*CONFIG, "points"],
-        ["--configfile: got points as a second", "a target stands before"],
+        ["--configfile: got points as a second", "put a target before it"],
     ),
     "two_configs": ([*CONFIG, "study.yaml"], ["--configfile: got study.yaml as a second"]),
     "configfile_twice": ([*CONFIG, *CONFIG], ["--configfile: got study.yaml as a second"]),
@@ -99,7 +99,10 @@ LINES = {
     "long": (["--configfile", "x" * 300], ["xxx: cannot be read: File name too long"]),
     "no_value": ([*CONFIG, "--config", "window"], ["--config: got 'window', expected key=value"]),
     "no_key": ([*CONFIG, "--config", "=7000"], ["--config: got '=7000', expected"]),
-    "short_key": ([*CONFIG, "--config", "a=0.1"], ["--config: got 'a=0.1', expected", "two letters"]),
+    "short_key": (
+        [*CONFIG, "--config", "a=0.1"],
+        ["--config: a cannot be set here", "two letters); set it in the config file"],
+    ),
     "unknown_key": ([*CONFIG, "--config", "windows=7000"], ["--config: windows: unknown key"]),
     "bad_value": ([*CONFIG, "--config", "window=long"], ["--config: window: 'long'", "a number"]),
     "not_finite": ([*CONFIG, "--config", "window=nan"], ["window: nan", "a number"]),
@@ -170,7 +173,7 @@ def test_a_config_with_any_name_is_read(tmp_path):
     for name in ("my study.yaml", "Größe.yaml", "study.json", "study"):
         study = Study(tmp_path, GOOD)
         study.config = study.config.rename(tmp_path / name)
-        assert "simulate" in study.ok("-n")
+        assert "simulate" in study.ok("-n", "-p")
 
 
 def test_what_is_refused_before_snakemake_looks_is_refused_by_the_snakefile_too(tmp_path):

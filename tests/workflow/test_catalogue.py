@@ -141,7 +141,7 @@ def test_a_change_makes_again_what_depends_on_it(study, capsys):
         study.config.write_text(
             CATALOGUE.replace("window: 800", f"window: 800, {change}" if "low" in change else change)
         )
-        plan = study.ok(*TARGETS, "-n")
+        plan = study.ok(*TARGETS, "-n", "-p")
         assert dict(re.findall(r"^(\w*catalogue\w*|figure_slip_map) +(\d+)$", plan, re.MULTILINE)) == {
             name: str(count) for name, count in planned.items()
         }
@@ -151,7 +151,7 @@ def test_a_change_makes_again_what_depends_on_it(study, capsys):
 
 def test_without_the_section_there_is_no_stage(study):
     study.config.write_text(BEFORE)
-    plan = study.ok("-n")
+    plan = study.ok("-n", "-p")
     assert "catalogue" not in plan
     assert "slip_map" not in plan
     study.config.write_text(CATALOGUE)
@@ -179,7 +179,7 @@ def test_a_catalogue_whose_run_diverged_is_a_failure(tmp_path, capsys):
     said = study.ok()
     summary = "results/runaway/summary/catalogue.nc"
     assert f"catalogues: 1 of 2 did not complete: diverged 1 (status in {summary})\n" in said
-    assert f"catalogues: 1 of 2 without events (event_count in {summary})\n" in said
+    assert "no slip event" not in said
     results = study.folder / "results/runaway"
     assert main(["check", str(results)]) == 3
     path = results / "catalogues/linearized/a1.9000.nc"

@@ -49,10 +49,10 @@ def test_the_target_makes_its_files_and_no_points(study):
 
 def test_they_are_a_part_of_a_study_that_says_their_lengths(study):
     with_them = re.compile(r"^(watch_chain|chains_summary|figure_chains) ", re.MULTILINE)
-    assert len(set(with_them.findall(study.ok("-n", "-F")))) == 3
+    assert len(set(with_them.findall(study.ok("-n", "-p", "-F")))) == 3
     study.config.write_text(CHAINS.replace("  blocks: [3, 2]\n", ""))
-    assert not with_them.findall(study.ok("-n", "-F"))
-    assert re.search(r"^watch_chain +7$", study.ok("chains", "-n"), re.MULTILINE)
+    assert not with_them.findall(study.ok("-n", "-p", "-F"))
+    assert re.search(r"^watch_chain +7$", study.ok("chains", "-n", "-p"), re.MULTILINE)
     study.config.write_text(CHAINS)
 
 
@@ -71,5 +71,5 @@ def test_the_model_reruns_them_and_the_points_do_not(study):
     study.config.write_text(CHAINS + "sampling: 2\n")
     assert "Nothing to be done" in study.ok("chains", "-n")
     study.config.write_text(CHAINS + "v: 0.2\n")
-    assert re.search(r"^watch_chain +2$", study.ok("chains", "-n"), re.MULTILINE)
+    assert re.search(r"^watch_chain +2$", study.ok("chains", "-n", "-p"), re.MULTILINE)
     study.config.write_text(CHAINS)

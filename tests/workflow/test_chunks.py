@@ -52,6 +52,8 @@ def times(study):
 
 def test_the_whole_study_is_made_and_read(plane):
     assert "points: all 8 completed" in plane.output
+    # Its figures over the parameters are not those of the paper.
+    assert "paper" not in plane.output
     results = plane.folder / RESULTS
     assert {path.stem for path in (results / "figures").glob("grid_*.png")} == {
         "grid_distance",
@@ -85,7 +87,7 @@ def test_nothing_is_made_twice(copy):
 def test_a_point_that_is_gone_or_damaged_is_made_again_alone(copy, damage):
     before, content = times(copy), (copy.folder / POINT).read_bytes()
     damage(copy.folder / POINT)
-    assert f"{MARK}: a point of this chunk is missing or was changed: it is made again" in copy.ok()
+    assert f"{MARK}: a point of it is missing or was changed: it is recreated" in copy.ok()
     after = times(copy)
     assert {name for name in before if after[name] != before[name]} == {POINT}
     assert (copy.folder / POINT).read_bytes() == content

@@ -1,4 +1,4 @@
-"""Damaged and foreign files: the stage that reads one stops and names it, why, and the command that remakes it."""
+"""Damaged and foreign files: the job that reads one stops with its name, the reason and the command to recreate it."""
 
 import hashlib
 import os
@@ -193,7 +193,7 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
     ],
 )
 def test_a_bad_file_as_old_as_it_was(copy, path, rule):
-    """Nothing tells Snakemake that it has changed: whoever reads it next finds out."""
+    """Snakemake does not notice the change: the next job that reads the file does."""
     target = copy.folder / "results" / "tiny" / path
     times = target.stat()
     rewrite(target, noise_inside)
@@ -221,7 +221,7 @@ def test_a_bad_summary_is_remade(finished, copy):
 
 
 def as_old_as(path: Path, change) -> None:
-    """Change a file so that its time of modification tells nothing."""
+    """Change a file and keep its modification time."""
     times = path.stat()
     change(path)
     os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
@@ -266,17 +266,17 @@ def test_damaged_texts_and_pictures_are_made_again(copy, finished):
         as_old_as(results / name, lambda path: rewrite(path, cut))
     as_old_as(results / "summary/agreement.txt", lambda path: path.write_bytes(b""))
     said = copy.ok("-n")
-    assert "results/tiny/summary/agreement.txt: is empty: it would be made again" in said
+    assert "results/tiny/summary/agreement.txt: is empty: it would be recreated" in said
     found = {finding.path.name: finding.kind for finding in check_study(results).findings}
     assert found == dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt")
     said = copy.ok()
-    assert "results/tiny/figures/orbits.png: was changed after it was written: it is made again" in said
+    assert "results/tiny/figures/orbits.png: has other bytes than were written: it is recreated" in said
     assert not check_study(results).findings
     check_end(copy, finished)
 
 
 def test_touching_hides_nothing(copy):
-    """What a file was made from stands in it: Snakemake's records may say that all is up to date."""
+    """A file records what it was made from, even if Snakemake's own records call it up to date."""
     results = copy.folder / "results" / "tiny"
     copy.config.write_text(f"{TINY}synchronization_threshold: 0.2\n")
     copy.ok("--touch")
@@ -284,13 +284,13 @@ def test_touching_hides_nothing(copy):
     reasons = {finding.path.name: finding.reason for finding in check_study(results).findings}
     words = "was made with config.synchronization_threshold: got 1e-06, expected 0.2"
     assert reasons["mean_distance.nc"] == reasons["lyapunov.nc"] == words
-    # What needs the key, and what is made from that; no more.
+    # The files that need the key and their descendants, and no others.
     assert reasons.keys() >= {"linearized.nc", "tile0.nc", "two_blocks.nc", "claims.json", "report.html", "basins.png"}
     assert not reasons.keys() & {"bifurcation_diagram.nc", "orbits.nc", "stick_slip.nc", "proof.nc", "a0.2000.nc"}
     with pytest.raises(BadFile, match=words):
         open_result(results / "summary/mean_distance.nc")
     with pytest.raises(BadFile):
-        open_study(results)
+        open_study(results)["summary/mean_distance"]
     copy.config.write_text(TINY)
     copy.ok("--touch")
     assert not check_study(results).findings

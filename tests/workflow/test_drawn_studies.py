@@ -101,7 +101,7 @@ def test_a_drawn_study_ends_with_its_report(number, changes, tmp_path):
     run = study.run()
     results = study.folder / "results" / name
     if run.returncode and not results.exists():
-        # What is not allowed is refused before anything is written.
+        # Invalid configs are refused before anything is written.
         said = [line for line in run.stderr.strip().splitlines() if not line.startswith("Using workflow specific")]
         assert [line.startswith("study.yaml: ") for line in said] == [True], run.stderr
         return

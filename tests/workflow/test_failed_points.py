@@ -1,4 +1,4 @@
-"""Points that end by a limit are results: the study goes on, and what they leave open is seen everywhere."""
+"""Points that stop at a limit are results: the study continues, and all pages show what is undetermined."""
 
 import subprocess
 import sys

@@ -198,7 +198,7 @@ def test_read_only_from_the_beginning(study):
     for folder in ("results", "results/tiny/points"):
         with read_only(study.folder / folder):
             stops_at_once(study, f"{'results/tiny' if folder == 'results' else folder} {reason}")
-            # What is to be done can still be seen.
+            # A dry run is still possible.
             study.ok("-n")
     with read_only(study.folder / ".snakemake"):
         stops_at_once(study, f"{study.folder}/.snakemake {reason}")

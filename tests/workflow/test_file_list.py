@@ -75,6 +75,6 @@ def test_what_rules_make_is_what_is_checked(study):
 
 def test_verdicts_wait_for_what_judges_read(study):
     """No statement of the paper is about maps of basins: the longest jobs of a study."""
-    found = jobs(study.ok("-n", "results/tiny/summary/claims.json"))
+    found = jobs(study.ok("-n", "-p", "results/tiny/summary/claims.json"))
     assert {"attractors", "phases", "two_blocks", "stick_slip"} <= found.keys()
     assert not found.keys() & {"basins", "basin_tile", "basin_pairs"}

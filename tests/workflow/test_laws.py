@@ -86,7 +86,7 @@ def test_a_summary_has_the_laws_in_the_order_of_the_config(laws):
 
 def test_another_number_of_one_law_remakes_its_points_only(laws):
     study = Study(laws.parent.parent, FOUR_LAWS.replace('"sigma": 0.01', '"sigma": 0.02'))
-    planned = study.ok("-n", "points")
+    planned = study.ok("-n", "-p", "points")
     assert planned.count("simulate drop law") == 2
     assert "simulate stribeck law" not in planned
 

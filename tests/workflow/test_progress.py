@@ -1,4 +1,4 @@
-"""What a run shows: stages and time left on a terminal and without one, and its last lines."""
+"""The display of a run: stages and time left on a terminal and without one, its closing lines, and its remarks."""
 
 import os
 import pty
@@ -51,14 +51,14 @@ def plain(text):
 @pytest.mark.slow
 def test_a_terminal_shows_stages_and_time_left(study):
     command = [argument for argument in study.command(*[]) if argument != "--nocolor"]
-    # So many that the display is drawn anew while some are still to come.
+    # Enough points for the display to be redrawn before the last one.
     code, written = on_a_terminal([*command[:2], "points", *command[2:]], study.folder)
     text = plain(written)
     assert code == 0, text
     assert re.search(r"^points +[━╸╺ ]+ +\d+ of 16 +\d running", text, re.MULTILINE)
     assert re.search(r"^all +[━╸╺ ]+ +\d+ of 16", text, re.MULTILINE)
     assert re.search(r"^(a few seconds left|about .* left), (\d+ min )?\d+ s so far", text, re.MULTILINE)
-    assert re.search(r"^16 jobs: points 16; (about .*|a few seconds) left$", text, re.MULTILINE)
+    assert re.search(r"^16 jobs: points 16; (about .*|a few seconds) on 2 cores$", text, re.MULTILINE)
     assert "files made in results/tiny: points 16" in text
     assert "Select jobs to execute" not in text
     # The cursor is given back.
@@ -73,7 +73,7 @@ def test_interrupted_on_a_terminal(study):
     text = plain(written)
     assert code != 0
     assert re.search(r"study tiny: stopped after [\d min]+ s: 2 jobs interrupted, 14 jobs did not run", text)
-    assert "the same command goes on where this run stopped" in text
+    assert "Run the same command again to continue." in text
     assert written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l") > 0
 
 
@@ -83,14 +83,15 @@ def test_without_a_terminal(finished):
         next(n for n, line in enumerate(lines) if words in line) for words in ("jobs: points 16", "study tiny: done")
     )
     total, stages, time = re.fullmatch(r"(\d+) jobs: (.*); (.*)", lines[begin]).groups()
-    assert re.fullmatch("(about .*|a few seconds) left", time)
+    assert re.fullmatch("(about .*|a few seconds) on 2 cores", time)
+    assert re.fullmatch(r"study tiny: done in [\d min]+ s on 2 cores", lines[end])
     assert "at least" not in finished.output
     assert {"points 16", "attractors 3", "basins 10", "phases 3", "claims 1", "report 1"} <= set(stages.split(", "))
     assert "curves" not in stages
     assert sum(int(count) for count in re.findall(r"\d+", stages)) == int(total)
-    progress = [line for line in lines if re.search(rf"all \d+ of {total} \(\d+ %\)", line)]
-    # Snakemake's own last lines come before those of the study; 9.22 tells no time.
-    told = [line.split(":")[0] for line in lines[begin + 1 : end] if not line.startswith("Elapsed time:")]
+    progress = [line for line in lines if re.search(rf"all \d+ of {total} jobs; \d+ % done", line)]
+    # Snakemake's own last lines come before those of the study.
+    told = [line.split(":")[0] for line in lines[begin + 1 : end]]
     told.remove("the figures of the paper are in results/tiny/figures")
     assert told == [*progress, "Complete log(s)"]
     # Of which there is none in the first ten seconds.
@@ -146,7 +147,7 @@ def test_failed_jobs_are_named_with_their_logs(copy):
     assert lines[end + 2] == "made: nothing"
     remake = rf"this command recreates the bad files and continues: snakemake -c2 .* -R {path}"
     assert re.fullmatch(remake, lines[end + 3])
-    # It was told when it happened as well, in the same line and without Snakemake's block of all input files.
+    # The same line was written when the job failed, without Snakemake's block of all input files.
     assert lines.count(told) == 2
     assert "Error in rule" not in run.stderr
 
@@ -155,7 +156,7 @@ def test_no_defect_of_the_last_lines_fails_a_run(copy):
     summary = copy.folder / "results" / "tiny" / "summary" / "mean_distance.nc"
     times = summary.stat()
     summary.write_text("damaged")
-    # As old as it was: what depends on it is not made again.
+    # With its old modification time nothing that depends on it is recomputed.
     os.utime(summary, ns=(times.st_atime_ns, times.st_mtime_ns))
     output = copy.ok("summary", "figures", "-R", "figure_equilibrium", "--rerun-triggers", "params")
     assert "study tiny: done in" in output
@@ -164,6 +165,34 @@ def test_no_defect_of_the_last_lines_fails_a_run(copy):
 
 def test_the_stage_of_a_figure_is_called_figures(study):
     assert re.search(r"^1 job: figures 1; ", study.ok("results/tiny/figures/sketch.png"), re.MULTILINE)
+
+
+def test_a_dry_run_ends_with_a_table_of_its_stages(study):
+    lines = study.run("-n").stdout.splitlines()
+    begin = next(n for n, line in enumerate(lines) if re.fullmatch("stage +jobs +CPU time", line))
+    counts = {stage: int(count) for stage, count in (line.split()[:2] for line in lines[begin + 1 : -1])}
+    assert counts["points"] == 16
+    assert counts.pop("all") == sum(counts.values())
+    assert lines[-1].startswith("a run takes ")
+    assert not any(line.startswith(("Job ", "Job stats", "Reasons")) for line in lines)
+
+
+def test_values_that_change_results_in_place_are_announced(study):
+    """Until the results are theirs; not if they are of a study of their own."""
+    said = "--config window: results/tiny will hold the results of the changed config in place of those of "
+    target = "results/tiny/figures/sketch.png"
+    changed = target, "--config", "window=300"
+    for run, is_said in ((["-n", *changed], True), (changed, True), (["-n", *changed], False), (["-n", target], False)):
+        assert (said in study.ok(*run)) is is_said, run
+    assert said not in study.ok("-n", "results/other/figures/sketch.png", "--config", "window=300", "study=other")
+
+
+def test_a_report_before_a_run_is_refused_in_a_line(study):
+    run = study.run("--report")
+    assert run.returncode != 0
+    last = run.stderr.splitlines()[-1]
+    assert re.fullmatch("--report: results/tiny/.* is missing: run the study first, by the same .* --report", last)
+    assert "Missing metadata" not in run.stderr
 
 
 def test_without_hooks(study):

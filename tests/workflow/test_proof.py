@@ -30,7 +30,7 @@ def test_the_critical_values_are_proved(finished):
 
 
 def test_it_depends_on_the_model_alone(copy):
-    """Not on the grid or on the runs; other laws are none of its."""
+    """It depends neither on the grid nor on the runs nor on other laws."""
     assert "Nothing to be done" in copy.ok("proof", "-n")
     copy.config.write_text(TINY.replace("a: [0.05, 0.08", "a: [0.06, 0.08").replace("window: 200", "window: 300"))
     assert "Nothing to be done" in copy.ok("proof", "-n")
@@ -38,7 +38,7 @@ def test_it_depends_on_the_model_alone(copy):
     copy.config.write_text(TINY + laws)
     assert "Nothing to be done" in copy.ok("proof", "-n")
     copy.config.write_text(TINY + "v: 0.2\n")
-    assert re.search(r"^proof +1$", copy.ok("proof", "-n", "--quiet", "rules"), re.MULTILINE)
+    assert re.search(r"^proof +1$", copy.ok("proof", "-n", "-p", "--quiet", "rules"), re.MULTILINE)
 
 
 @pytest.mark.parametrize(
@@ -59,11 +59,11 @@ def test_a_study_without_what_is_proved_is_told_so_and_goes_on(tmp_path, other):
         in run.stdout + run.stderr
     )
     assert "Traceback" not in run.stdout + run.stderr
-    planned = study.ok("-n", "--quiet", "rules")
+    planned = study.ok("-n", "-p", "--quiet", "rules")
     assert "claims" in planned
     assert not re.search(r"^proof +1$", planned, re.MULTILINE)
 
 
 def test_claims_and_summaries_ask_for_it(study):
     for target in ("summary", "results/tiny/summary/claims.json"):
-        assert re.search(r"^proof +1$", study.ok(target, "-n", "--quiet", "rules"), re.MULTILINE)
+        assert re.search(r"^proof +1$", study.ok(target, "-n", "-p", "--quiet", "rules"), re.MULTILINE)

@@ -177,7 +177,7 @@ def test_stick_slip_summary(results):
             one = point.sel(block=block)
             assert one["stop_rate"].item() == len(stops) / 200.0 > 0.0
             assert one["cycle_time"].item() == pytest.approx(np.diff(stops).mean(), rel=1e-12)
-        # All of the window, but for what is before the first stop and after the last event.
+        # The whole window, except before the first stop and after the last event.
         whole = simulate("nonlinear", 0.22, "plus", **{**OPTIONS, "trajectory": 200.0})
         expected = np.corrcoef(whole.velocity[:, 0], whole.velocity[:, 2])[0, 1]
         assert point["velocity_correlation"].item() == pytest.approx(expected, abs=5e-3)

@@ -86,7 +86,7 @@ def test_another_workflow_imports_the_study(tmp_path):
     point = "results/tiny/points/linearized/plus/a0.0800.nc"
     (tmp_path / "Snakefile").write_text(MODULE.format(repository=study.repository, point=point))
     command = study.command()[:2]
-    whole = run_snakemake([*command, "-n", "stick_slip_all"], tmp_path, study.environment())
+    whole = run_snakemake([*command, "-n", "-p", "stick_slip_all"], tmp_path, study.environment())
     assert whole.returncode == 0, whole.stderr
     assert {"stick_slip_attractors_of_law", "stick_slip_report"} <= set(whole.stdout.split())
     run = run_snakemake([*command, "mine"], tmp_path, study.environment())
@@ -97,7 +97,7 @@ def test_another_workflow_imports_the_study(tmp_path):
 
 def test_stages_that_the_config_leaves_out(tmp_path):
     study = Study(tmp_path, f"{TINY}\nwithout: [attractors, proof, claims]\nlaws: {{linearized: {{}}}}")
-    output = study.ok("-n")
+    output = study.ok("-n", "-p")
     rules = set(jobs(output))
     words = (
         "attractors",
@@ -112,15 +112,18 @@ def test_stages_that_the_config_leaves_out(tmp_path):
     )
     assert not [rule for rule in rules for word in words if word in rule]
     assert {"simulate_solver", "agreement", "figure_mean_distance", "figure_orbits", "report"} <= rules
-    assert re.search(r"^a run takes .* on 2 cores: .* of CPU time, and \d+ MB of disk$", output, re.MULTILINE)
+    assert re.search(r"^a run takes .* on 2 cores and \d+ MB of disk space \(.*\)$", output, re.MULTILINE)
+    left_out = "without attractors, bifurcations, edges, basins, phases, proof, claims: the study still contains"
+    assert f"{left_out} solvers (only the figures of the paper: snakemake curves)" in output
     run = study.run("-n", "results/tiny/summary/attractors.nc")
     assert "results/tiny/summary/attractors.nc: unknown target" in run.stdout
 
 
 def test_stage_targets(study):
-    assert set(jobs(study.ok("points", "-n"))) == {"simulate", "points"}
-    assert {"simulate", "mean_distance", "bifurcation_diagram", "agreement"} < set(jobs(study.ok("summary", "-n")))
-    assert "figure_agreement" in jobs(study.ok("figures", "-n"))
+    assert set(jobs(study.ok("points", "-n", "-p"))) == {"simulate", "points"}
+    planned = jobs(study.ok("summary", "-n", "-p"))
+    assert {"simulate", "mean_distance", "bifurcation_diagram", "agreement"} < set(planned)
+    assert "figure_agreement" in jobs(study.ok("figures", "-n", "-p"))
 
 
 def test_every_rule_says_what_it_is_for(study):
@@ -131,14 +134,14 @@ def test_every_rule_says_what_it_is_for(study):
 
 
 def test_one_rule_again(copy):
-    planned = jobs(copy.ok("-n", "-R", "agreement"))
+    planned = jobs(copy.ok("-n", "-p", "-R", "agreement"))
     assert "simulate" not in planned
     assert planned["agreement"] == planned["figure_agreement"] == 1
 
 
 def test_a_key_of_the_summaries_reruns_no_simulation(copy):
     copy.config.write_text(TINY + "synchronization_threshold: 0.01\n")
-    planned = jobs(copy.ok("-n"))
+    planned = jobs(copy.ok("-n", "-p"))
     assert "simulate" not in planned
     assert "bifurcation_diagram" not in planned
     assert {"mean_distance", "agreement", "figure_mean_distance", "figure_agreement"} <= set(planned)
@@ -146,12 +149,12 @@ def test_a_key_of_the_summaries_reruns_no_simulation(copy):
 
 def test_a_key_of_the_simulations_reruns_them(copy):
     copy.config.write_text(TINY + "sampling: 2\n")
-    assert jobs(copy.ok("-n"))["simulate"] == 16
+    assert jobs(copy.ok("-n", "-p"))["simulate"] == 16
 
 
 def test_a_wider_grid_keeps_the_points_that_are_there(copy):
     copy.config.write_text(TINY.replace("[0.05,", "[0.05, 0.06,"))
-    assert jobs(copy.ok("-n"))["simulate"] == 4
+    assert jobs(copy.ok("-n", "-p"))["simulate"] == 4
 
 
 @pytest.mark.slow

@@ -248,5 +248,5 @@ def test_submit_finds_what_another_snakemake_submitted(cluster, tmp_path):
     # It ended well, and no Snakemake knows.
     assert call("submit.py", script) == f"0:{name}"
     assert call("status.py", f"0:{name}") == "success"
-    # Now one does: whoever asks for it again wants it made again.
+    # Now one does: a second request recomputes it.
     assert call("submit.py", script).partition(":")[2] != name

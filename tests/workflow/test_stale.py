@@ -1,4 +1,4 @@
-"""What an edit makes out of date, as Snakemake plans it: what `jobs` tells, which tests/jobs try key by key."""
+"""What an edit makes out of date in Snakemake's plan: the same as in `jobs`, which tests/jobs check key by key."""
 
 import contextlib
 import subprocess
@@ -21,19 +21,19 @@ def planned(study, *roots):
     """Return the jobs of a run in which these rules are forced."""
     key = (study.folder, study.repository, roots)
     if key not in _PLANS:
-        _PLANS[key] = jobs(study.ok("-n", "-R", *roots))
+        _PLANS[key] = jobs(study.ok("-n", "-p", "-R", *roots))
     return _PLANS[key]
 
 
 @pytest.fixture(scope="module")
 def studied(finished, tmp_path_factory):
-    """The finished study with a copy of the tree that is to be edited and mended again."""
+    """The finished study with a copy of the tree, which tests edit and restore."""
     folder = tmp_path_factory.mktemp("studied")
     for name in ("Snakefile", "profiles", "config", "src", "workflow", "pyproject.toml", "Makefile"):
         subprocess.run(["cp", "-a", str(REPOSITORY / name), str(folder)], check=True)
     study = copied(finished.folder, folder / "study", folder)
-    # Neither where the sources lie nor where the results do makes a difference.
-    assert jobs(study.ok("-n")) == {}
+    # The folders of the sources and of the results do not matter.
+    assert jobs(study.ok("-n", "-p")) == {}
     return study
 
 
@@ -87,7 +87,7 @@ def test_comments_docstrings_and_plumbing_remake_nothing(studied):
 def test_code_remakes_what_depends_on_it(studied, name, roots):
     """The roots run again; nothing does that does not need them."""
     with Edit(studied.repository / PACKAGE / name, CODE):
-        found = jobs(studied.ok("-n"))
+        found = jobs(studied.ok("-n", "-p"))
     assert set(roots) <= set(found)
     assert found == planned(studied, *roots)
 
@@ -112,7 +112,7 @@ def uncompiled(studied, tmp_path_factory):
 
 def test_an_edited_kernel_that_is_not_built_yet_remakes_what_depends_on_it(uncompiled):
     with Edit(uncompiled.repository / PACKAGE / "kernel/module.cpp", "\nint more;\n"):
-        found = jobs(uncompiled.ok("-n"))
+        found = jobs(uncompiled.ok("-n", "-p"))
     assert {"simulate", "attractors_of_law", "orbits", "two_blocks", "proof", "claims", "report"} <= set(found)
 
 
@@ -136,14 +136,14 @@ def changed(edited, changes):
 
 @pytest.mark.parametrize("changes", [{"v": 0.11}, {"basins.pixels": 9}, {"a": [0.05, 0.06, 0.08, 0.2, 0.22]}])
 def test_a_key_remakes_only_what_uses_it(edited, changes):
-    found = jobs(changed(edited, changes).ok("-n"))
+    found = jobs(changed(edited, changes).ok("-n", "-p"))
     del found["all"]
     assert found == counts(jobs_of(changes))
 
 
 def test_maps_of_basins_leave_the_verdicts_up_to_date(edited):
     """No statement of the paper is about them."""
-    found = jobs(changed(edited, {"basins.pixels": 9, "basins.pairs": 21}).ok("-n"))
+    found = jobs(changed(edited, {"basins.pixels": 9, "basins.pairs": 21}).ok("-n", "-p"))
     assert {"basins", "figure_basins", "report"} <= found.keys()
     assert "claims" not in found
 
@@ -157,7 +157,7 @@ def test_neither_words_nor_order_nor_notation_of_a_config_count(edited):
         ("defaults", f"{TINY}v: 0.1\ncontact: one_sided\n"),
     ):
         edited.config.write_text(text)
-        assert set(jobs(edited.ok("-n"))) <= {"report", "all"}, name
+        assert set(jobs(edited.ok("-n", "-p"))) <= {"report", "all"}, name
 
 
 def test_results_know_their_sources(finished):

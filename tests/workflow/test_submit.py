@@ -1,4 +1,4 @@
-"""The programs that submit jobs, told what Slurm answers: a controller that is silent, loses an answer, or refuses."""
+"""The programs that submit jobs, with prepared answers of Slurm: none, a lost one, or a refusal."""
 
 import importlib
 import json
@@ -20,7 +20,7 @@ SILENT = (1, "", "sbatch: error: Batch job submission failed: Unable to contact 
 
 @pytest.fixture
 def slurm(monkeypatch, tmp_path):
-    """Return the programs as modules, in a folder with a job script, and how Slurm is told what to answer.
+    """Return the programs as modules, in a folder with a job script, and a function that sets Slurm's answers.
 
     An answer is (exit code, output, error), or a function of the command that returns one.
     """

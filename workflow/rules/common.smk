@@ -1,18 +1,18 @@
-# What the declaration of a rule in burridge_knopoff.jobs says, in the terms of Snakemake.
+# The declarations of rules in burridge_knopoff.jobs, in Snakemake's terms.
 
 
 def inputs(rule, name):
-    """Return a function that gives the files of a name that a job reads."""
+    """Return the input function of a rule for one of its named inputs."""
     return lambda wildcards: paths(JOBS.inputs(rule, dict(wildcards))[name])
 
 
 def points_of(rule):
-    """Return a function that gives the points that a job reads, or the marks of their chunks."""
+    """Return the input function of a rule for the points that it reads, or for the marks of their chunks."""
     return lambda wildcards: paths(JOBS.point_files(rule, dict(wildcards)))
 
 
 def abouts(rule):
-    """Return a function that tells what the files of a job must be made from, which they are sealed with."""
+    """Return a params function: what the files of a job must be made from, which their seals record."""
 
     def of_job(wildcards):
         if rule.name not in JOBS.existing:
@@ -22,8 +22,8 @@ def abouts(rule):
     return of_job
 
 
-def shown_in_report(path, shown):
-    """Return a file as `snakemake --report` shows it, if it does."""
+def mark_for_report(path, shown):
+    """Return a file, marked for `snakemake --report` if that shows it."""
     if shown is None:
         return path
     caption = f"../report/{shown.caption}.rst"
@@ -32,10 +32,10 @@ def shown_in_report(path, shown):
 
 
 def resources_of(rule):
-    """Return what a job needs."""
+    """Return the resources of a job."""
     memory, shared = rule.memory, rule.cores != 1
     needed = {
-        # A profile sets this if threads are the width of a group: `cores` in workflow/profiles/slurm.
+        # A profile sets this where `threads` is the width of a group: `cores` in workflow/profiles/slurm.
         "cpus_per_task": (lambda wildcards, threads: threads) if shared else None,
         "mem_mb": (
             (lambda wildcards, threads: memory + 100 * threads)
@@ -48,7 +48,7 @@ def resources_of(rule):
 
 
 def further_params(rule):
-    """Return what decides nothing in the files of a rule."""
+    """Return the params that do not affect the content of the files of a rule."""
     words = "".join(shown.words for shown in rule.shown.values())
     params = {"caption": lambda wildcards: words.format(**wildcards)} if words else {}
     return (

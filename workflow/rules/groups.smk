@@ -1,18 +1,18 @@
-# Groups of jobs, for a cluster: those that the profile names among `group-components`.
+# Groups of jobs on a cluster, if the profile names them among `group-components`.
 
 
 def group(name):
-    """Return the name of a group of jobs if the profile has it among `group-components`, else None."""
+    """Return the name of a group of jobs if the profile names it among `group-components`, otherwise None."""
     return lambda wildcards: (
         name if name in workflow.group_settings.group_components else None
     )
 
 
 def fixed_group(name, points):
-    """Return what gives the jobs of a rule their groups, by wildcards; none unless `group-components` has a size.
+    """Return a function that assigns the jobs of a rule to groups; to none unless `group-components` has a size.
 
-    Snakemake would put jobs together at random. These groups are always the same, so that a run finds those of an
-    earlier one that was killed.
+    Snakemake would form groups at random. These groups are always the same, so that a run finds those of an earlier run
+    that was killed.
     """
     numbers = {frozenset(point.items()): number for number, point in enumerate(points)}
 
@@ -23,9 +23,8 @@ def fixed_group(name, points):
         if size == 1 or number is None:
             return None
         group = f"{name}{number // size}"
-        # Snakemake unites jobs that need nothing of each other up to the size of the parent group. Nothing documented
-        # says which jobs: a group named by wildcards cannot cut the grid into pieces. tests/workflow/test_groups.py
-        # holds it.
+        # Snakemake joins independent jobs up to the size of the parent group. No documented option selects these jobs:
+        # a group named by wildcards cannot divide the grid into chunks. tests/workflow/test_groups.py tests this.
         workflow.parent_groupids[group] = name
         return group
 

@@ -1,5 +1,5 @@
-# All that follows from the points: a rule for each that src/burridge_knopoff/jobs declares for the study. There stands
-# what a rule reads, what of the config decides its files, and which function makes them.
+# Everything that is computed from the points: one rule for each declaration in src/burridge_knopoff/jobs, which says
+# what the rule reads, which parts of the config determine its files, and which function makes them.
 
 
 for declared in JOBS.defined.values():
@@ -14,7 +14,7 @@ for declared in JOBS.defined.values():
             **({"points": points_of(declared)} if declared.points else {}),
         output:
             [
-                shown_in_report(f"{RESULTS}/{form}", declared.shown.get(form))
+                mark_for_report(f"{RESULTS}/{form}", declared.shown.get(form))
                 for form in declared.files
             ],
         log:
@@ -37,23 +37,27 @@ for declared in JOBS.defined.values():
             **further_params(declared),
             abouts=abouts(declared),
         message:
-            filled(declared.message)
+            snakemake_message(declared.message)
         script:
             "../scripts/job.py"
 
-    # Set here, since a docstring inside would be the same for all; an importing workflow names rules itself.
+    # Set here, since all rules would share a docstring inside; an importing workflow names its rules itself.
     if not IMPORTED:
         workflow.get_rule(declared.name).docstring = declared.purpose
 
 
 rule summary:
-    """Make all summaries of the study, and the verdicts on the claims of the paper."""
+    """Compute all summaries of the study, and the verdicts on the claims of the paper."""
     input:
         paths(JOBS.files("summary/")),
 
 
-# The figures of the paper, which the display announces first.
-PLAN.first = [rule.name for rule in JOBS.paper_figures()]
+# The display announces the figures of the paper as soon as they are drawn. A study of several parameters has none.
+if not STUDY.is_plane:
+    PLAN.first = [rule.name for rule in JOBS.paper_figures()]
+FIRST_FIGURES = (
+    "figures over the parameters" if STUDY.is_plane else "figures of the paper"
+)
 
 
 rule figures:
@@ -63,20 +67,20 @@ rule figures:
 
 
 rule curves:
-    """Draw the figures of the paper."""
+    """Draw the figures of the paper, or those over several parameters."""
     input:
-        made(*JOBS.paper_figures()),
+        output_paths(*JOBS.paper_figures()),
     message:
-        f"the figures of the paper are in {RESULTS}/figures"
+        f"the {FIRST_FIGURES} are in {RESULTS}/figures"
 
 
 if "chains_summary" in JOBS.defined:
 
     rule chains:
-        """Make the summary and the figure of longer chains, whether or not they are a part of `all`."""
+        """Make the summary and the figure of longer chains, even if they are not part of `all`."""
         input:
             [
-                made(JOBS.defined[name])
+                output_paths(JOBS.defined[name])
                 for name in ("chains_summary", "figure_chains")
                 if name in JOBS.defined
             ],

@@ -1,12 +1,12 @@
-# Points: one simulation for each friction law, initial state and value of a, or of several parameters. A study of a has
-# a job for each point; one of several parameters has a job for each chunk of points.
+# Points: one simulation for each friction law, initial state and value of a, or of several parameters. In a study over a
+# each point is a job; in one over several parameters each chunk of consecutive points is a job.
 RUNS = JOBS.rules["simulate"]
 
 
 rule points:
     """Simulate all points: each friction law from each initial state at each a, or at each point of the grid."""
     input:
-        made(JOBS.existing.get("chunk", RUNS)),
+        output_paths(JOBS.existing.get("chunk", RUNS)),
 
 
 rule simulate:
@@ -27,8 +27,8 @@ rule simulate:
         command=lambda wildcards: STUDY.command(**wildcards),
         sources=source_fingerprint(*RUNS.sources),
     message:
-        filled(RUNS.message)
-    # A run that hit a limit is a result too.
+        snakemake_message(RUNS.message)
+    # A run that stopped at a limit is a result as well.
     shell:
         "{params.command} --out {output} > /dev/null 2> {log} || [ $? = 3 ]"
 
@@ -37,7 +37,7 @@ if "simulate_solver" in JOBS.existing:
     AGAIN = JOBS.existing["simulate_solver"]
 
     use rule simulate as simulate_solver with:
-        """Simulate one point again with another solver."""
+        """Repeat one point with another solver."""
         output:
             f"{RESULTS}/{AGAIN.files[0]}",
         log:
@@ -54,7 +54,7 @@ if "simulate_solver" in JOBS.existing:
         params:
             command=lambda wildcards: STUDY.command(**wildcards),
         message:
-            filled(AGAIN.message)
+            snakemake_message(AGAIN.message)
 
 
 if "chunk" in JOBS.existing:
@@ -79,6 +79,6 @@ if "chunk" in JOBS.existing:
             points=identity(canonical(STUDY.points)),
             sources=source_fingerprint(ROOT / "workflow/scripts/chunk.py"),
         message:
-            filled(CHUNKS.message)
+            snakemake_message(CHUNKS.message)
         script:
             "../scripts/chunk.py"

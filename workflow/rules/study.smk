@@ -1,4 +1,4 @@
-# The study that the config describes, and where its results lie.
+# The study that the config describes, and its results folder.
 import copy
 import json
 import os
@@ -11,7 +11,7 @@ from snakemake.utils import update_config
 
 from burridge_knopoff.provenance.kernel_build import KernelError, check_kernel
 
-# Before anything imports the kernel. A dry run needs no kernel.
+# Checked before anything imports the kernel. A dry run needs none.
 try:
     check_kernel(compiled=not workflow.output_settings.dryrun)
 except KernelError as error:
@@ -37,25 +37,26 @@ from burridge_knopoff.study.paths import VALUE
 from burridge_knopoff.study.study import remarks
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from snakemake_logger_plugin_study.plan import PLAN
-from snakemake_logger_plugin_study.refusal import refused_call, refused_cluster
+from snakemake_logger_plugin_study.refusal import call_error, cluster_error
+from snakemake_logger_plugin_study.remarks import kept_stages, replaced_results
 
-# Another Snakefile may import this one as a module; Snakemake then calls the other one the main Snakefile.
+# Another Snakefile may import this one as a module; it is then the main Snakefile.
 ROOT = Path(f"{workflow.current_basedir}").resolve().parents[1]
 SNAKEFILES = [ROOT / "Snakefile", ROOT / "workflow/Snakefile"]
 IMPORTED = Path(workflow.main_snakefile).resolve() not in SNAKEFILES
 CONFIG_FILE = [*workflow.configfiles, workflow.main_snakefile][0]
-# One job is one thread; the linear-algebra library would start, and keep busy, one for every core.
+# A job has one thread; the linear-algebra library would start one for every core, and keep it busy.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-# Jobs draw into files. A notebook names a backend that need not be installed here; matplotlib would not load.
+# Jobs draw into files. The backend that a notebook names may not be installed here, and matplotlib would not load.
 os.environ.pop("MPLBACKEND", None)
 
-if refusal := refused_call(ROOT, workflow.configfiles):
-    sys.exit(refusal)
+if error := call_error(ROOT, workflow.configfiles):
+    sys.exit(error)
 
 try:
-    # What imports the study hands its config over, with all that was given on the command line.
+    # A workflow that imports the study passes its config on, including the values of the command line.
     OVERRIDES = {} if IMPORTED else of_command_line(workflow.config_settings.config)
-    # Snakemake has read the file too, but takes some of what is refused here; what --config changes comes from it.
+    # Snakemake has read the file as well, but accepts values that are refused here; only --config is taken from it.
     WRITTEN = config if IMPORTED else read_config(CONFIG_FILE)
     GIVEN = copy.deepcopy(WRITTEN)
     update_config(GIVEN, OVERRIDES)
@@ -63,18 +64,18 @@ try:
     RESULTS = f"results/{STUDY.name}"
     JOBS = Jobs(STUDY)
     read_claims(picture_names({*PAPER_STATES, *STUDY.initial}))
-    # Snakemake itself would report this with a traceback. Results may be read-only until a job has to run.
+    # Snakemake would report these errors with a traceback. Results may be read-only as long as no job runs.
     check_folder(os.path.abspath(".snakemake"))
     nearest_folder(RESULTS)
     check_owner(RESULTS, CONFIG_FILE, WRITTEN)
 except (ValueError, OSError) as error:
     sys.exit(f"{error}")
 
-# Cores of a long job, shared among its processes. The jobs of all laws run side by side, each with at least two cores,
-# since with one core each they would not end together. Without jobs, as for --unlock, the number may be missing.
+# Cores of a long job, shared among its processes. The jobs of all laws run at the same time, each with at least two
+# cores, since with one core each they would not end together. Without jobs, as with --unlock, the number may be missing.
 SHARED_CORES = max(2, (workflow.resource_settings.cores or 1) // len(STUDY.laws))
 
-# How the study is named to `snakemake`, by its config alone and from another folder.
+# The arguments of `snakemake` for this study: of its config, and with the Snakefile from another folder.
 OTHER_CONFIG = (
     not IMPORTED and Path(CONFIG_FILE).resolve() != ROOT / "config/paper.yaml"
 )
@@ -87,17 +88,22 @@ ARGUMENTS = [
 
 
 def record_study():
-    """Record in the folder of results what the study is, if there are any or some are to be made."""
-    arguments = shlex.join(ARGUMENTS)
-    told = CONFIG_FILE, WRITTEN, arguments
-    write_study_record(RESULTS, STUDY.config, STUDY.parameters, *told)
+    """Record the study and its command in the results folder."""
+    write_study_record(
+        RESULTS,
+        STUDY.config,
+        STUDY.parameters,
+        CONFIG_FILE,
+        WRITTEN,
+        shlex.join(ARGUMENTS),
+    )
 
 
 PLAN.results, PLAN.workflow, PLAN.jobs = RESULTS, workflow, JOBS
 PLAN.record = record_study
 
 
-# Jobs use the `bk` of this environment, whether activated or not.
+# Jobs use the `bk` of this environment, even if it is not activated.
 shell.prefix(
     f"export PATH={shlex.quote(str(Path(sys.executable).parent))}:$PATH; set -euo pipefail; "
 )
@@ -109,23 +115,30 @@ wildcard_constraints:
     initial="|".join(STUDY.initial),
 
 
-def prepare_results():
-    """Refuse a folder of results that cannot be written to, record the study in it, and announce the jobs."""
-    if refusal := refused_cluster(
-        getattr(workflow.executor_settings, "submit_cmd", None)
+def print_remarks():
+    """Print what users may not expect of this study, a line each."""
+    for remark in (
+        *remarks(STUDY, GIVEN),
+        *kept_stages(JOBS),
+        *replaced_results(JOBS, RESULTS, display_path(CONFIG_FILE), OVERRIDES),
     ):
-        sys.exit(refusal)
-    # Programs that submit jobs tell by it what their jobs would make, and from what.
+        print(remark, file=sys.stderr)
+
+
+def prepare_results():
+    """Check that the results folder is writable, record the study in it, and plan the run."""
+    if error := cluster_error(getattr(workflow.executor_settings, "submit_cmd", None)):
+        sys.exit(error)
+    # Identifies the results of the jobs to the programs that submit them.
     made_from = [source_fingerprint(*rule.sources) for rule in JOBS.existing.values()]
     decides = identity(json.dumps([STUDY.config, made_from]))
     os.environ.update(BK_STUDY=f"{RESULTS} {decides}")
+    print_remarks()
     try:
         check_folder(RESULTS, inside=True)
         record_study()
     except OSError as error:
         sys.exit(f"{error}")
-    for remark in remarks(STUDY, GIVEN):
-        print(remark, file=sys.stderr)
     # Snakemake would check all ready jobs again one second after each check, which takes a fifth of a core after
     # hundreds of jobs (its issue 3804). Programs that submit jobs need the pause.
     if not workflow.non_local_exec:
@@ -134,20 +147,22 @@ def prepare_results():
 
 
 def remove_damaged():
-    """Remove files that are damaged and that no job would read before they are kept; the run makes them again."""
-    dry = workflow.output_settings.dryrun
+    """Remove damaged files that no job reads, such as pictures; the run recreates them."""
+    is_dry_run = workflow.output_settings.dryrun
     for path, reason in damaged_files(JOBS, Path(RESULTS)):
         print(
-            f"{path}: {reason}: it {'would be' if dry else 'is'} made again",
+            f"{path}: {reason}: it {'would be' if is_dry_run else 'is'} recreated",
             file=sys.stderr,
         )
-        if not dry:
+        if not is_dry_run:
             path.unlink()
 
 
-# Only in the main process, not in jobs.
+# Only in the main process, not in jobs. In a dry run no hook is called.
 if workflow.is_main_process:
     remove_damaged()
+    if workflow.output_settings.dryrun:
+        print_remarks()
 
 
 def paths(names):
@@ -155,11 +170,11 @@ def paths(names):
     return [f"{RESULTS}/{name}" for name in names]
 
 
-def made(*rules):
+def output_paths(*rules):
     """Return the paths of the files that all jobs of some rules make."""
     return [path for rule in rules for path in paths(files_of(rule))]
 
 
-def filled(words):
-    """Return words with wildcards as Snakemake fills them in."""
-    return re.sub(r"\{(\w+)\}", r"{wildcards.\1}", words)
+def snakemake_message(text):
+    """Return a message with the wildcards as Snakemake writes them."""
+    return re.sub(r"\{(\w+)\}", r"{wildcards.\1}", text)

@@ -1,4 +1,4 @@
-"""A chunk: those of its points that are missing, damaged or out of date."""
+"""Simulate the points of a chunk that are missing, damaged or out of date."""
 
 import sys
 
@@ -16,5 +16,5 @@ folder = Path(snakemake.params.folder)
 record = read_study_record(folder)
 study = Study(record["config"], record["grid"])
 if identity(canonical_json(study.points)) != snakemake.params.points:
-    raise ValueError(f"{folder}: was given to another config while this job waited; run snakemake again")
+    raise ValueError(f"{folder}: now belongs to another config, as another run has changed it; run snakemake again")
 make_points(study, chunks(study)[snakemake.wildcards.chunk], folder / "points")

@@ -1,4 +1,4 @@
-"""A job of a study: the function that burridge_knopoff.jobs declares for its rule makes its files."""
+"""Run a job of a study: make its files by the function that burridge_knopoff.jobs declares for its rule."""
 
 import gc
 import logging
@@ -9,7 +9,7 @@ sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 logging.basicConfig(format="%(message)s")
 logging.getLogger("burridge_knopoff").setLevel(logging.INFO)
 abouts = snakemake.params.abouts
-# A figure is soon drawn, and collecting garbage takes a tenth of the time.
+# A figure is drawn quickly, and garbage collection would take a tenth of the time.
 if next(iter(abouts.values()))["make"].startswith("figures."):
     gc.disable()
 

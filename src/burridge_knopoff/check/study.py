@@ -18,7 +18,7 @@ from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.running.status import ENDS
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.formatting import format_count
-from burridge_knopoff.study.job_log import failure_reason
+from burridge_knopoff.study.job_log import logged_error
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.summaries.points import check_run
@@ -167,7 +167,7 @@ def _file_finding(jobs: Jobs, results: Path, name: str, log: Path) -> Finding | 
 def _error_finding(path: Path, error: BadFile, log: Path) -> Finding:
     reason = error.reason if error.path == path else f"was made from {error.path}, which is {error.kind}"
     if error.kind == "missing":
-        words = failure_reason(log)
+        words = logged_error(log)
         reason = f"its job failed: {words} (log {log})" if words else "not made yet"
     return Finding(error.kind, path, reason)
 

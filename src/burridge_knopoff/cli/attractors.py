@@ -61,7 +61,7 @@ def search_of(options: argparse.Namespace) -> SearchSettings:
 def run(options: argparse.Namespace) -> int:
     """Search for attractors, and print a line for each."""
     from burridge_knopoff.dataset.summary import write_summary
-    from burridge_knopoff.show.attractors import attractor_table, called
+    from burridge_knopoff.show.attractors import attractor_table, branch_label
     from burridge_knopoff.summaries.multistability import coexisting_attractors
 
     state, search = state_of(options), search_of(options)
@@ -81,7 +81,7 @@ def run(options: argparse.Namespace) -> int:
     if state is not None:
         reached = found.isel(law=0, a=0).sel(contact=model.contact, start=options.start, initial=state.name)
         branch = reached["initial_branch"].item()
-        name = called(found, branch, reached["initial_side"].item()) if branch >= 0 else "none of them"
+        name = branch_label(found, branch, reached["initial_side"].item()) if branch >= 0 else "none of them"
         print(f"{state.name} reaches: {name}")
     if options.out:
         write_summary(found.assign_attrs(history=command_of(options)), options.out)

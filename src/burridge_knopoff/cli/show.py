@@ -21,6 +21,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Print a description of a file, and draw it."""
+    from burridge_knopoff.show.formatting import terminal_width, wrap_lines
     from burridge_knopoff.show.result import open_result
 
     if options.plot is not None:
@@ -32,7 +33,8 @@ def run(options: argparse.Namespace) -> int:
         from burridge_knopoff.show.point import point_lines as lines_of
     else:
         from burridge_knopoff.show.summary import summary_lines as lines_of
-    print("\n".join(lines_of(result)))
+    width = terminal_width()
+    print("\n".join(lines_of(result, width)))
     if options.plot is not None:
-        print(f"\n{write_picture(result, options.plot)}")
+        print("\n".join(["", *wrap_lines([write_picture(result, options.plot)], width)]))
     return 0

@@ -1,4 +1,4 @@
-"""A basin map in one call, for notebooks; a study makes it with `attractors` and `basins`."""
+"""A basin map in one call, for notebooks; in a study the stages `attractors` and `basins` compute it."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Unpack
 
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings
-from burridge_knopoff.library.by_name import SearchOptions, settings_of, shows
+from burridge_knopoff.library.by_name import SearchOptions, settings_of, show_settings
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     import xarray
 
 
-@shows(SearchSettings)
+@show_settings(SearchSettings)
 def basin_map(
     law: Model | GivenLaw,
     a: float | None = None,
@@ -40,14 +40,14 @@ def basin_map(
     """Return a basin map of one model and its attractors, in the form of `basins.nc` and `attractors.nc`.
 
     law : a Model, with its own a, chain, v and contact; or a law at this a, in any form that `simulate` takes
-    initial : the other positions and velocities, besides U_1(0) and U_N(0), in any form that `simulate` takes; minus
-        has three blocks
+    initial : the positions and velocities except U_1(0) and U_N(0), in any form that `simulate` takes; minus has three
+        blocks
     chain : by default the paper's springs, with as many blocks as the initial state; v, contact : as for `simulate`
     start : moving or tested, see `Model.begin`
     pixels : along each axis; first_position, last_position : ranges [low, high] of U_1(0) and U_N(0)
-    samples, seed : initial states of the search for attractors; an attractor that none of them reaches stays unknown,
-        and its basin undetermined (−1)
-    threads : number of threads for the labels; they do not depend on it
+    samples, seed : initial states of the search for attractors; an attractor that none of them reaches is not found,
+        and its basin is undetermined (−1)
+    threads : number of threads; the map does not depend on it
     search : other settings of `SearchSettings` by name; motion : how kinds of motion are classified
 
     The map `branch` of the first Dataset has shape (1, pixels, pixels), with U_N(0) along the rows. The uncertainty
@@ -66,7 +66,7 @@ def basin_map(
 
     state = given_state(initial)
     model = given_model(law, a, state.blocks, chain, v, contact)
-    # The map shows the basin fractions itself.
+    # The map itself shows the basin fractions.
     options = {"samples": samples, "seed": seed, "fraction_width": 0.1, **search}
     settings = settings_of(SearchSettings, None, options)
     plane = BasinSettings(

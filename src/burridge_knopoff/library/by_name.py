@@ -16,7 +16,7 @@ _T = TypeVar("_T")
 
 
 class RunSettings(TypedDict, total=False):
-    """The settings of a run by name: the fields of `Settings`, which has ranges, defaults and descriptions."""
+    """The settings of a run by name: the fields of `Settings`, which has their ranges, defaults and descriptions."""
 
     start: str
     solver: str
@@ -35,7 +35,7 @@ class RunSettings(TypedDict, total=False):
 
 
 class SearchOptions(TypedDict, total=False):
-    """Settings of a search by name: fields of `SearchSettings`, which has ranges, defaults and descriptions."""
+    """Settings of a search by name: fields of `SearchSettings`, with their ranges, defaults and descriptions."""
 
     fraction_width: float
     position: Sequence[float]
@@ -49,14 +49,14 @@ class SearchOptions(TypedDict, total=False):
 
 
 class AttractorOptions(SearchOptions, total=False):
-    """The remaining settings as well: the number of sampled initial states, and their seed."""
+    """All settings of a search by name: also the number of sampled initial states, and their seed."""
 
     samples: int
     seed: int
 
 
-def shows(kind: type) -> Callable[[_F], _F]:
-    """Return a decorator that shows the settings of a class in the signature of a function instead of its `**`."""
+def show_settings(kind: type) -> Callable[[_F], _F]:
+    """Return a decorator that replaces `**` in the signature of a function by the settings of a class."""
 
     def decorate(function: _F) -> _F:
         own = inspect.signature(function)
@@ -75,7 +75,7 @@ def shows(kind: type) -> Callable[[_F], _F]:
 
 
 def settings_of(kind: type[_T], settings: _T | None, by_name: Mapping[str, Any]) -> _T:
-    """Return settings of a class, some of them given by name; raises ValueError, one line, for other names."""
+    """Return settings of a class, with the values given by name; raises ValueError, one line, for other names."""
     if settings is not None:
         instance_of(settings, kind, "settings")
     known = fields_of(kind)

@@ -47,14 +47,14 @@ class Catalogue(SlipEvents):
     def slope(self, low: float | None = None, high: float | None = None) -> Slope:
         """Return the slope of the magnitudes from `low` to `high`; see `fit_slope`.
 
-        By default from a bin above the most frequent magnitude of several blocks to the rarest one below that which
-        releases most moment.
+        By default from one bin above the most frequent magnitude of events with more than one block to the least
+        frequent magnitude below the one that releases most moment.
         """
         return fit_slope(self.magnitude, *fit_range(self.magnitude, self.moment, self.blocks, low, high))
 
     def plot(self) -> Figure:
         """Return a figure of the slips in space and time, their recurrence, rates, extents and intervals."""
-        # Imported here, so that a run without a picture does not load matplotlib.
+        # Imported here so that matplotlib is loaded only for a picture.
         from burridge_knopoff.figures.slip_events import draw_run
         from burridge_knopoff.summaries.catalogue import summarize
 
@@ -79,18 +79,19 @@ def record_events(
     solver: str = "series",
     step: float = 1e-3,
 ) -> Catalogue:
-    """Return the catalogue of the slip events of a run: those that begin after a time and end before its end.
+    """Return the catalogue of the slip events of a run that begin after a given time and end before its end.
 
-    model, start : what moves, and its state at the start, as of `Model.begin` or the `final` of another run; end : τ of
-        the end of the run
-    begin : events that begin earlier are left out, by default none; the intervals know of them
-    profiles : whether the slip of every block is kept
-    loading : steady: the driver always moves | quasistatic: it stands while any block slips, and loads to the next slip
-        when all rest
+    model : the model; start : its initial state, from `Model.begin` or the `final` of another run
+    end : τ at the end of the run
+    begin : events that begin earlier are left out, but count in the intervals; by default none is left out
+    profiles : keep the slip of every block of each event
+    loading : steady: the driver always moves | quasistatic: the driver stops while any block slips; when all are at
+        rest it advances to the next slip
     solver, step : see `Settings`
 
-    τ is the loading clock, the displacement of the driver over v. Blocks that slip at the start of the run belong to no
-    event until they have stopped. Raises ValueError, one line, for anything that model or solver do not allow.
+    τ is the loading clock, the displacement of the driver divided by v. Blocks that slip at the start of the run belong
+    to no event until they have stopped. Raises ValueError, one line, for anything that the model or the solver does not
+    allow.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
     >>> model = Model(Chain(1, pulling=1), law_of("linearized", 0.1), v=0.01)

@@ -1,4 +1,4 @@
-"""Normalise what a user gives for an initial state and for a model."""
+"""Convert the forms in which users give initial states and models."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ Initial = str | InitialState | Mapping[str, Any] | Sequence[Sequence[float]] | n
 #: A law: a `Law`, the name of a built-in law, or {"formula": …} or {"law": …} with its numbers, as in a config.
 GivenLaw = Law | str | Mapping[str, Any]
 
-#: The name of a state given by numbers alone.
+#: The name of a state that is given without a name.
 OWN = "own"
 
 _KEYS = Keys({"name": Field(STATE_NAME, "name of the state", OWN), **fields_of(InitialState)})
@@ -30,7 +30,7 @@ _FORMS = f"{' | '.join(PAPER_STATES)}, InitialState, {{'position': …, 'velocit
 def given_state(given: Initial) -> InitialState:
     """Return an initial state from any of its forms.
 
-    Raises ValueError, one line, for anything else, and if one of the paper's names is given other numbers.
+    Raises ValueError, one line, for anything else, and for other values under one of the paper's names.
     """
     state = given if isinstance(given, InitialState) else _state(given)
     if PAPER_STATES.get(state.name, state) != state:
@@ -47,13 +47,13 @@ def _state(given: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarr
         pair = _plain(given)
         lists = [_plain(values) for values in pair] if isinstance(pair, list) else []
         if len(lists) != 2 or not all(isinstance(values, list) for values in lists):
-            raise ValueError(f"initial: got {format_value(given)}, expected {_FORMS}, each one number a block")
+            raise ValueError(f"initial: got {format_value(given)}, expected {_FORMS}, with one number per block")
         numbers = dict(zip(("position", "velocity"), lists, strict=True))
     return InitialState(**_KEYS.form(numbers, "initial"))
 
 
 def _plain(values: Any) -> Any:
-    """Return a sequence or an array of any kind as a list, anything else unchanged."""
+    """Return a sequence or an array as a list, anything else unchanged."""
     if hasattr(values, "__array__"):
         # Masked values become None, which every range refuses.
         return np.asanyarray(values).tolist()
@@ -68,23 +68,23 @@ def given_model(
     v: float | None,
     contact: str | None,
 ) -> Model:
-    """Return a model, or make one of a law and the other arguments.
+    """Return a model as it is, or the model of a law and the other arguments.
 
-    blocks : number of blocks if there is no chain; None if nothing tells it
-    Raises ValueError, one line, for a wrong argument, and for arguments that repeat what the model has.
+    blocks : number of blocks without a chain; None if it is not known
+    Raises ValueError, one line, for a wrong argument, and for arguments together with a model, which has its own.
     """
     if isinstance(law, Model):
         if any(own is not None for own in (a, chain, v, contact)):
-            raise ValueError("a, chain, v, contact: got some beside a model, expected none: the model has its own")
+            raise ValueError(
+                "a, chain, v, contact: got some together with a model, expected none: the model has its own"
+            )
         return law
     if a is None:
         raise ValueError("a: got None without a Model, expected a number of at least 0")
     if isinstance(law, Mapping):
         law = law_of(law.get("law", "formula"), a, law)
     if chain is None and blocks is None:
-        raise ValueError(
-            "chain: missing, expected a Chain for an initial state that does not tell the number of blocks"
-        )
+        raise ValueError("chain: missing, expected a Chain for an initial state that does not fix the number of blocks")
     chain = Chain(blocks) if chain is None else chain  # type: ignore[arg-type]
     own: dict[str, Any] = {name: value for name, value in (("v", v), ("contact", contact)) if value is not None}
     return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), **own)

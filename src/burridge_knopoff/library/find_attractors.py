@@ -10,7 +10,7 @@ import numpy as np
 from burridge_knopoff.attractors import search as attractors
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.library.by_name import AttractorOptions, settings_of, shows
+from burridge_knopoff.library.by_name import AttractorOptions, settings_of, show_settings
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import STARTS, Model
@@ -19,7 +19,7 @@ from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.values import instance_of, refusal
 
 
-@shows(SearchSettings)
+@show_settings(SearchSettings)
 def find_attractors(
     law: Model | GivenLaw,
     a: Any = None,
@@ -39,13 +39,13 @@ def find_attractors(
     settings : of the search, with the number of sampled states; by_name : some or all of them by name (see
         `SearchSettings`)
     motion : how kinds of motion are classified
-    starts : initial states besides the sampled ones, each in any form that `simulate` takes
+    starts : initial states in addition to the sampled ones, each in any form that `simulate` takes
     start : moving or tested, see `Model.begin`
 
     The indices have shape (samples + len(starts),), sampled states first; −1 if a state does not settle on a known
-    attractor. An attractor that no state reaches is not found. Neither is a motion without stops, since attractors are
-    identified by the states at the stops of the outermost block that stops regularly. Raises ValueError, one line, for
-    a wrong argument.
+    attractor. An attractor that no state reaches is not found. Motion without stops is not found either, since
+    attractors are identified by the states at the stops of the outermost block that stops regularly. Raises ValueError,
+    one line, for a wrong argument.
 
     Times are in units of 1/ω. docs/search.md describes the search.
 

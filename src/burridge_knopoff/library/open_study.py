@@ -1,11 +1,15 @@
-"""The results of a study as one tree of datasets, read on demand."""
+"""The results of a study as trees of datasets, opened on demand."""
 
 from __future__ import annotations
 
+import re
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from threading import Lock
+from textwrap import shorten
+from threading import RLock
 from typing import Any
 
+import netCDF4
 import numpy as np
 import xarray
 
@@ -19,30 +23,35 @@ from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import all_points
 from burridge_knopoff.values import refusal
 
-# HDF5 is not thread-safe, and xarray's own lock does not cover everything that opening a file reads.
-_ONE_AT_A_TIME = Lock()
+# HDF5 is not thread-safe, and xarray's own lock does not cover everything that is read when a file is opened.
+_LOCK = RLock()
 
-#: Variables with one number a point.
-NUMBERS = tuple(name for name, item in POINT_VARIABLES.items() if not item.dimensions and not item.coordinate)
+#: Scalar variables of a point.
+SCALARS = tuple(name for name, item in POINT_VARIABLES.items() if not item.dimensions and not item.coordinate)
+
+#: Length of a title in a list of summaries.
+LONGEST = 70
 
 
-def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
-    """Return all points and summaries of a study as one tree; arrays are read from the files on demand.
+def open_study(results: str | Path) -> StudyResults:
+    """Return the results of a study, whose files are opened when they are asked for.
 
-    results : folder of a study, results/<study>
-    points : whether to open all point files (some milliseconds each); without them there is no grid either
+    results : results folder of a study, results/<study>
 
-    `tree["summary/<name>"]` is a summary file, `tree["points/<law>/<initial>/a<value>"]` a point file. `tree["grid"]`
-    has all variables with one number a point, over (law, initial, a), or over all parameters of the study's `grid` in
-    place of a: NaN, or −1 for whole numbers, where a point is missing. docs/data.md describes all variables;
-    `tree.attrs` is the config with all defaults. Leftover files, such as summaries of a stage that is now left out, are
-    not opened. The files may have been made by other sources than the current ones: `bk check` tells.
+    `study["summary/<name>"]` is a summary, `study["points/<law>/<initial>/a<value>"]` a point, each as an
+    `xarray.DataTree` with one Dataset, whose arrays are read on demand. `study["grid"]` contains all scalar variables
+    of the points over (law, initial, a), or over all parameters of the study's `grid` in place of a: NaN, or −1 for
+    whole numbers, where a point is missing. `study["summary"]`, `study["points/<law>"]` and so on are trees of all
+    files in a group, and `study["/"]` contains everything. The paths of all files are the keys of the mapping `study`;
+    `study.config` is the config with all defaults. docs/data.md describes all variables.
 
-    The attributes of the tree are nested, which netCDF cannot hold: `tree.attrs.clear()` before `tree.to_netcdf(…)`.
-    Several threads may open studies, one after the other. While one opens, others must not read: HDF5 would crash.
+    Leftover files, such as summaries of a stage that is now left out, are not included. Other sources than the current
+    ones may have made a file; `bk check` reports these files. Several threads may open files, but must not read arrays
+    at the same time: HDF5 would crash.
 
-    Raises ValueError, one line, if the folder holds no study of this version, or a file that is damaged or belongs to
-    another study; the line has the command that remakes the file.
+    Raises ValueError, one line, if the folder contains no study of this version. To ask for a file raises KeyError if
+    it is not there, and ValueError, one line with the command that recreates it, if it is damaged or belongs to another
+    study.
 
     >>> from burridge_knopoff import open_study
     >>> study = open_study("results/paper")
@@ -53,46 +62,114 @@ def open_study(results: str | Path, *, points: bool = True) -> xarray.DataTree:
     """
     if not isinstance(results, str | Path):
         raise refusal("results", results, "the folder of a study, results/<study>")
-    with _ONE_AT_A_TIME:
-        return _tree(Path(results), points)
+    return StudyResults(Path(results))
 
 
-def _tree(results: Path, points: bool) -> xarray.DataTree:
-    record, study = recorded_study(results)
-    values = {name: list(values.values()) for name, values in study.parameters.items()}
-    shape = len(study.laws), len(study.initial), *map(len, values.values())
-    nodes = {"/": xarray.Dataset(attrs=record["config"])}
-    if points:
-        found = {name: np.full(shape, _absent(name)) for name in NUMBERS}
-        for index, run in zip(np.ndindex(shape), all_points(study), strict=True):
-            name = f"points/{study.point_file.format(**run)}"
-            if (results / name).is_file():
-                check_seal(results / name, point_about(study.command(**run)), any_sources=True)
-                point = nodes[name.removesuffix(".nc")] = _opened(results / name)
-                for number, everywhere in found.items():
-                    everywhere[index] = point.variables[number].values
+class StudyResults(Mapping[str, xarray.DataTree]):
+    """The results of a study by their paths in its folder, without suffix; see `open_study`."""
+
+    def __init__(self, results: Path) -> None:
+        record, self._study = recorded_study(results)
+        self._results = results
+        self._jobs = Jobs(self._study)
+        self._points = {
+            f"points/{self._study.point_file.format(**run)}".removesuffix(".nc"): run for run in all_points(self._study)
+        }
+        files = (name.removesuffix(".nc") for name in self._jobs.all_files if name.endswith(".nc"))
+        self._summaries = sorted(name for name in files if name.startswith("summary/"))
+        self._grid: xarray.Dataset | None = None
+        self.config: dict[str, Any] = record["config"]
+
+    def __iter__(self) -> Iterator[str]:
+        points = [name for name in self._points if self._has(name)]
+        yield from ["grid"] * bool(points)
+        yield from (name for name in self._summaries if self._has(name))
+        yield from points
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __contains__(self, path: object) -> bool:
+        return any(name == path for name in self)
+
+    def __getitem__(self, path: str) -> xarray.DataTree:
+        path = path.strip("/")
+        with _LOCK:
+            if path in self._points or path in self._summaries or path == "grid":
+                if path == "grid" or self._has(path):
+                    return xarray.DataTree(self._open(path), name=path.rpartition("/")[2])
+            elif names := [name for name in self if not path or name.startswith(f"{path}/")]:
+                parts = {name.removeprefix(path).strip("/"): self._open(name) for name in names}
+                return xarray.DataTree.from_dict(parts, name=path.rpartition("/")[2] or self._study.name)
+        raise KeyError(f"{path}: not among the results in {self._results}")
+
+    def __repr__(self) -> str:
+        sizes = ", ".join(f"{name} {len(values)}" for name, values in self._study.parameters.items())
+        count = sum(map(self._has, self._points))
+        form = re.sub(r"\{(\w+)\}", r"<\1>", self._study.point_file).removesuffix(".nc")
+        scalars = f"scalars of the points over law {len(self._study.laws)}, initial {len(self._study.initial)}, {sizes}"
+        points = f"{count} of {len(self._points)} points, such as {next(iter(self._points))}"
+        rows = [("grid", scalars), (f"points/{form}", points)]
+        rows += [(name, self._title(name)) for name in self._summaries if self._has(name)]
+        width = max(len(name) for name, _ in rows)
+        return "\n".join(
+            [
+                f"<study {self._study.name} in {self._results}>",
+                *(f"{name:{width}}  {text}" for name, text in rows),
+                'Open a part by its path, such as study["grid"]; study.config is the config.',
+            ]
+        )
+
+    def _has(self, name: str) -> bool:
+        return (self._results / f"{name}.nc").is_file()
+
+    def _title(self, name: str) -> str:
+        try:
+            with _LOCK, netCDF4.Dataset(self._results / f"{name}.nc") as dataset:
+                return shorten(str(dataset.title), LONGEST, placeholder=" …")
+        except (OSError, AttributeError, RuntimeError):
+            return "cannot be read"
+
+    def _open(self, name: str) -> xarray.Dataset:
+        if name == "grid":
+            if self._grid is None:
+                self._grid = self._read_grid()
+            return self._grid
+        self._check(name)
+        path = self._results / f"{name}.nc"
+        try:
+            return xarray.open_dataset(path)
+        except (OSError, RuntimeError, ValueError) as error:
+            raise ValueError(f"{path}: cannot be read ({error})") from error
+
+    def _check(self, name: str) -> None:
+        """Raise ValueError, one line, if a file is damaged or not the expected one of the study."""
+        if name in self._points:
+            command = self._study.command(**self._points[name])
+            check_seal(self._results / f"{name}.nc", point_about(command), any_sources=True)
+        else:
+            check_file(self._jobs, self._results, f"{name}.nc", any_sources=True)
+
+    def _read_grid(self) -> xarray.Dataset:
+        study = self._study
+        shape = len(study.laws), len(study.initial), *map(len, study.parameters.values())
+        scalars = {name: np.full(shape, _missing_value(name)) for name in SCALARS}
+        for index, name in zip(np.ndindex(shape), self._points, strict=True):
+            if self._has(name):
+                self._check(name)
+                with netCDF4.Dataset(self._results / f"{name}.nc") as point:
+                    point.set_auto_mask(False)
+                    for scalar, everywhere in scalars.items():
+                        everywhere[index] = point[scalar][...]
         dimensions = ("law", "initial", *study.wildcards)
-        nodes["grid"] = xarray.Dataset(
-            {name: (dimensions, found[name], POINT_VARIABLES[name].all_attributes()) for name in NUMBERS},
+        values = {name: list(values.values()) for name, values in study.parameters.items()}
+        return xarray.Dataset(
+            {name: (dimensions, scalars[name], POINT_VARIABLES[name].all_attributes()) for name in SCALARS},
             axes(law=study.laws, initial=study.initial, **values),
         )
-    jobs = Jobs(study)
-    files = jobs.all_files
-    for path in sorted(results.glob("summary/[!.]*.nc")):
-        if (name := f"summary/{path.name}") in files:
-            check_file(jobs, results, name, any_sources=True)
-            nodes[name.removesuffix(".nc")] = _opened(path)
-    return xarray.DataTree.from_dict(nodes, name=study.name)
 
 
-def _absent(name: str) -> Any:
-    """Return the placeholder for the number of a missing point."""
+def _missing_value(name: str) -> Any:
+    """Return the value of a scalar variable where a point is missing."""
     kind = np.dtype(POINT_VARIABLES[name].dtype)
     return kind.type(np.nan if kind.kind == "f" else -1)
-
-
-def _opened(path: Path) -> xarray.Dataset:
-    try:
-        return xarray.open_dataset(path)
-    except (OSError, RuntimeError, ValueError) as error:
-        raise ValueError(f"{path}: cannot be read ({error})") from error

@@ -27,19 +27,19 @@ class Run(Trajectory):
 
     def plot(self) -> Figure:
         """Return a figure of J(τ) and of the velocities U_i'(τ) in the last part of the run."""
-        # Imported here, so that a run without a picture does not load matplotlib.
+        # Imported here so that matplotlib is loaded only for a picture.
         from burridge_knopoff.figures.single_run import plot_run
 
         return plot_run(self)
 
     def to_dataset(self) -> xarray.Dataset:
-        """Return the run as an xarray Dataset, the same as its point file."""
+        """Return the run as an xarray Dataset, with the content of its point file."""
         return to_dataset(self)
 
     def catalogue(
         self, window: float = 7000.0, *, transient: float = 0.0, profiles: bool = False, loading: str = "steady"
     ) -> Catalogue:
-        """Return the catalogue of slip events of a run that continues from the end of this one, by the same solver.
+        """Return the catalogue of slip events of a run that continues from the end of this one with the same solver.
 
         window : length of the catalogue; transient : time before it; both on the loading clock
         profiles, loading : see `record_events`

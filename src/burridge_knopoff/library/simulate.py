@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Unpack
 
 from burridge_knopoff.laws import Law
-from burridge_knopoff.library.by_name import RunSettings, settings_of, shows
+from burridge_knopoff.library.by_name import RunSettings, settings_of, show_settings
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.library.run import Run
 from burridge_knopoff.model.chain import Chain
@@ -14,7 +14,7 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
 
-@shows(Settings)
+@show_settings(Settings)
 def simulate(
     law: Model | GivenLaw = "linearized",
     a: float | None = None,
@@ -39,7 +39,7 @@ def simulate(
 
     All quantities are dimensionless: times in units of 1/ω, U = kX/F(0), as in the paper (Section II). Raises
     ValueError, one line, for anything that the model or the solver does not allow. docs/model.md derives the equations
-    and the solvers, and shows why no event can be missed.
+    and the solvers, and explains why no event can be missed.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=100, window=100, batches=2)

@@ -1,4 +1,4 @@
-"""Runs over one or several parameters, one on each core."""
+"""Runs over one or several parameters, on several cores."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ import numpy as np
 from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, point_values
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.laws import Law
-from burridge_knopoff.library.by_name import settings_of, shows
+from burridge_knopoff.library.by_name import settings_of, show_settings
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
@@ -32,12 +32,12 @@ if TYPE_CHECKING:
 
 _T = TypeVar("_T")
 
-#: Dimensions of the same size in every run.
-_EVERYWHERE = {"batch", "exponent"}
-_KEPT = {name: item for name, item in POINT_VARIABLES.items() if set(item.dimensions) <= _EVERYWHERE}
+#: Dimensions of the same size in every run, and the variables of a point over no others.
+_COMMON_DIMENSIONS = {"batch", "exponent"}
+_COMMON = {name: item for name, item in POINT_VARIABLES.items() if set(item.dimensions) <= _COMMON_DIMENSIONS}
 
 
-@shows(Settings)
+@show_settings(Settings)
 def sweep(
     law: Model | GivenLaw,
     a: float | Sequence[float] | np.ndarray | None = None,
@@ -54,13 +54,13 @@ def sweep(
     law : a `Model` with its own chain, contact and values of all parameters; or a law in any form that `simulate` takes
     a : friction parameters, shape (n,), or one number; by default that of a `Model` or a `Law`
     by_name : other parameters, v, those of the chain such as coupling, or of one block or spring such as `mass[3]`, and
-        the numbers of the law such as sigma, each one number or a sequence; and settings of the run by name
+        the parameters of the law such as sigma, each one number or a sequence; and settings of the run by name
     initial, settings, chain, contact : see `simulate`
     cores : number of simultaneous runs, by default the number of cores; results do not depend on it
 
     Each parameter given as a sequence is a dimension of the Dataset: first a, then the others in the order given; that
-    of `mass[3]` is `mass_3`. The variables are the numbers of a run, a batch or an exponent in a point file
-    (docs/data.md), among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for
+    of `mass[3]` is `mass_3`. The variables are those of a point file (docs/data.md) with one value per run, batch or
+    exponent, among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for
     a completed run. Raises ValueError, one line, for a wrong argument; an error at one point names it.
 
     >>> from burridge_knopoff import sweep
@@ -81,18 +81,18 @@ def sweep(
     parameters = {name: value for name, value in (("a", a), *by_name.items()) if name not in own and value is not None}
     base, axes = _grid(law, parameters, state.blocks, chain, contact)
     points = [dict(zip(axes, values, strict=True)) for values in product(*axes.values())]
-    models = [_named(point, base.at, **point) for point in points]
+    models = [_call_at(point, base.at, **point) for point in points]
     for point, model in zip(points, models, strict=True):
         chosen.check_chain(model.chain)
-        _named(point if len(axes) > 1 else {}, model.begin, state, chosen.start)
+        _call_at(point if len(axes) > 1 else {}, model.begin, state, chosen.start)
 
     def some(first: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
         part = range(first, min(first + size, len(points)))
-        made = [_named(points[k], prepare, models[k], state, chosen) for k in part]
+        made = [_call_at(points[k], prepare, models[k], state, chosen) for k in part]
         how = run_together([one.runner for one in made])
-        statuses = [_named(points[k], one.runner.ended, end) for k, one, end in zip(part, made, how, strict=True)]
+        statuses = [_call_at(points[k], one.runner.ended, end) for k, one, end in zip(part, made, how, strict=True)]
         runs = [one.result(status) for one, status in zip(made, statuses, strict=True)]
-        return [(_kept_of(point_values(run)), point_attributes(run)) for run in runs]
+        return [(_common_values(point_values(run)), point_attributes(run)) for run in runs]
 
     cores = cores or _cores()
     size = min(TOGETHER, -(-len(points) // cores))
@@ -102,7 +102,7 @@ def sweep(
     shape = [len(values) for values in axes.values()]
     plain = {name: plain_name(name) for name in axes}
     data: dict[str, Any] = {}
-    for name, item in _KEPT.items():
+    for name, item in _COMMON.items():
         if item.coordinate:
             data[name] = item.dimensions, np.asarray(found[0][0][name], item.dtype), item.all_attributes()
         else:
@@ -110,21 +110,21 @@ def sweep(
             dimensions = *plain.values(), *item.dimensions
             data[name] = dimensions, array.reshape((*shape, *array.shape[1:])), item.all_attributes()
     for name, values in axes.items():
-        item = _KEPT.get(name, Variable((), "f8", f"parameter {name} of the model"))
+        item = _COMMON.get(name, Variable((), "f8", f"parameter {name} of the model"))
         data[plain[name]] = plain[name], values, item.all_attributes()
     first, *others = (attributes for _, attributes in found)
     common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
-    return xarray.Dataset(data, attrs=common).set_coords({name for name, item in _KEPT.items() if item.coordinate})
+    return xarray.Dataset(data, attrs=common).set_coords({name for name, item in _COMMON.items() if item.coordinate})
 
 
-def _kept_of(values: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: values[name] for name in _KEPT}
+def _common_values(values: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: values[name] for name in _COMMON}
 
 
 def _grid(
     law: Model | GivenLaw, parameters: Mapping[str, Any], blocks: int | None, chain: Chain | None, contact: str | None
 ) -> tuple[Model, dict[str, list[float]]]:
-    """Return the model with all parameters that are one number, and the values of those that are several."""
+    """Return the model with all single-valued parameters, and the values of those given as sequences."""
     arrays = {name: np.asanyarray(value, dtype=object) for name, value in parameters.items()}
     axes: dict[str, list[float]] = {name: given.tolist() for name, given in arrays.items() if given.ndim}
     for name, values in axes.items():
@@ -151,8 +151,8 @@ def _grid(
     return base, axes
 
 
-def _named(point: Mapping[str, float], function: Callable[..., _T], *given: Any, **by_name: Any) -> _T:
-    """Return the value of a function; an error names the point of the grid."""
+def _call_at(point: Mapping[str, float], function: Callable[..., _T], *given: Any, **by_name: Any) -> _T:
+    """Call a function; an error names the point of the grid."""
     try:
         return function(*given, **by_name)
     except (ValueError, MemoryError) as error:

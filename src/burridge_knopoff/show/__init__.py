@@ -1,1 +1,1 @@
-"""Descriptions and pictures of files of results."""
+"""Descriptions and pictures of result files."""

@@ -11,7 +11,7 @@ from burridge_knopoff.show.formatting import table
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
 
-def called(found: xarray.Dataset, branch: int, side: int) -> str:
+def branch_label(found: xarray.Dataset, branch: int, side: int) -> str:
     """Return the name of a branch on one of its sides."""
     return side_name(branch_names(found)[branch], side)
 
@@ -28,7 +28,7 @@ def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> lis
         locked = kind == MotionKind.QUASIPERIODIC and np.isfinite(period)
         rows.append(
             (
-                called(found, one["branch"].item(), one["side"].item()),
+                branch_label(found, one["branch"].item(), one["side"].item()),
                 f"{kind.words}{f' {points}' if points else f', locked: period {period:.5g}' if locked else ''}",
                 to_ascii(with_error(one["mean_distance"].item(), one["mean_distance_error"].item())),
                 " ".join(f"{value:z7.4f}" for value in one["lyapunov_exponent"].values),

@@ -1,4 +1,4 @@
-"""A picture of a file of results: J, section and velocities of a run; the figure of a summary."""
+"""A picture of a result file: J, section points and velocities of a run, or the figure of a summary."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.catalogue import summarize
 from burridge_knopoff.values import cut, format_value
 
-#: Name of the module that makes the catalogue file of a run.
+#: Name of the catalogue file of a run, which is that of the module that makes it.
 CATALOGUE_FILE = "slip_events"
 
 FORMATS = (".png", ".pdf", ".svg")
 
-#: Arguments of figures taken from the study, for a file that belongs to none.
+#: Arguments that figures take from the study, for a file that belongs to none.
 WITHOUT_STUDY: dict[str, Any] = {"marked_states": {}}
 
 
 def check_format(path: str | Path) -> None:
-    """Raise ValueError, one line, if the suffix of a picture's name is not a known format."""
+    """Raise ValueError, one line, unless the suffix of a picture is a known format."""
     if Path(path).suffix not in FORMATS:
         raise ValueError(
             f"{cut(str(path), 200)}: got {format_value(Path(path).suffix)}, expected {' | '.join(FORMATS)}"
@@ -39,9 +39,10 @@ def check_format(path: str | Path) -> None:
 
 
 def write_picture(result: Result, path: str | Path) -> str:
-    """Draw a file of results as a picture, and describe the picture in a line.
+    """Draw a picture of a result file, and return its description in a line.
 
-    Raises ValueError, one line, if no figure shows such a file, or if another file that the figure needs is missing.
+    Raises ValueError, one line, if there is no picture of such a file, or if the figure needs another file that is
+    missing.
     """
     if result.is_point:
         write_figure(draw_point(result.data), path)
@@ -53,12 +54,12 @@ def write_picture(result: Result, path: str | Path) -> str:
     if result.is_part:
         summary = f"summary/{result.name}.nc"
         whole = f": {result.study_path(summary)}" if summary in result.files else ""
-        raise ValueError(f"{result.path}: no figure shows a part of a summary, only the whole one{whole}")
+        raise ValueError(f"{result.path}: no picture of a part of a summary; plot the whole summary{whole}")
     figure = _figure_of(result)
-    inputs = [result if name == result.name else _beside(result, name) for name in figure.inputs]
+    inputs = [result if name == result.name else _open_neighbour(result, name) for name in figure.inputs]
     module = import_module(f"burridge_knopoff.figures.{figure.name}")
     try:
-        drawn = module.draw(*(one.data for one in inputs), **_from_study(result, figure))
+        drawn = module.draw(*(one.data for one in inputs), **_study_arguments(result, figure))
     except (AttributeError, KeyError, IndexError, ValueError):
         names = " with ".join(str(one.path) for one in inputs)
         old = any(not one.of_these_sources for one in inputs)
@@ -69,32 +70,32 @@ def write_picture(result: Result, path: str | Path) -> str:
 
 
 def _figure_of(result: Result) -> Description:
-    """Return the figure of a summary: the one with its name, else the one that needs the fewest other files."""
+    """Return the figure of a summary: the one with its name, otherwise the one that needs the fewest other files."""
     figures = [
         figure
         for figure in figure_descriptions()
         if result.name in figure.inputs and (result.study or set(figure.from_study) <= WITHOUT_STUDY.keys())
     ]
     if not figures:
-        raise ValueError(f"{result.path}: no figure shows a file of {result.name}")
+        raise ValueError(f"{result.path}: there is no picture of {result.name}")
     return min(figures, key=lambda figure: (figure.name != result.name, len(figure.inputs)))
 
 
-def _beside(result: Result, name: str) -> Result:
+def _open_neighbour(result: Result, name: str) -> Result:
     """Return another summary that a figure needs, from the same folder."""
     path = result.path.with_name(f"{name}.nc")
     try:
         other = open_result(path)
     except ValueError as error:
         known = f"summary/{name}.nc" in result.files
-        reason = f": {error}" if path.exists() or known else ", which is not next to it"
+        reason = f": {error}" if path.exists() or known else ", which is not in the same folder"
         raise ValueError(f"{result.path}: its figure also needs {name}.nc{reason}") from None
     if not is_consistent(result.path, path):
         raise ValueError(f"{result.path}: its figure also needs {name}.nc, but {path} is of another study")
     return other
 
 
-def _from_study(result: Result, figure: Description) -> dict[str, Any]:
+def _study_arguments(result: Result, figure: Description) -> dict[str, Any]:
     if not result.study:
         return {name: WITHOUT_STUDY[name] for name in figure.from_study}
     study = Study(result.record["config"], result.record["grid"])

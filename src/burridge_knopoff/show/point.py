@@ -13,13 +13,13 @@ from burridge_knopoff.motion.kind import motion_of_run, words_of
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.show.formatting import listed, paragraph
+from burridge_knopoff.show.formatting import UNLIMITED, list_numbers, table, wrap_lines
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.study.formatting import format_count, to_ascii, with_error
 
 
-def point_lines(result: Result) -> list[str]:
-    """Return a description of a point file, one line for each fact."""
+def point_lines(result: Result, width: int = UNLIMITED) -> list[str]:
+    """Return a description of a point file, one row for each fact, in lines of at most a width."""
     point, attributes = result.data, result.data.attrs
     head = f"{result.path}: a run from {attributes['initial']}, {attributes['law']} law, a = {point['a'].item()!r}"
     rows = [
@@ -28,12 +28,13 @@ def point_lines(result: Result) -> list[str]:
         ("", ""),
         *_outcome(point, result.motion),
         ("", ""),
-        *_kept(point),
+        *_contents(point),
         ("", ""),
-        ("made by", result.made_by),
-        ("made again by", f"{attributes['history']} --out FILE"),
+        ("made by", result.origin),
     ]
-    return [head, "", *paragraph(rows)]
+    # The command is not wrapped, so that it can be copied.
+    command = f"reproduce with: {attributes['history']} --out FILE"
+    return [*wrap_lines([head], width), "", *table((), rows, width), "", command]
 
 
 def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
@@ -51,12 +52,12 @@ def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     yield "", f"a = {point['a'].item():g}"
     yield "driver", f"v = {point['v'].item():g}; contact {attributes['contact']}"
     yield "initial state", f"{attributes['initial']} (start {attributes['start']})"
-    yield "", f"U(0)  = {listed(point['initial_position'].values)}"
-    yield "", f"U'(0) = {listed(point['initial_velocity'].values)}"
+    yield "", f"U(0)  = {list_numbers(point['initial_position'].values)}"
+    yield "", f"U'(0) = {list_numbers(point['initial_velocity'].values)}"
 
 
 def _text(value: object) -> str:
-    return value if isinstance(value, str) else listed(value)  # type: ignore[arg-type]
+    return value if isinstance(value, str) else list_numbers(value)  # type: ignore[arg-type]
 
 
 def _run(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
@@ -71,7 +72,7 @@ def _run(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
 
 def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[str, str]]:
     run = {str(name): variable.values for name, variable in point.variables.items()}
-    given = {key: _given(point.attrs[name]) for key in CHAIN_OPTIONS if (name := f"chain_{key}") in point.attrs}
+    given = {key: _plain_value(point.attrs[name]) for key in CHAIN_OPTIONS if (name := f"chain_{key}") in point.attrs}
     chain = Chain(point.sizes["block"], **given)
     status = Status(point["status"].item()).name.lower()
     yield "status", f"{status} at tau = {point['end_time'].item():g}"
@@ -87,17 +88,17 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
         yield "exponents", "none"
     yield "events", f"{point['event_count'].item()} stops and starts in the whole run"
     yield (
-        "least",
+        "minimum",
         f"friction Phi of a slipping block {run['least_friction']:.4g}, spring force on a stuck block "
         f"{run['least_spring_force']:.4g}",
     )
 
 
-def _given(value: Any) -> Any:
+def _plain_value(value: Any) -> Any:
     return value.tolist() if isinstance(value, np.ndarray | np.generic) else value
 
 
-def _kept(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
+def _contents(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     sampled = point["time"].values[np.isfinite(point["distance"].values)]
     yield "J(tau)", f"{format_count(len(sampled), 'sample')}{_span(sampled)}"
     direction = point["crossing_direction"].values
@@ -106,7 +107,9 @@ def _kept(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     blocks = range(1, point.sizes["block"] + 1)
     for name, words in (("event", "with the states of all blocks"), ("earlier_event", "before them, without states")):
         moved = point[f"{name}_block"].values[point[f"{name}_kind"].values == 0]
-        stops = f"; stops of each block: {listed([(moved == block).sum() for block in blocks])}" if len(moved) else ""
+        stops = (
+            f"; stops of each block: {list_numbers([(moved == block).sum() for block in blocks])}" if len(moved) else ""
+        )
         if name == "event" or point.sizes[name]:
             yield (
                 "stops and starts" if name == "event" else "",

@@ -1,4 +1,4 @@
-"""Opening a file of results, whether point or summary."""
+"""Result files: points and summaries, with the study to which they belong."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from burridge_knopoff.provenance.record import read_study_record, study_folder
 from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.provenance.sources import source_fingerprint
 
-#: {variable that only one summary has: name of the summary}, for files whose source module does not tell.
+#: {variable that only one summary has: name of the summary}, for files whose source module makes several summaries.
 _BY_CONTENT = {"rotation_number": "rotation", "in_grid": "refined", "basin_fraction": "attractors"}
 
 
@@ -25,8 +25,8 @@ _BY_CONTENT = {"rotation_number": "rotation", "in_grid": "refined", "basin_fract
 class Result:
     """An intact file written by this software.
 
-    study : folder of results that contains it, or None; record : of that study, or empty; files : names of its files
-        besides runs
+    study : results folder that contains it, or None; record : of that study, or empty; files : names of its files
+        except point files
     """
 
     path: Path
@@ -37,7 +37,7 @@ class Result:
 
     @property
     def is_point(self) -> bool:
-        """Whether it is the point file of a run."""
+        """Whether it is a point file."""
         return set(POINT_VARIABLES) <= {str(name) for name in self.data.variables}
 
     @property
@@ -58,13 +58,13 @@ class Result:
 
     @property
     def name(self) -> str:
-        """Name of a summary, by which figures identify it, whatever the name of the file."""
+        """Name of a summary by which figures identify it, which need not be the name of the file."""
         known = (name for variable, name in _BY_CONTENT.items() if variable in self.data)
         return next(known, self.data.attrs["source_module"].rpartition(".")[2])
 
     @property
     def motion(self) -> MotionSettings:
-        """How kinds of motion are classified: as in its study, or by default."""
+        """The settings that classify its motion: those of its study, or the defaults."""
         config = self.record.get("config", {})
         if "motion" not in config:
             return MOTION
@@ -72,8 +72,8 @@ class Result:
         return MotionSettings(**config["motion"], **others)
 
     @property
-    def made_by(self) -> str:
-        """The software that made the file, and whether the current sources are the same, in a line."""
+    def origin(self) -> str:
+        """The software and the sources that made the file, and whether the sources have changed since, in a line."""
         attributes = self.data.attrs
         words = f"{attributes['software']}, {attributes['source_module']} {attributes['source_fingerprint']}"
         return words if self.of_these_sources else f"{words} (not the current sources)"
@@ -85,7 +85,7 @@ class Result:
 
 
 def open_result(path: str | Path) -> Result:
-    """Open a point file or a summary, made by these or other sources.
+    """Open a point file or a summary, whether the current sources or others made it.
 
     Raises ValueError, one line, if it is missing, damaged, from another program, or not the file expected in its study.
     """
@@ -94,10 +94,11 @@ def open_result(path: str | Path) -> Result:
     try:
         files = check_result(path)
     except BadFile as error:
-        # Only the file of a study has a command that remakes it.
+        # Only the file of a study has a command that recreates it.
         if study and path.suffix == ".nc":
             raise
-        hint = "" if path.suffix == ".nc" else " (shown are points and summaries, .nc)"
-        raise ValueError(f"{path}: {error.reason}{hint}") from None
+        is_other = path.suffix != ".nc" and path.is_file()
+        reason = "not a result file (bk show reads .nc files)" if is_other else error.reason
+        raise ValueError(f"{path}: {reason}") from None
     data = xarray.load_dataset(path, engine="netcdf4")
     return Result(path, data, study, read_study_record(study) if study else {}, files)

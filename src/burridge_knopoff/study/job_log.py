@@ -32,7 +32,7 @@ ROOM = 1 << 16
 _NO_FAILURE = re.compile(r"note: |.+: \d+, [\d.]+ s, the longest [\d.]+ s")
 
 
-def failure_reason(log: str | Path) -> str:
+def logged_error(log: str | Path) -> str:
     """Return, in one line, the error of the last traceback in a log, or its last line if that reports a failure.
 
     The command that recreates a bad file is cut off: all jobs that read the file name it, and `remedies` collects it.
@@ -68,14 +68,18 @@ def is_interrupted(logs: Sequence[str | Path], *, stopping: bool = False) -> boo
     stopping : whether the run was interrupted, which leaves the log of a job that had not started empty
     """
     # `bk` writes a line. Scripts write a traceback, as does `bk` before it has read its command.
-    said = [words for log in logs if (words := failure_reason(log))]
+    said = [words for log in logs if (words := logged_error(log))]
     return any(words.endswith((f": {INTERRUPTED}", "KeyboardInterrupt")) for words in said) or (stopping and not said)
 
 
 def failure_line(job: str, logs: Sequence[str | Path]) -> str:
     """Return the line that reports a failed job: the job, the reason and the path of its log."""
-    reason = next((words for log in logs if (words := failure_reason(log))), FULL if _is_full(logs) else SILENT)
-    return f"failed: {job}: {reason} (log {', '.join(map(str, logs)) or 'none'})"
+    return f"failed: {job}: {failure_reason(logs)} (log {', '.join(map(str, logs)) or 'none'})"
+
+
+def failure_reason(logs: Sequence[str | Path]) -> str:
+    """Return the reason why a job failed, from its logs: FULL or SILENT if they contain none."""
+    return next((words for log in logs if (words := logged_error(log))), FULL if _is_full(logs) else SILENT)
 
 
 def _is_full(logs: Sequence[str | Path]) -> bool:

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Cancels jobs that submit.py has returned.
+"""Cancel jobs that submit.py has submitted.
 
 cancel.py NUMBER:NAME ...
 """

@@ -1,10 +1,10 @@
-"""What submit.py, status.py and cancel.py share: a folder for each submission, and how Slurm is asked.
+"""Functions shared by submit.py, status.py and cancel.py: the folder of a submission, and requests to Slurm.
 
-`.snakemake/slurm/<name>/` holds `record.json` (what the job makes, and from what), its script, Slurm's output and, once
-the script has ended, `exit` with its exit code. The folder is there before Slurm knows the job, and the job's name in
-Slurm is that of the folder: a job whose Snakemake was killed is found again by the next one.
+`.snakemake/slurm/<name>/` contains `record.json` (the files that the job makes, and from what), its script, Slurm's
+output and, once the script has ended, `exit` with its exit code. The folder is created before the job is submitted, and
+the job has its name in Slurm: the next Snakemake finds a job whose own Snakemake was killed.
 
-These programs use nothing but the standard library of any Python 3 from 3.8.
+These programs use only the standard library of Python 3.8 or later.
 """
 
 import itertools
@@ -15,14 +15,14 @@ from pathlib import Path
 FOLDER = Path(".snakemake/slurm")
 #: In the folder of a job.
 RECORD, OUTPUT = "record.json", "output.txt"
-#: Seconds for which a controller that does not answer is asked again, and between two attempts.
+#: Seconds for which requests to a controller that does not answer are repeated, and seconds between them.
 PATIENCE, PAUSE = 300.0, 5.0
 
 
 def exit_code(job):
     """Return the exit code of the script in the folder of a job; None while it has none."""
     try:
-        # To list a folder makes a network file system look again.
+        # Listing a folder makes a network file system refresh it.
         list(job.iterdir())
         return int((job / "exit").read_text())
     except (OSError, ValueError):
@@ -30,7 +30,7 @@ def exit_code(job):
 
 
 def live_jobs():
-    """Return {name: Slurm's number} of the jobs of this user that have not ended; raise OSError if Slurm cannot say."""
+    """Return {name: Slurm's number} of this user's jobs that have not ended; raise OSError if Slurm does not answer."""
     for _ in attempts():
         answer = ask("squeue", "--me", "--noheader", "--format=%A|%j")
         if answer.returncode == 0:
@@ -49,10 +49,10 @@ def attempts():
 
 
 def ask(*command, **options):
-    """Run a program of Slurm to its end; return it with what it wrote."""
+    """Run a program of Slurm to its end; return its result with its output."""
     return subprocess.run(command, capture_output=True, text=True, **options)
 
 
 def one_line(text):
-    """Return the last line of a text that is not empty."""
+    """Return the last non-empty line of a text."""
     return next((line.strip() for line in reversed(text.splitlines()) if line.strip()), "no reason given")

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Prints running, success or failed for a job that submit.py has returned.
+"""Print running, success or failed for a job that submit.py has submitted.
 
     status.py NUMBER:NAME
 
-A job has succeeded if its script left the exit code 0, whatever Slurm remembers of it; one that left none has failed
-once Slurm does not know it as live. Without an answer of Slurm a job counts as running. The folder of a job that has
-succeeded is removed: from then on Snakemake itself knows.
+A job has succeeded if its script left the exit code 0, whatever Slurm reports. A job without an exit code has failed
+once Slurm no longer lists it as live. If Slurm does not answer, a job counts as running. The folder of a successful job
+is removed, since Snakemake itself then records the success.
 """
 
 import shutil
@@ -14,11 +14,11 @@ import time
 
 from jobs import FOLDER, OUTPUT, ask, exit_code
 
-#: States of a job that is yet to end.
+#: States of a job that has not ended.
 LIVE = {"PENDING", "CONFIGURING", "RUNNING", "SUSPENDED", "COMPLETING", "STAGE_OUT", "SIGNALING", "STOPPED", "RESIZING"}
-#: States of a job whose script has ended by itself: it leaves an exit code, which another node may see later.
+#: States of a job whose script has ended by itself; its exit code may become visible here later.
 ENDED = {"COMPLETED", "FAILED", "UNKNOWN"}
-#: Seconds until a file that another node has written is seen here.
+#: Seconds until a file that another node has written is visible here.
 LATENCY = 60.0
 
 
@@ -26,7 +26,7 @@ def main():
     """Print the status; return the exit code."""
     number, _, name = sys.argv[1].partition(":")
     job = FOLDER / name
-    # Slurm first: a job that ends after the answer is found at the next call.
+    # Slurm is asked first: a job that ends after its answer is found by the next call.
     state = slurm_state(number, name)
     code = exit_code(job)
     if code == 0:
@@ -49,19 +49,19 @@ def slurm_state(number, name):
     if answer.returncode:
         return "UNKNOWN" if "Invalid job id" in answer.stderr + answer.stdout else "RUNNING"
     fields = dict(word.partition("=")[::2] for word in answer.stdout.split())
-    # After a new installation Slurm may count from 1 again.
+    # A new installation of Slurm may number its jobs from 1 again.
     return fields.get("JobState", "RUNNING") if fields.get("JobName") == name else "UNKNOWN"
 
 
 def waited(job):
-    """Return for how many seconds it has been known that a job has ended."""
+    """Return the seconds since the end of a job was first seen."""
     mark = job / "ended"
     try:
         if not mark.exists():
             mark.touch()
         return time.time() - mark.stat().st_mtime
     except OSError:
-        # The folder itself is gone: nothing is to come.
+        # The folder itself is gone, and with it any exit code.
         return LATENCY
 
 

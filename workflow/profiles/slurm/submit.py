@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Submits a job script of Snakemake to Slurm and prints `<Slurm's number>:<name>`; makes nothing twice.
+"""Submit a job script of Snakemake to Slurm and print `<Slurm's number>:<name>`, unless an earlier job does the same.
 
     BK_STUDY="results/STUDY DIGEST" submit.py JOBSCRIPT
 
-A job of an earlier run that makes the same files from the same study, and runs or has ended well without a Snakemake
-to take note, is returned instead. One that would make some of the files from something else is cancelled, and the new
-job begins when it has ended.
+If a job of an earlier run makes the same files from the same study, and is live or has succeeded without its Snakemake,
+its number and name are printed instead. An earlier job that makes some of the files from another study or from older
+inputs is cancelled, and the new job begins when it has ended.
 
 Exit code 1, with one line on stderr, if Slurm refuses the job or does not answer.
 """
@@ -20,14 +20,14 @@ from pathlib import Path
 
 from jobs import FOLDER, OUTPUT, RECORD, ask, attempts, exit_code, live_jobs, one_line
 
-#: What sbatch says when the controller does not answer or has no room now.
+#: Messages of sbatch if the controller does not answer, or accepts no job at the moment.
 NO_ANSWER = re.compile(
     "contact|timed out|connect|communication|zero bytes|temporarily|try again|submit limit", re.IGNORECASE
 )
-#: What the Snakemake inside a job takes beside the job: MB, and minutes to start on a slow file system.
+#: Additional needs of the Snakemake inside a job: memory in MB, and minutes to start on a slow file system.
 SNAKEMAKE_MB, SNAKEMAKE_MINUTES = 250, 5
 
-# SIGTERM comes to all processes of the job: whatever the script says then, the job was ended from outside.
+# All processes of the job receive SIGTERM: whatever the script returns then, the job was ended from outside.
 SCRIPT = """#!/bin/sh
 trap 'ended=143' TERM
 sh {folder}/snakemake.sh
@@ -56,7 +56,7 @@ def main():
         job = FOLDER / f"{label}-{secrets.token_hex(8)}"
         job.mkdir(parents=True)
         (job / "snakemake.sh").write_text(script)
-        # The record comes last: with it the folder is complete.
+        # The record is written last: the folder is then complete.
         (job / RECORD).write_text(json.dumps({"study": study, "targets": targets}))
         attempt = int(options["--attempt"][0])
         number = submit(job, requests(properties, attempt), others)
@@ -68,7 +68,7 @@ def main():
 
 
 def read_options(script):
-    """Return {option: values} of the Snakemake that a job script calls."""
+    """Return {option: values} of the `snakemake` command in a job script."""
     options, values = {}, []
     for word in shlex.split(script, comments=True):
         if word.startswith("--"):
@@ -79,24 +79,24 @@ def read_options(script):
 
 
 def newest_input(options):
-    """Return when the latest of the files that a job reads was written, or infinity if one is missing."""
+    """Return the modification time of the newest file that a job reads, or infinity if a file is missing."""
     files = list(options.get("--wait-for-files", []))
     for name in options.get("--wait-for-files-file", []):
         files += Path(name).read_text().splitlines()
     try:
-        # Snakemake's own folder of this run is among them.
+        # Folders are left out: Snakemake lists its own folder of this run.
         return max((path.stat().st_mtime for path in map(Path, files) if not path.is_dir()), default=0.0)
     except OSError:
         return float("inf")
 
 
 def earlier_jobs(targets, study, newest, live):
-    """Return the job that makes just these targets, or None, and the numbers of those that new ones must wait for."""
+    """Return the job that makes exactly these targets, or None, and the numbers of the jobs to wait for."""
     others = []
     for job in sorted(FOLDER.glob("*")):
         try:
             record = json.loads((job / RECORD).read_text())
-            # By the clock of the file system that also holds the inputs.
+            # Measured by the clock of the file system that contains the inputs.
             submitted = (job / RECORD).stat().st_mtime
         except (OSError, ValueError):
             continue
@@ -113,7 +113,7 @@ def earlier_jobs(targets, study, newest, live):
 
 
 def requests(properties, attempt):
-    """Return what a job asks of Slurm. One that is tried again may have had too little memory or time."""
+    """Return the options of sbatch for a job; memory and time, which may have been short, grow with each attempt."""
     resources = properties["resources"]
     options = [
         "--nodes=1",
@@ -131,12 +131,12 @@ def requests(properties, attempt):
 def submit(job, options, others):
     """Submit a job that begins when all others have ended; return Slurm's number, or raise OSError if it is refused."""
     command = ["sbatch", "--parsable", f"--job-name={job.name}", f"--output={job / OUTPUT}", *options]
-    # Snakemake alone counts attempts and tries again.
+    # Only Snakemake counts and repeats attempts.
     command.append("--no-requeue")
     if others:
         command.append("--dependency=afterany:" + ":".join(others))
     for number in attempts():
-        # It may have been taken, and the answer lost.
+        # The job may have been accepted and the answer lost.
         taken = live_jobs().get(job.name) if number else None
         if taken:
             return taken
