@@ -247,6 +247,6 @@ def command_of(options: argparse.Namespace) -> str:
 
 def said_of(model: Model) -> str:
     """Describe a model in a line."""
-    numbers: Mapping[str, float] = model.law.numbers
+    numbers: Mapping[str, float] = model.law.parameters
     told = "".join(f", {name} = {value:g}" for name, value in numbers.items())
     return f"{model.law.name} law{told}, a = {model.a:g}, v = {model.v:g}, {model.blocks} blocks"

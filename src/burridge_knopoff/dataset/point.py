@@ -149,7 +149,7 @@ def model_attributes(model: Model) -> dict[str, Any]:
     return {
         "law": model.law.name,
         "law_formula": model.law.formula,
-        **{f"law_{key}": value for key, value in model.law.numbers.items()},
+        **{f"law_{key}": value for key, value in model.law.parameters.items()},
         **{f"chain_{key}": value for key in CHAIN_OPTIONS if (value := getattr(model.chain, key)) is not None},
     }
 

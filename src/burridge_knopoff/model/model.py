@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 
 from burridge_knopoff.laws import Law
-from burridge_knopoff.laws.law import FASTEST
+from burridge_knopoff.laws.law import MAX_SPEED
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
@@ -62,8 +62,8 @@ class Model(Unchanging):
         instance_of(self.chain, Chain, "chain")
         instance_of(self.law, Law, "law")
         # Blocks slip at a few v, faster from distant initial states: such a run ends where the law is not analytic.
-        fastest = FASTEST * self.v
-        if fastest > FASTEST and not self.law.tape.is_analytic(0.0, fastest):
+        fastest = MAX_SPEED * self.v
+        if fastest > MAX_SPEED and not self.law.tape.is_analytic(0.0, fastest):
             raise ValueError(
                 f"v: got {self.v!r}, expected one up to ten times which the law {self.law.name} is analytic"
             )

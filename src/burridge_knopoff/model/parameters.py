@@ -29,7 +29,7 @@ _SINGLE = re.compile(rf"({'|'.join(CHAIN)})\[(0|[1-9][0-9]*)\]")
 
 def names_of(model: Model) -> tuple[str, ...]:
     """Return the names of the parameters of a model: those of its law, of the driver and of the whole chain."""
-    return ("a", *model.law.numbers, "v", *CHAIN)
+    return ("a", *model.law.parameters, "v", *CHAIN)
 
 
 def words_of(model: Model) -> str:
@@ -116,7 +116,7 @@ def _given(model: Model, name: str) -> Any:
         raise ValueError(f"{name}: got a number of the law {model.law.name} and one of the model, expected one of them")
     if name in CHAIN:
         return getattr(model.chain, name)
-    return {"a": model.a, "v": model.v, **model.law.numbers}[name]
+    return {"a": model.a, "v": model.v, **model.law.parameters}[name]
 
 
 def _single(chain: Chain, name: str, key: str, number: int) -> float:

@@ -35,7 +35,7 @@ def _law(law: Law) -> Iterator[str]:
     yield from ("--law", kind) if kind else (f"--formula={law.formula}",)
     if law.name != (kind or "formula"):
         yield from ("--law-name", law.name)
-    for key, value in law.numbers.items():
+    for key, value in law.parameters.items():
         if value != usual.get(key):
             yield from ("--number", f"{key}={value!r}")
 

@@ -32,7 +32,7 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         slope=law.tape.slope,
         linear=law.is_linear,
         rate=-float(law.slope(0.0)),
-        steepest=law.steepest,
+        steepest=law.steepest_slope,
         v=v,
         symmetric=model.contact == "symmetric",
     )
