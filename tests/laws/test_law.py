@@ -85,7 +85,7 @@ def test_series_along_a_motion(law):
 
 @each_law
 def test_event_times(law):
-    """Against SciPy, from both states of the paper; the comparison ends at near-coincidences, whose order is undetermined."""
+    """Against SciPy, from both states of the paper, up to near-coincidences, whose order is undetermined."""
     compared = 0
     model = Model(Chain(3), law)
     for state in PAPER_STATES.values():

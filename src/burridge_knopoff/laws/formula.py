@@ -63,9 +63,7 @@ class _Reader:
             case ast.Name(id=name) if name in self.names:
                 return self.names[name]
             case ast.Name(id=name):
-                raise FormulaError(
-                    f"{cut(name)}: a name without a value; u is the slip speed U', a the friction parameter"
-                )
+                raise FormulaError(f"{cut(name)}: unknown name; u is the slip speed U', a the friction parameter")
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self.read(operand)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
