@@ -6,7 +6,7 @@ The model: `Model`, a `Chain` under a `Law` (`law_of` for those that are built i
 an `InitialState` to begin from, a `ChainState` on the way.
 
 Runs: `simulate` makes a `Run`, a `Trajectory`, by `Settings`, seen on a `Section`; `sweep` makes many of them over any
-parameters; `open_study` reads those of a study, and `in_words` says what the numbers of a flag mean.
+parameters; `open_study` reads those of a study, and `decode_flags` says what the numbers of a flag mean.
 
 Slip events: `record_events` and `Run.catalogue` make a `Catalogue`, the `SlipEvents` of a run; `fit_slope` fits the
 `Slope` of their magnitudes. `event_exponents` returns the `EventExponents` of the map from event to event, and

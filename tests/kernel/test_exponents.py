@@ -27,8 +27,10 @@ def side_by_side(model, start, end, *, interval=3.0, distance=1e-7, batches=14):
     for _ in range(round(end / interval)):
         position, velocity = np.split(start.vector() + offset, 2)
         # One of the two may stick a little longer than the other.
-        other = runner.after(ChainState(position, np.where(stuck, 0.0, np.maximum(velocity, 0.0)), stuck), interval)
-        start, stuck = runner.after(start, interval), other.stuck
+        other = runner.state_after(
+            ChainState(position, np.where(stuck, 0.0, np.maximum(velocity, 0.0)), stuck), interval
+        )
+        start, stuck = runner.state_after(start, interval), other.stuck
         offset = other.vector() - start.vector()
         length = np.linalg.norm(offset)
         growth.append(np.log(length / distance) / interval)

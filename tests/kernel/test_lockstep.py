@@ -68,7 +68,7 @@ def test_each_gives_what_it_gives_alone(members):
     made = [prepare(*member) for member in members]
     ends = run_together([one.runner for one in made])
     for first, one, end in zip(alone, made, ends, strict=True):
-        together = one.result(one.runner.ended(end))
+        together = one.result(one.runner.status_of(end))
         assert contents(first) == contents(together)
         # The marks by which both go on are the same as well.
         longer = Settings(transient=0.0, window=20.0, lyapunov_exponents=0)
@@ -90,7 +90,7 @@ def test_runs_of_all_kinds_at_once():
                     members += 2 * [(model, state, own)]
     made = [prepare(*member) for member in members]
     for member, one, end in zip(members, made, run_together([one.runner for one in made]), strict=True):
-        assert contents(run(*member)) == contents(one.result(one.runner.ended(end)))
+        assert contents(run(*member)) == contents(one.result(one.runner.status_of(end)))
 
 
 def test_runs_halt_at_stops_and_go_on():
@@ -127,7 +127,7 @@ def test_runs_end_in_all_ways():
     assert {one.status for one in alone} == {"completed", "diverged"}
     made = [prepare(*member) for member in members]
     for one, other, end in zip(alone, made, run_together([one.runner for one in made]), strict=True):
-        assert contents(one) == contents(other.result(other.runner.ended(end)))
+        assert contents(one) == contents(other.result(other.runner.status_of(end)))
 
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])

@@ -106,7 +106,7 @@ def test_refused(options, message):
 
 def test_what_is_computed_once_is_not_written_to():
     chain = Chain(3, coupling=np.array(0.5), pulling=2.0)
-    arrays = [chain.thresholds, chain.before, chain.after, chain.driving, Chain(3).driving]
+    arrays = [chain.thresholds, chain.coupling_to_previous, chain.coupling_to_next, chain.driving, Chain(3).driving]
     for array in (*arrays, Model(chain, law_of("linearized", 0.1)).sliding_offset):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 2.0

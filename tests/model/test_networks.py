@@ -185,8 +185,8 @@ def test_masses_break_the_mirror():
     assert Chain(3, mass=2.0).is_mirror_symmetric
     assert not Chain(3, mass=(1.0, 1.0, 2.0)).is_mirror_symmetric
     assert not Model(Chain(3, mass=2.0), law_of("linearized", 0.1)).has_closed_form
-    assert not Chain(3, mass=2.0).is_like(Chain(3))
-    assert Chain(3, mass=(1.0, 1.0, 1.0)).is_like(Chain(3))
+    assert not Chain(3, mass=2.0).is_equivalent_to(Chain(3))
+    assert Chain(3, mass=(1.0, 1.0, 1.0)).is_equivalent_to(Chain(3))
 
 
 def test_drawn_numbers_are_those_of_their_seed():
@@ -205,14 +205,14 @@ def test_drawn_numbers_are_those_of_their_seed():
 def test_initial_states_of_any_number_of_blocks():
     rough = InitialState("rough", UNIFORM, 0.25)
     assert rough.blocks is None
-    position, velocity = rough.numbers(60)
-    assert (position == rough.numbers(70)[0][:60]).all()
+    position, velocity = rough.coordinates(60)
+    assert (position == rough.coordinates(70)[0][:60]).all()
     assert velocity.tolist() == 60 * [0.25]
     at = Model(Chain(60), law_of("linearized", 0.1)).begin(rough)
     assert at.velocity.tolist() == 60 * [0.25]
     assert (InitialState("own", 0.5, 0.0).blocks, InitialState("own", UNIFORM, (0.0, 0.1)).blocks) == (1, 2)
     with refused("blocks: got 3, expected 2, the number of velocities of the initial state 'own'"):
-        InitialState("own", UNIFORM, (0.0, 0.1)).numbers(3)
+        InitialState("own", UNIFORM, (0.0, 0.1)).coordinates(3)
 
 
 @pytest.mark.parametrize(

@@ -26,7 +26,7 @@ def test_a_state_returns_after_the_time_that_is_told(initial, a, symmetry):
     assert {told for _, _, told, _ in found} == {symmetry}
     for start, time, _, size in found:
         assert time > 1.0
-        end = Runner(model).after(start, time)
+        end = Runner(model).state_after(start, time)
         image = end.mirrored() if symmetry == Symmetry.SYMMETRIC else end
         assert np.abs(image.vector() - start.vector()).max() <= 2.0 * size
 

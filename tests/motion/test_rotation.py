@@ -16,7 +16,7 @@ from burridge_knopoff.summaries.plateaux import Plateau, locked_share, plateaux
 
 def of_plus(a, duration):
     model = Model(Chain(3), law_of("linearized", a))
-    return rotation_number(model, Runner(model).after(model.begin(PAPER_STATES["plus"]), 3000.0), duration)
+    return rotation_number(model, Runner(model).state_after(model.begin(PAPER_STATES["plus"]), 3000.0), duration)
 
 
 def test_a_tongue_has_one_rotation_number_and_a_torus_another_at_each_a():
@@ -37,7 +37,7 @@ def test_half_of_the_time_is_less_exact_than_the_whole():
 def test_motion_that_passes_through_its_centre_has_no_phase():
     """In synchrony the end blocks are not apart, on the antiphase the middle block rests."""
     model = Model(Chain(3), law_of("linearized", 0.08))
-    together = Runner(model).after(model.begin(PAPER_STATES["minus"]), 9000.0)
+    together = Runner(model).state_after(model.begin(PAPER_STATES["minus"]), 9000.0)
     assert np.isnan(rotation_number(model, together, 100.0)).all()
 
 

@@ -153,10 +153,10 @@ def test_the_solver_of_fixed_steps_takes_no_end_but_the_windows(arguments):
 def test_events_that_were_read_outlive_another_beginning():
     model = Model(Chain(3), law_of("linearized", 0.08))
     runner = Runner(model, keep_events=True)
-    runner.after(model.begin(PAPER_STATES["plus"]), 40.0)
+    runner.state_after(model.begin(PAPER_STATES["plus"]), 40.0)
     time, block, _ = runner.events()
     kept = time.copy()
-    runner.after(model.begin(PAPER_STATES["minus"]), 10.0)
+    runner.state_after(model.begin(PAPER_STATES["minus"]), 10.0)
     assert len(block) == len(kept) > 10
     assert (time == kept).all()
     # The log has those of the second run alone.

@@ -56,7 +56,7 @@ class Attractor:
 
 def close_returns(found: Returns, tolerance: float) -> int:
     """Return how many successive returns have to be close to a motion: twice round it if it is a closed orbit."""
-    if not found.closed(tolerance):
+    if not found.has_periodic_spacing(tolerance):
         return CLOSE_RETURNS
     return max(CLOSE_RETURNS, 2 * orbit_length(found.returns, 10.0 * tolerance, LONGEST_ORBIT))
 

@@ -19,7 +19,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import CHAOS
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.section_returns import state_of
-from burridge_knopoff.motion.set_distance import SPACINGS, least_distance
+from burridge_knopoff.motion.set_distance import SPACINGS, minimum_distance
 
 #: Least radius of an attractor, 1 % of the default resolution, for v = 0.1: what comes back only from nearer belongs to
 #: a set that attracts as a whole, or to none.
@@ -52,7 +52,7 @@ def midst(attractors: Sequence[Attractor], index: int, tolerance: float) -> list
         for k, other in enumerate(attractors)
         if k != index
         and other.motion.spacing <= tolerance
-        and least_distance(motion.returns, other.motion.returns, reach) <= reach
+        and minimum_distance(motion.returns, other.motion.returns, reach) <= reach
     ]
 
 
@@ -87,7 +87,7 @@ class Capture:
             radius = min(attractor.radius, max(self.largest * model.scale, attractor.motion.spacing))
             for k, other in enumerate(attractors):
                 if k != index and k not in within[index] and index not in within[k]:
-                    apart = least_distance(attractor.motion.returns, other.motion.returns, radius / SHARED)
+                    apart = minimum_distance(attractor.motion.returns, other.motion.returns, radius / SHARED)
                     radius = min(radius, SHARED * apart)
             result.append(replace(attractor, radius=radius, patience=PATIENT_TIME if within[index] else 0.0))
         return result

@@ -12,10 +12,10 @@ from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.slow_set import SLOW_PUSH, SLOW_TIME
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.classification import Classifier
-from burridge_knopoff.motion.kind import CHAOS, closed_kind, judged_distance
+from burridge_knopoff.motion.kind import CHAOS, periodic_orbit_kind, synchronization_distance
 from burridge_knopoff.motion.observables import SteadyMotion
-from burridge_knopoff.motion.section_returns import Returns, stops_alike, visit
-from burridge_knopoff.motion.set_distance import SPACINGS, is_near, least_distance
+from burridge_knopoff.motion.section_returns import Returns, has_same_stop_shares, visit
+from burridge_knopoff.motion.set_distance import SPACINGS, is_near, minimum_distance
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 
 # Drift, in resolutions, up to which a motion that has not converged by then is followed on, for as many times the
@@ -66,7 +66,7 @@ class Convergence:
     @property
     def tolerance(self) -> float:
         """Distance within which the returns of a closed orbit repeat."""
-        return self.motion_settings.at_speed(self.model.v).period_tolerance
+        return self.motion_settings.scaled_to_velocity(self.model.v).period_tolerance
 
     def settle(self, start: ChainState) -> Returns | None:
         """Integrate to convergence and return the section returns; None if the state does not converge."""
@@ -79,7 +79,7 @@ class Convergence:
             if found is None:
                 return None
             start = found.state()
-            closed, settled = found.closed(tolerance), found.settled(tolerance, resolution)
+            closed, settled = found.has_periodic_spacing(tolerance), found.is_settled(tolerance, resolution)
             # A set that is no closed orbit takes longer to fill, most of all near a resonance, where half of it looks
             # like a set of its own; and a chaotic transient may still end.
             whole = self.is_symmetric(found) or not self.model.chain.is_mirror_symmetric
@@ -102,13 +102,13 @@ class Convergence:
         still = self.tolerance * STILL
         wait = self.settings.time_limit
         while wait <= self.patience * self.settings.time_limit:
-            closed = found.closed(self.tolerance)
-            if found.drift <= still or (not closed and found.settled(self.tolerance, self.resolution)):
+            closed = found.has_periodic_spacing(self.tolerance)
+            if found.drift <= still or (not closed and found.is_settled(self.tolerance, self.resolution)):
                 return found
             later = visit(self.model, found.state(), wait, found.window)
             if later is None:
                 return None
-            if closed and later.closed(self.tolerance):
+            if closed and later.has_periodic_spacing(self.tolerance):
                 if _left(found, later, wait) <= LEFT * self.resolution:
                     return later
             elif not closed and is_near(later.returns, found.returns, self._reach(found)):
@@ -119,7 +119,7 @@ class Convergence:
     def measured(self, found: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
         """Measure a settled motion; where it turns out to be on its way to another one, return that one instead."""
         settings = self.settings
-        closed, window = found.closed(self.tolerance), self.window_of(found)
+        closed, window = found.has_periodic_spacing(self.tolerance), self.window_of(found)
         motion = self.classifier(settings.transient, window).measure(found.state())
         if motion is None:
             return None
@@ -130,10 +130,10 @@ class Convergence:
         chaotic = motion.kind in CHAOS
         if closed and not chaotic:
             # It repeats: of a long orbit that hardly attracts, a window tells the exponents no better.
-            mean = judged_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
-            own = self.motion_settings.at_speed(self.model.v)
+            mean = synchronization_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
+            own = self.motion_settings.scaled_to_velocity(self.model.v)
             period = motion.period if math.isfinite(motion.period) else math.inf
-            return found, replace(motion, kind=closed_kind(mean, period, own), period=period)
+            return found, replace(motion, kind=periodic_orbit_kind(mean, period, own), period=period)
         if not chaotic and motion.mean_distance_error <= UNSTEADY * motion.mean_distance:
             return found, motion
         # Chaos in which a state may still be when it is given up is a set to be listed, however long it lasts.
@@ -141,13 +141,13 @@ class Convergence:
         if later is None:
             return None
         # Thin chaos may look closed in a window, but hardly twice in the same place.
-        ended = later.closed(self.tolerance) and later.settled(self.tolerance, self.resolution)
-        stays = not ended and (chaotic or stops_alike(later.stop_count, found.stop_count))
+        ended = later.has_periodic_spacing(self.tolerance) and later.is_settled(self.tolerance, self.resolution)
+        stays = not ended and (chaotic or has_same_stop_shares(later.stop_count, found.stop_count))
         return (found, motion) if stays or again == self.trials else self.measured(later, again + 1)
 
     def window_of(self, found: Returns) -> float:
         """Return how long a motion is measured: one that takes long to close for as long as it took."""
-        return found.window if found.closed(self.tolerance) else FILLING * self.settings.window
+        return found.window if found.has_periodic_spacing(self.tolerance) else FILLING * self.settings.window
 
     def is_symmetric(self, found: Returns) -> bool:
         """Tell whether a motion cannot be told apart from its mirror image, in the window in which it was seen."""
@@ -157,11 +157,11 @@ class Convergence:
         """Tell whether a motion comes to where its mirror image has been."""
         if not _sees_both(found):
             return False
-        return least_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
+        return minimum_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
 
     def changes_sides(self, found: Returns) -> bool:
         """Tell whether a motion that touches its mirror image comes to cover it in a longer time."""
-        if found.closed(self.tolerance) or not self.touches(found):
+        if found.has_periodic_spacing(self.tolerance) or not self.touches(found):
             return False
         longer = visit(self.model, found.state(), 0.0, LASTING * self.settings.transient)
         if longer is None or longer.block != found.block:
@@ -177,7 +177,7 @@ class Convergence:
         if around is None or around.kind not in CHAOS:
             return False
         later = visit(self.model, start, settings.time_limit, settings.window)
-        return later is not None and not later.closed(self.tolerance)
+        return later is not None and not later.has_periodic_spacing(self.tolerance)
 
     def classifier(self, transient: float, window: float) -> Classifier:
         """Return what measures a converged motion in these times."""
@@ -185,7 +185,7 @@ class Convergence:
 
     def _reach(self, found: Returns) -> float:
         """Return how far from a motion a return that belongs to it may lie."""
-        return max(self.resolution, 0.0 if found.closed(self.tolerance) else SPACINGS * found.spacing)
+        return max(self.resolution, 0.0 if found.has_periodic_spacing(self.tolerance) else SPACINGS * found.spacing)
 
 
 def _left(found: Returns, later: Returns, wait: float) -> float:

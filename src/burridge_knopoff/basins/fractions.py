@@ -16,8 +16,8 @@ from burridge_knopoff.attractors.capture_radius import midst
 from burridge_knopoff.attractors.labels import UNDETERMINED, label_together
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.model.model import ChainState
-from burridge_knopoff.model.sampling import half_width, most_states, sample_states, seed_at
-from burridge_knopoff.running.processes import Shared
+from burridge_knopoff.model.sampling import half_width, required_samples, sample_states, seed_at
+from burridge_knopoff.running.processes import ParallelMap
 
 #: States that one process labels at a time; no label depends on it.
 PART = 250
@@ -30,10 +30,10 @@ PATIENCE_MARGIN = 3.0
 STEP = 50
 
 
-def fraction_labels(searches: Sequence[Search], start: str, each: Shared) -> tuple[list[Search], list[np.ndarray]]:
+def fraction_labels(searches: Sequence[Search], start: str, each: ParallelMap) -> tuple[list[Search], list[np.ndarray]]:
     """Return, for each model, the index of the attractor that each drawn state reaches, and the searches as they are.
 
-    start : see `Model.begin`; each : as `running.processes.shared_out` gives it
+    start : see `Model.begin`; each : as `running.processes.parallel_map` gives it
 
     The states are not those from which attractors are looked for; but where one reaches none that is known, it is
     looked for from there as well, and all are labelled once more.
@@ -45,7 +45,7 @@ def fraction_labels(searches: Sequence[Search], start: str, each: Shared) -> tup
     while waiting:
         for k in waiting:
             labels[k] = labels[k][:0]
-        wide = [k for k in waiting if most_states(searches[k].settings.fraction_width)]
+        wide = [k for k in waiting if required_samples(searches[k].settings.fraction_width)]
         while wide:
             those, firsts = [searches[k] for k in wide], [len(labels[k]) for k in wide]
             found = each("labelled for basin fractions", partial(_labels, start=start), those, firsts)
@@ -68,7 +68,7 @@ def enough_states(labels: np.ndarray, width: float) -> int | None:
 
     labels : of the states in their order, shape (n,), −1 where it is undetermined, which is a fraction as well
     """
-    most = most_states(width)
+    most = required_samples(width)
     for count in (*range(STEP, most, STEP), most):
         if count > len(labels):
             return None
@@ -85,7 +85,7 @@ def _drawn(search: Search, start: str, first: int, count: int) -> tuple[np.ndarr
     seed = seed_at(settings.seed, model.a)
     box = settings.position, settings.velocity
     position, velocity = (part[first:] for part in sample_states(model.blocks, first + count, *box, seed))
-    stuck = model.starts_stuck(position, velocity, start)
+    stuck = model.stuck_blocks(position, velocity, start)
     return position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
 
 
@@ -98,7 +98,7 @@ def _spared(search: Search, start: str) -> Search | None:
     """
     attractors = search.attractors
     inner = [midst(attractors, index, search.tolerance) for index in range(len(attractors))]
-    sample = _drawn(search, start, 0, min(search.settings.samples, most_states(search.settings.fraction_width)))
+    sample = _drawn(search, start, 0, min(search.settings.samples, required_samples(search.settings.fraction_width)))
     if not any(inner) or not len(sample[0]):
         return None
     labels, times, _ = label_together(search.model, attractors, *sample, search.settings.time_limit)
@@ -112,7 +112,7 @@ def _spared(search: Search, start: str) -> Search | None:
 
 def _labels(search: Search, first: int, start: str) -> np.ndarray:
     """Label a part of the drawn states, from that number on."""
-    part = _drawn(search, start, first, min(PART, most_states(search.settings.fraction_width) - first))
+    part = _drawn(search, start, first, min(PART, required_samples(search.settings.fraction_width) - first))
     if not search.attractors:
         return np.full(len(part[0]), UNDETERMINED, dtype=np.intc)
     labels, _, _ = label_together(search.model, search.attractors, *part, search.settings.label_limit)

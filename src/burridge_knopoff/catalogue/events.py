@@ -10,7 +10,7 @@ import numpy as np
 from burridge_knopoff.kernel._core import Catalogue
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number, OneOf, TrueOrFalse
-from burridge_knopoff.running.runner import STEPPING, Runner, new_observer
+from burridge_knopoff.running.runner import FIXED_STEP_SOLVERS, Runner, new_observer
 from burridge_knopoff.running.settings import SOLVERS, check_step
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_number, refusal
@@ -124,7 +124,7 @@ def record_events(
     solver = OneOf((*SOLVERS, "euler")).form(solver, "solver")
     if not real_number(step) > 0.0:
         raise refusal("step", step, "a number above 0")
-    stepping = solver in STEPPING
+    stepping = solver in FIXED_STEP_SOLVERS
     if stepping:
         check_step(step, LONGEST_STEP, end - start.time, model.chain)
     observer = new_observer(model, [end, end], section_only=True) if stepping else None

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from burridge_knopoff.catalogue.events import SlipEvents, record_events
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.dataset.point import STATUS_FLAG, model_attributes
-from burridge_knopoff.dataset.variables import Variable, described, global_attributes
+from burridge_knopoff.dataset.variables import Variable, global_attributes, xarray_variables
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 
@@ -63,7 +63,7 @@ def catalogue_dataset(
     own = {"a": model.a, "v": model.v, "slip_block": events.slip_block, "slip_distance": events.slip}
     variables = {**CATALOGUE_VARIABLES, **(PROFILE_VARIABLES if len(events.slip) else {})}
     values = {name: own[name] if name in own else getattr(events, name) for name in variables}
-    data = described(variables, values)
+    data = xarray_variables(variables, values)
     if len(events.slip):
         data["blocks"][2]["sample_dimension"] = "slip"
     title = f"Slip events of a Burridge-Knopoff chain of {model.blocks} blocks, {model.law.name} friction law"

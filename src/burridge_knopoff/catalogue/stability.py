@@ -15,7 +15,7 @@ from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of, refusal
 
 # A block at its threshold, at the start of an event, sticks: forces are known to this share.
-LENIENT = 1e-9
+THRESHOLD_TOLERANCE = 1e-9
 
 #: Batches for the errors of exponents.
 BATCHES = 16
@@ -88,7 +88,7 @@ def event_exponents(
     if end <= begin:
         raise refusal("end", end, f"a time after begin ({begin:g})")
     edges = np.linspace(begin, end, BATCHES + 1)
-    if loading == "steady" and len(rests := _rests(model, start, edges)) > 1:
+    if loading == "steady" and len(rests := _rest_times(model, start, edges)) > 1:
         edges = rests
     catalogue = Catalogue(model.blocks, edges[0], False, MOST_EVENTS)
     exponents = Exponents(model.blocks, count, 0.5 * (start.time + begin), edges, at_rest=True)
@@ -105,7 +105,7 @@ def event_exponents(
     return EventExponents(mean[order], np.where(np.isfinite(mean), error, 0.0)[order], events, status)
 
 
-def _rests(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:
+def _rest_times(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:
     """Return the middle of the time of rest nearest to each edge, all between the first and the last of them.
 
     At rest all blocks stick. None is returned if they never do, or if the run fails.
@@ -159,7 +159,7 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     runner.begin(start)
     force = model.chain.force(start.position + model.sliding_offset)
     pulled = np.abs(force) if model.contact == "symmetric" else force
-    if not start.stuck.all() or (pulled > model.chain.thresholds * (1.0 + LENIENT)).any():
+    if not start.stuck.all() or (pulled > model.chain.thresholds * (1.0 + THRESHOLD_TOLERANCE)).any():
         raise refusal("start", start, "a state in which all blocks stick, none beyond its threshold")
     status = runner.run(end)
     if status != Status.COMPLETED or not runner.state().stuck.all():

@@ -15,7 +15,7 @@ from burridge_knopoff.jobs.checked import check_file
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import NAME, remake_command
 from burridge_knopoff.provenance.seal import BadFile
-from burridge_knopoff.running.status import ENDS
+from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.study.job_log import last_words
 from burridge_knopoff.study.recorded import recorded_study
@@ -159,9 +159,9 @@ def _of_file(jobs: Jobs, results: Path, name: str, log: Path) -> Finding | None:
     except BadFile as error:
         return _problem(path, error, log)
     # A catalogue is of a single run.
-    if ended is None or ended.dims or ENDS[ended.item()] == "completed":
+    if ended is None or ended.dims or STATUS_WORDS[ended.item()] == "completed":
         return None
-    return Finding("failed", path, f"ended with status {ENDS[ended.item()]}")
+    return Finding("failed", path, f"ended with status {STATUS_WORDS[ended.item()]}")
 
 
 def _problem(path: Path, error: BadFile, log: Path) -> Finding:

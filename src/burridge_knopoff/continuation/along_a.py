@@ -32,7 +32,7 @@ from burridge_knopoff.continuation.settings import REFINE, Refine
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.running.processes import Shared, shared_out
+from burridge_knopoff.running.processes import ParallelMap, parallel_map
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,13 +81,13 @@ def continue_attractors(
 
     settings, motion, starts, start : see `find_attractors`
     refine : how near in a a change is looked for
-    processes, folder : that work at once, and where they keep what they find; see `shared_out`. No result depends on
+    processes, folder : that work at once, and where they keep what they find; see `parallel_map`. No result depends on
         them
 
     Raises ValueError if an initial state does not fit the models.
     """
     matcher = Matcher(models[0].scale, refine.longest_period)
-    with shared_out(processes, folder) as each:
+    with parallel_map(processes, folder) as each:
         searches = [Search(model, settings, motion) for model in models]
         searches = each("searched from states", partial(_searched, starts=starts, start=start), searches)
         searches = _hand_on(searches, each, matcher, [True] * len(searches))
@@ -143,7 +143,7 @@ def _knows_more(search: Search, before: Search) -> bool:
     return len(search.attractors) > len(before.attractors)
 
 
-def _hand_on(searches: Sequence[Search], each: Shared, matcher: Matcher, new: Sequence[bool]) -> list[Search]:
+def _hand_on(searches: Sequence[Search], each: ParallelMap, matcher: Matcher, new: Sequence[bool]) -> list[Search]:
     """Follow attractors, down and up, to the neighbouring a at which they are not known, or not as they are.
 
     new : which of the searches may know what its neighbours have not been asked for

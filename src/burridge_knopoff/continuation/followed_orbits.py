@@ -21,7 +21,7 @@ from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.following import Following
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 
 #: How closed orbits are followed, and how many unstable ones beyond a bifurcation, for the figure.
 FOLLOWING = Following(first_step=1e-4, largest_step=2.5e-3, least_step=1e-7, most_orbits=120)
@@ -81,7 +81,7 @@ def followed(
     """Follow every attractor of one law that is a closed orbit.
 
     one : the attractors at all values of a; those between the grid are left out where the branch does not change
-    processes, folder : that work at once, and where they keep what they find; see `shared_out`. No result depends on
+    processes, folder : that work at once, and where they keep what they find; see `parallel_map`. No result depends on
         them
     """
     largest = float(np.nanmax(one["a"].values))
@@ -89,7 +89,7 @@ def followed(
     models = [model.at(float(one["a"].values[k])) for k, _ in places]
     states = ([one[name].values[place] for place in places] for name in ("position", "velocity"))
     found = FollowedOrbits()
-    with shared_out(processes, folder) as each:
+    with parallel_map(processes, folder) as each:
         orbits = each("closed orbits", _closed, models, *states)
         closed = [pair for pair in zip(places, orbits, strict=True) if not _is_lost(model, pair[1])]
         for following in _rounds(_in_turn(closed), found, ROUND * processes):

@@ -13,7 +13,7 @@ from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher, Outline, outlines
 from burridge_knopoff.continuation.settings import Refine
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.processes import Shared
+from burridge_knopoff.running.processes import ParallelMap
 
 #: Numbers of the attractors on both sides of a gap that differ.
 Differing = tuple[list[int], list[int]]
@@ -41,11 +41,11 @@ class Gap:
         return bool(self.before or self.after) and not near
 
 
-def refined(searches: Sequence[Search], refine: Refine, matcher: Matcher, each: Shared) -> list[list[Search]]:
+def refined(searches: Sequence[Search], refine: Refine, matcher: Matcher, each: ParallelMap) -> list[list[Search]]:
     """Return searches at values of a between each two neighbours of the grid, ascending; none where nothing changes.
 
     refine : how near to each other the values have to be at which something differs
-    each : as `running.processes.shared_out` gives it
+    each : as `running.processes.parallel_map` gives it
 
     At a value that is put in only those attractors are followed that change between its neighbours: in kind, symmetry
     or period, or in that they have no counterpart. Where nothing attracts, as at a = 0, nothing is put in:
@@ -67,7 +67,9 @@ def refined(searches: Sequence[Search], refine: Refine, matcher: Matcher, each: 
         )
         return [(k, half) for half in both if half.is_open(refine)]
 
-    each.and_on("refined", partial(_halved, matcher=matcher), [one for one in gaps if one[1].is_open(refine)], halves)
+    each.work_through(
+        "refined", partial(_halved, matcher=matcher), [one for one in gaps if one[1].is_open(refine)], halves
+    )
     return [sorted(inner, key=lambda search: search.model.a) for inner in found]
 
 

@@ -18,7 +18,9 @@ class Column(Variable):
     value: Callable[[Any], Any] = lambda thing: None
 
 
-def empty(variables: Mapping[str, Variable], sizes: Mapping[str, int], *beginnings: str) -> dict[str, np.ndarray]:
+def empty_columns(
+    variables: Mapping[str, Variable], sizes: Mapping[str, int], *beginnings: str
+) -> dict[str, np.ndarray]:
     """Return an array of missing values for each variable whose dimensions have a size.
 
     beginnings : of the names that are wanted; none for all
@@ -30,14 +32,16 @@ def empty(variables: Mapping[str, Variable], sizes: Mapping[str, int], *beginnin
     }
 
 
-def filled(columns: Mapping[str, Column], things: Mapping[Any, Any], sizes: Mapping[str, int]) -> dict[str, np.ndarray]:
+def column_values(
+    columns: Mapping[str, Column], things: Mapping[Any, Any], sizes: Mapping[str, int]
+) -> dict[str, np.ndarray]:
     """Return {column: its values}, of each thing at its place in the table, along the first dimensions of the column.
 
     things : by their places, each a tuple of whole numbers
 
     Of fewer numbers than the last dimension has the others stay missing, as exponents that were not computed.
     """
-    values = empty(columns, sizes)
+    values = empty_columns(columns, sizes)
     for name, column in columns.items():
         for place, thing in things.items():
             found = column.value(thing)

@@ -11,29 +11,29 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.dataset.about import point_about
+from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.dataset.variables import (
     DIRECTION,
     KIND,
     TIMES,
     YES_OR_NO,
     Variable,
-    described,
-    fill,
     flag,
     global_attributes,
+    write_variables,
+    xarray_variables,
 )
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.seal import write_sealed
 from burridge_knopoff.provenance.sources import SOFTWARE
 from burridge_knopoff.running.command import CHAIN_OPTIONS, simulate_command
-from burridge_knopoff.running.status import ENDS, Status
+from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.running.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray
 
-STATUS_FLAG = flag("i1", ENDS)
+STATUS_FLAG = flag("i1", STATUS_WORDS)
 SECTION = {"comment": "the attribute `section` says of what W consists: the sum of all x_i, or x_n of block n"}
 RELATIVE = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
@@ -108,7 +108,7 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
     """Return the values of all point variables."""
     settings = trajectory.settings
     width = settings.window / settings.batches
-    position, velocity = trajectory.initial.numbers(trajectory.model.blocks)
+    position, velocity = trajectory.initial.coordinates(trajectory.model.blocks)
     special = {
         "a": trajectory.model.a,
         "v": trajectory.model.v,
@@ -165,15 +165,15 @@ def write_point(trajectory: Trajectory, path: str | Path) -> None:
 
     def write(name: str) -> None:
         with netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
-            fill(dataset, POINT_VARIABLES, point_values(trajectory), attributes)
+            write_variables(dataset, POINT_VARIABLES, point_values(trajectory), attributes)
 
-    write_sealed(path, write, point_about(attributes["history"]), trajectory.status)
+    write_sealed(path, write, point_identity(attributes["history"]), trajectory.status)
 
 
 def to_dataset(trajectory: Trajectory) -> xarray.Dataset:
     """Return a trajectory as the xarray Dataset that its point file opens as."""
     import xarray
 
-    data = described(POINT_VARIABLES, point_values(trajectory))
+    data = xarray_variables(POINT_VARIABLES, point_values(trajectory))
     coordinates = {name for name, item in POINT_VARIABLES.items() if item.coordinate} | set(TIMES.values())
     return xarray.Dataset(data, attrs=point_attributes(trajectory)).set_coords(coordinates)

@@ -14,8 +14,8 @@ from burridge_knopoff.dataset.variables import (
     COMPRESSION_LEVEL,
     TEXT,
     Variable,
-    described,
     global_attributes,
+    xarray_variables,
 )
 from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.provenance.seal import BadFile, check_seal, write_sealed
@@ -57,7 +57,7 @@ def summary(
     module : name of the module that makes the values
     """
     head = global_attributes(title, {"history": "snakemake, from the point files", **attributes}, module=module)
-    return xarray.Dataset(described(variables, values), dict(coordinates), head)
+    return xarray.Dataset(xarray_variables(variables, values), dict(coordinates), head)
 
 
 def write_summary(dataset: xarray.Dataset, path: str | Path, about: Mapping[str, Any] | None = None) -> None:

@@ -81,7 +81,7 @@ def flag(dtype: str, meanings: Iterable[IntEnum] | Mapping[int, str]) -> dict[st
     return {"flag_values": np.array(list(meanings), dtype=dtype), "flag_meanings": " ".join(meanings.values())}
 
 
-def in_words(flags: xarray.DataArray) -> xarray.DataArray:
+def decode_flags(flags: xarray.DataArray) -> xarray.DataArray:
     """Return a flag variable with the meaning of each value, a string, in its place; "" where it is NaN.
 
     flags : a variable with the CF attributes `flag_values` and `flag_meanings`, as in every file of a study
@@ -89,9 +89,9 @@ def in_words(flags: xarray.DataArray) -> xarray.DataArray:
     Raises ValueError if it has no such attributes.
 
     >>> import xarray
-    >>> from burridge_knopoff import in_words
+    >>> from burridge_knopoff import decode_flags
     >>> kind = xarray.DataArray([0, 1], attrs={"flag_values": [0, 1], "flag_meanings": "stop start"})
-    >>> in_words(kind).values.tolist()
+    >>> decode_flags(kind).values.tolist()
     ['stop', 'start']
     """
     if "flag_meanings" not in getattr(flags, "attrs", ()):
@@ -127,7 +127,7 @@ PERIOD = (
 TIMES = {"sample": "time", "event": "event_time", "earlier_event": "earlier_event_time", "crossing": "crossing_time"}
 
 
-def described(variables: Mapping[str, Variable], values: Mapping[str, Any]) -> dict[str, Any]:
+def xarray_variables(variables: Mapping[str, Variable], values: Mapping[str, Any]) -> dict[str, Any]:
     """Return variables with the values under the same names, as an xarray Dataset takes them."""
     return {
         name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
@@ -135,7 +135,7 @@ def described(variables: Mapping[str, Variable], values: Mapping[str, Any]) -> d
     }
 
 
-def fill(
+def write_variables(
     dataset: netCDF4.Dataset,
     variables: Mapping[str, Variable],
     values: Mapping[str, Any],

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.about import point_about
 from burridge_knopoff.dataset.point import POINT_VARIABLES
+from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.jobs.checked import check_file
 from burridge_knopoff.jobs.jobs import Jobs
@@ -67,7 +67,7 @@ def _tree(results: Path, points: bool) -> xarray.DataTree:
         for index, run in zip(np.ndindex(shape), all_points(study), strict=True):
             name = f"points/{study.point_file.format(**run)}"
             if (results / name).is_file():
-                check_seal(results / name, point_about(study.command(**run)), any_sources=True)
+                check_seal(results / name, point_identity(study.command(**run)), any_sources=True)
                 point = nodes[name.removesuffix(".nc")] = _opened(results / name)
                 for number, everywhere in found.items():
                     everywhere[index] = point.variables[number].values

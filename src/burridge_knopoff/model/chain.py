@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from burridge_knopoff.model.drawn import Drawn, Numbers, numbers_of
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.own_units import OwnUnits, own_units_of
+from burridge_knopoff.model.random_numbers import Numbers, RandomNumbers, block_values
 from burridge_knopoff.model.ranges import Either, Number, OneOf, Several, Whole
 from burridge_knopoff.model.solving import static_displacement
 from burridge_knopoff.model.springs import (
@@ -21,11 +21,11 @@ from burridge_knopoff.model.springs import (
     STRENGTH,
     Neighbours,
     SpringsFile,
-    along,
+    grid_neighbours,
     has_digest,
-    of_edges,
-    of_grid,
+    network_neighbours,
     read_edges,
+    row_neighbours,
 )
 from burridge_knopoff.values import Unchanging, read_only, refusal
 
@@ -38,12 +38,12 @@ NEIGHBOURS = "neighbours"
 BLOCKS = 3
 
 _STRENGTHS = Either((STRENGTH, Several(STRENGTH)))
-_OF_BLOCKS = Either((STRENGTH, Several(STRENGTH), Drawn(STRENGTH)))
+_BLOCK_VALUES = Either((STRENGTH, Several(STRENGTH), RandomNumbers(STRENGTH)))
 _PULLING = Number(STRENGTH.least, STRENGTH.most, or_zero=True)
 _DAMPING = Either((DAMPING, Several(DAMPING)))
 #: What each spring between neighbours, and each block, has a number of, with the range of this number.
-SPRING_NUMBERS = {"coupling": STRENGTH, "damping": DAMPING}
-BLOCK_NUMBERS = {"pulling": _PULLING, "threshold": STRENGTH, "mass": STRENGTH, "pulling_damping": DAMPING}
+SPRING_PARAMETERS = {"coupling": STRENGTH, "damping": DAMPING}
+BLOCK_PARAMETERS = {"pulling": _PULLING, "threshold": STRENGTH, "mass": STRENGTH, "pulling_damping": DAMPING}
 _SIDE = Whole(1, MAXIMUM_BLOCKS)
 
 
@@ -97,9 +97,9 @@ class Chain(Unchanging):
         "springs to the driver: one number for all, or one a block (0: no spring); neighbours: the number of the "
         "block's neighbours, as in the paper (1 for a single block)",
     ] = NEIGHBOURS
-    threshold: Annotated[Numbers, _OF_BLOCKS, "static friction: one number for all, one a block, or drawn"] = 1.0
+    threshold: Annotated[Numbers, _BLOCK_VALUES, "static friction: one number for all, one a block, or drawn"] = 1.0
     ends: Annotated[str, OneOf(ENDS), "open, or ring: the last block is coupled to the first"] = "open"
-    mass: Annotated[Numbers, _OF_BLOCKS, "mass: one number for all, one a block, or drawn"] = 1.0
+    mass: Annotated[Numbers, _BLOCK_VALUES, "mass: one number for all, one a block, or drawn"] = 1.0
     grid: Annotated[
         Sequence[int] | None, Several(_SIDE, 2, 2), "[nx, ny]: nx columns and ny rows of blocks, instead of a row"
     ] = None
@@ -130,12 +130,12 @@ class Chain(Unchanging):
             self._check_network()
         elif self.blocks is None:
             object.__setattr__(self, "blocks", BLOCKS)
-        for key in (*SPRING_NUMBERS, *BLOCK_NUMBERS):
-            value, count = getattr(self, key), self.count_of(key)
+        for key in (*SPRING_PARAMETERS, *BLOCK_PARAMETERS):
+            value, count = getattr(self, key), self.parameter_count(key)
             if isinstance(value, tuple) and len(value) != count:
                 raise ValueError(
                     f"chain.{key}: got {len(value)} numbers, expected 1, or {count}: one for each of the "
-                    f"{'springs' if key in SPRING_NUMBERS else 'blocks'}"
+                    f"{'springs' if key in SPRING_PARAMETERS else 'blocks'}"
                 )
         if self.blocks == 1 and self.ends == "ring":
             raise ValueError("chain.ends: got ring, expected open for one block")
@@ -173,7 +173,7 @@ class Chain(Unchanging):
             return
         from scipy.sparse.csgraph import connected_components
 
-        part = connected_components(self._matrix(self.neighbours.strength), directed=False)[1]
+        part = connected_components(self._neighbour_matrix(self.neighbours.strength), directed=False)[1]
         slack = np.flatnonzero(np.bincount(part, self.driving)[part] == 0.0)
         if len(slack):
             count = int((part == part[slack[0]]).sum())
@@ -182,7 +182,7 @@ class Chain(Unchanging):
                 "number above 0 for one of them or more"
             )
 
-    def is_like(self, other: Chain) -> bool:
+    def is_equivalent_to(self, other: Chain) -> bool:
         """Tell whether another chain has the same springs, dashpots, masses and static friction, in whatever form.
 
         A network is like no row, which has a mirror image.
@@ -193,18 +193,18 @@ class Chain(Unchanging):
         pairs = [(getattr(self, name), getattr(other, name)) for name in of_blocks]
         return all(np.array_equal(*pair) for pair in (*pairs, *zip(self.neighbours, other.neighbours, strict=True)))
 
-    def count_of(self, key: str) -> int:
+    def parameter_count(self, key: str) -> int:
         """Return the number of springs of a row or a ring, or of blocks, each of which has a number under this key."""
-        if key in BLOCK_NUMBERS:
+        if key in BLOCK_PARAMETERS:
             return self.blocks
         return 0 if self.is_network else self.blocks - (self.ends == "open")
 
-    def numbers_of(self, key: str) -> np.ndarray:
-        """Return the numbers of all springs, or of all blocks, under a key of the chain, shape (count_of(key),).
+    def parameter_values(self, key: str) -> np.ndarray:
+        """Return the numbers of all springs, or of all blocks, under a key of the chain, shape (parameter_count(key),).
 
         Springs of a row or a ring are in the order of the blocks on their left.
         """
-        return self.driving if key == "pulling" else numbers_of(getattr(self, key), self.count_of(key), key)
+        return self.driving if key == "pulling" else block_values(getattr(self, key), self.parameter_count(key), key)
 
     @property
     def is_network(self) -> bool:
@@ -214,19 +214,19 @@ class Chain(Unchanging):
     @cached_property
     def thresholds(self) -> np.ndarray:
         """Static friction of each block, shape (blocks,)."""
-        return read_only(numbers_of(self.threshold, self.blocks, "threshold"))
+        return read_only(block_values(self.threshold, self.blocks, "threshold"))
 
     @cached_property
     def masses(self) -> np.ndarray:
         """Mass of each block, shape (blocks,)."""
-        return read_only(numbers_of(self.mass, self.blocks, "mass"))
+        return read_only(block_values(self.mass, self.blocks, "mass"))
 
     @cached_property
-    def before(self) -> np.ndarray:
+    def coupling_to_previous(self) -> np.ndarray:
         """Strength of the spring to the previous block of a row or ring, shape (blocks,); 0 at an open end."""
-        return self._before(self.coupling)
+        return self._shift_to_next(self.coupling)
 
-    def _before(self, values: float | Sequence[float]) -> np.ndarray:
+    def _shift_to_next(self, values: float | Sequence[float]) -> np.ndarray:
         """Return a number of each spring in the place of the block after it, shape (blocks,); 0 at an open end."""
         if self.is_network:
             raise ValueError("chain: got a network of springs, expected a row or a ring")
@@ -235,9 +235,9 @@ class Chain(Unchanging):
         return read_only(np.roll(springs, 1))
 
     @cached_property
-    def after(self) -> np.ndarray:
+    def coupling_to_next(self) -> np.ndarray:
         """Strength of the spring to the next block of a row or ring, shape (blocks,); 0 at an open end."""
-        return read_only(np.roll(self.before, -1))
+        return read_only(np.roll(self.coupling_to_previous, -1))
 
     @cached_property
     def neighbours(self) -> Neighbours:
@@ -248,14 +248,14 @@ class Chain(Unchanging):
         """
         if self.grid:
             columns, rows = self.grid
-            return of_grid(columns, rows, float(self.coupling), float(self.damping))  # type: ignore[arg-type]
+            return grid_neighbours(columns, rows, float(self.coupling), float(self.damping))  # type: ignore[arg-type]
         if self.springs is None:
-            return along(self.before, self._before(self.damping))
+            return row_neighbours(self.coupling_to_previous, self._shift_to_next(self.damping))
         one, other, strength, damping = read_edges(self.springs)
         largest = int(max(one.max(), other.max())) + 1
         if largest > self.blocks:
             raise ValueError(f"chain.springs: got block {largest}, expected at most chain.blocks ({self.blocks})")
-        return of_edges(one, other, strength, damping, self.blocks)
+        return network_neighbours(one, other, strength, damping, self.blocks)
 
     @cached_property
     def driving(self) -> np.ndarray:
@@ -289,14 +289,14 @@ class Chain(Unchanging):
     @property
     def stiffness(self) -> np.ndarray:
         """The matrix K, dense, shape (blocks, blocks)."""
-        return self._dense(self.diagonal, self.neighbours.strength)
+        return self._dense_matrix(self.diagonal, self.neighbours.strength)
 
     @property
     def damping_matrix(self) -> np.ndarray:
         """The matrix C, dense, shape (blocks, blocks)."""
-        return self._dense(self.damping_diagonal, self.neighbours.damping)
+        return self._dense_matrix(self.damping_diagonal, self.neighbours.damping)
 
-    def _dense(self, diagonal: np.ndarray, joined: np.ndarray) -> np.ndarray:
+    def _dense_matrix(self, diagonal: np.ndarray, joined: np.ndarray) -> np.ndarray:
         """Return the matrix with this diagonal and minus a number for each neighbour of each block."""
         matrix = np.diag(diagonal)
         np.subtract.at(matrix, (self.neighbours.block, self.neighbours.index), joined)
@@ -307,11 +307,11 @@ class Chain(Unchanging):
         """The matrix K as a sparse matrix of SciPy, shape (blocks, blocks)."""
         from scipy.sparse import diags_array
 
-        matrix = (diags_array(self.diagonal) - self._matrix(self.neighbours.strength)).tocsr()
+        matrix = (diags_array(self.diagonal) - self._neighbour_matrix(self.neighbours.strength)).tocsr()
         matrix.sum_duplicates()
         return matrix
 
-    def _matrix(self, strength: np.ndarray) -> csr_array:
+    def _neighbour_matrix(self, strength: np.ndarray) -> csr_array:
         """Return the sparse matrix with a number for each neighbour of each block."""
         from scipy.sparse import csr_array
 
@@ -326,7 +326,7 @@ class Chain(Unchanging):
         if self.blocks == 1 or self.is_network:
             return False
         of_blocks = (self.driving, self.thresholds, self.masses, self.driver_damping)
-        of_springs = (self.before, self._before(self.damping))
+        of_springs = (self.coupling_to_previous, self._shift_to_next(self.damping))
         pairs = [(values, values) for values in of_blocks] + [(values, np.roll(values, -1)) for values in of_springs]
         return all(bool((one == other[::-1]).all()) for one, other in pairs)
 
@@ -350,15 +350,15 @@ class Chain(Unchanging):
     @property
     def highest_frequency(self) -> float:
         """Upper bound on the angular frequencies of slipping blocks: Gershgorin's, on the eigenvalues of M⁻¹K."""
-        return math.sqrt(self._bound(self.diagonal, self.neighbours.strength))
+        return math.sqrt(self._gershgorin_bound(self.diagonal, self.neighbours.strength))
 
     @property
     def highest_rate(self) -> float:
         """Upper bound on the rates |λ| at which slipping blocks oscillate and dashpots damp them, friction aside."""
-        return self.highest_frequency + self._bound(self.damping_diagonal, self.neighbours.damping)
+        return self.highest_frequency + self._gershgorin_bound(self.damping_diagonal, self.neighbours.damping)
 
-    def _bound(self, diagonal: np.ndarray, joined: np.ndarray) -> float:
-        """Return Gershgorin's bound on the eigenvalues of M⁻¹ times the matrix of `_dense`."""
+    def _gershgorin_bound(self, diagonal: np.ndarray, joined: np.ndarray) -> float:
+        """Return Gershgorin's bound on the eigenvalues of M⁻¹ times the matrix of `_dense_matrix`."""
         bound = diagonal.copy()
         np.add.at(bound, self.neighbours.block, joined)
         return float((bound / self.masses).max())
@@ -376,21 +376,24 @@ class Chain(Unchanging):
     def force(self, position: np.ndarray) -> np.ndarray:
         """Return the spring forces −(K U) at τ = 0 for positions U, shape (…, blocks)."""
         if self.is_network:
-            return self._pulls(self.neighbours.strength, position) - self.diagonal * position
+            return self._neighbour_sum(self.neighbours.strength, position) - self.diagonal * position
         block = np.arange(self.blocks)
-        pull = self.before * position[..., block - 1] + self.after * position[..., (block + 1) % self.blocks]
+        pull = (
+            self.coupling_to_previous * position[..., block - 1]
+            + self.coupling_to_next * position[..., (block + 1) % self.blocks]
+        )
         return pull - self.diagonal * position
 
     def damping_force(self, velocity: np.ndarray, v: float) -> np.ndarray:
         """Return the forces c_i v − (C U')_i of the dashpots for velocities U', shape (…, blocks)."""
         if not self.is_damped:
             return np.zeros(velocity.shape)
-        pulls = self._pulls(self.neighbours.damping, velocity)
+        pulls = self._neighbour_sum(self.neighbours.damping, velocity)
         return self.driver_damping * v + (pulls - self.damping_diagonal * velocity)
 
-    def _pulls(self, joined: np.ndarray, values: np.ndarray) -> np.ndarray:
+    def _neighbour_sum(self, joined: np.ndarray, values: np.ndarray) -> np.ndarray:
         """Return Σ_j joined_ij values_j over the neighbours j of each block, shape (…, blocks)."""
-        return (self._matrix(joined) @ values.reshape(-1, self.blocks).T).T.reshape(values.shape)
+        return (self._neighbour_matrix(joined) @ values.reshape(-1, self.blocks).T).T.reshape(values.shape)
 
     def sliding_offset(self, friction: float) -> np.ndarray:
         """Return e with K e = −friction · threshold, shape (blocks,).

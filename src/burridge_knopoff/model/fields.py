@@ -45,7 +45,7 @@ class Keys(Range):
             return None
         for name in value:
             if name not in self.fields:
-                raise unknown_key(key, name, sorted(self.fields))
+                raise unknown_key_error(key, name, sorted(self.fields))
         values = {}
         for name, field in self.fields.items():
             given = value.get(name, field.default)
@@ -63,7 +63,7 @@ class Keys(Range):
 RENAMED = {"fraction_samples": "fraction_width", "pushes": "perturbations"}
 
 
-def unknown_key(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
+def unknown_key_error(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
     """Return the error for an unknown key: its place, its new name or the closest known key, and all known keys."""
     near = get_close_matches(name, allowed, 1) if isinstance(name, str) else []
     hint = f" (did you mean {near[0]}?)" if near else ""
@@ -73,7 +73,7 @@ def unknown_key(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
 
 
 _T = TypeVar("_T")
-_KNOWN: dict[type, Mapping[str, Field]] = {}
+_FIELDS: dict[type, Mapping[str, Field]] = {}
 
 
 def settings(kind: type[_T]) -> type[_T]:
@@ -87,7 +87,7 @@ def settings(kind: type[_T]) -> type[_T]:
 
 def fields_of(kind: type) -> Mapping[str, Field]:
     """Return the settings of a dataclass by name: the fields that have a range."""
-    if kind not in _KNOWN:
+    if kind not in _FIELDS:
         hints, found = get_type_hints(kind, include_extras=True), {}
         for item in dataclasses.fields(kind):
             if get_origin(hints[item.name]) is Annotated:
@@ -95,11 +95,11 @@ def fields_of(kind: type) -> Mapping[str, Field]:
                 default = REQUIRED if item.default is dataclasses.MISSING else item.default
                 default = FOLLOWS if default is None else default
                 found[item.name] = Field(allowed, description, default)
-        _KNOWN[kind] = found
-    return _KNOWN[kind]
+        _FIELDS[kind] = found
+    return _FIELDS[kind]
 
 
-def settings_from(kind: type[_T], config: Mapping[str, Any]) -> _T:
+def settings_from_config(kind: type[_T], config: Mapping[str, Any]) -> _T:
     """Return settings of a class from the keys of the same names in a config."""
     return kind(**{name: config[name] for name in fields_of(kind) if name in config})
 

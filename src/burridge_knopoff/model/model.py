@@ -13,7 +13,7 @@ from burridge_knopoff.laws.law import MAX_SPEED
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.parameters import at
+from burridge_knopoff.model.parameters import set_parameters
 from burridge_knopoff.model.ranges import Number, OneOf, Text
 from burridge_knopoff.values import Unchanging, instance_of, read_only
 
@@ -81,9 +81,9 @@ class Model(Unchanging):
     def at(self, a: float | None = None, /, **parameters: float) -> Model:
         """Return the same model at another a, or at other values of any parameters, such as `at(v=0.2, coupling=1.5)`.
 
-        Raises ValueError, one line, as `parameters.at` does.
+        Raises ValueError, one line, as `parameters.set_parameters` does.
         """
-        return at(self, parameters if a is None else {"a": a, **parameters})
+        return set_parameters(self, parameters if a is None else {"a": a, **parameters})
 
     @property
     def has_closed_form(self) -> bool:
@@ -116,13 +116,13 @@ class Model(Unchanging):
         Raises ValueError if the state does not fit the chain, or slips backward under one-sided contact.
         """
         OneOf(STARTS).form(start, "start")
-        u, w = self.numbers_of(initial)
-        stuck = self.starts_stuck(u, w, start)
+        u, w = self.initial_coordinates(initial)
+        stuck = self.stuck_blocks(u, w, start)
         return ChainState(u - self.sliding_offset, np.where(stuck, 0.0, w), stuck)
 
-    def numbers_of(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
+    def initial_coordinates(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
         """Return U(0) and U'(0) of an initial state, each of shape (blocks,); raises ValueError as `begin` does."""
-        u, w = initial.numbers(self.blocks)
+        u, w = initial.coordinates(self.blocks)
         self.check_directions(w, "velocity")
         return u, w
 
@@ -137,7 +137,7 @@ class Model(Unchanging):
                 "forward; contact symmetric lets them slip backward"
             )
 
-    def starts_stuck(self, position: np.ndarray, velocity: np.ndarray, start: str) -> np.ndarray:
+    def stuck_blocks(self, position: np.ndarray, velocity: np.ndarray, start: str) -> np.ndarray:
         """Return which blocks stick at τ = 0 for a choice of `start`; same shape as U(0) and U'(0), (…, blocks).
 
         Dashpots pull on a block at rest whose neighbours have their U'(0), or stick themselves.

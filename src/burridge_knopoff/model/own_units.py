@@ -15,8 +15,8 @@ if TYPE_CHECKING:
     from burridge_knopoff.model.chain import Chain
 
 # These put 1 amid what counts as 1, between numbers that a chain would be given.
-_OF_TIME = math.sqrt(1.5)
-_OF_SIZE = math.sqrt(2.0)
+_TIME_FACTOR = math.sqrt(1.5)
+_SIZE_FACTOR = math.sqrt(2.0)
 
 
 @dataclass(frozen=True)
@@ -63,11 +63,11 @@ def own_units_of(chain: Chain) -> OwnUnits:
     threshold, mass = chain.thresholds, chain.masses
     displacement = float(threshold @ np.abs(chain.sliding_offset(1.0))) / float(threshold.sum())
     acceleration = float(threshold.sum()) / float(mass.sum())
-    time = math.ldexp(1.0, math.frexp(_OF_TIME * displacement / acceleration)[1] // 2)
-    length = time * time * _power(acceleration)
-    return OwnUnits(time, length, _power(float(threshold.mean())))
+    time = math.ldexp(1.0, math.frexp(_TIME_FACTOR * displacement / acceleration)[1] // 2)
+    length = time * time * _nearest_power_of_two(acceleration)
+    return OwnUnits(time, length, _nearest_power_of_two(float(threshold.mean())))
 
 
-def _power(size: float) -> float:
+def _nearest_power_of_two(size: float) -> float:
     """Return the power of 2 nearest to a number, by their ratio."""
-    return math.ldexp(1.0, math.frexp(_OF_SIZE * size)[1] - 1)
+    return math.ldexp(1.0, math.frexp(_SIZE_FACTOR * size)[1] - 1)

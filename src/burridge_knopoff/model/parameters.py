@@ -12,7 +12,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from burridge_knopoff.model.chain import BLOCK_NUMBERS, NEIGHBOURS, SPRING_NUMBERS
+from burridge_knopoff.model.chain import BLOCK_PARAMETERS, NEIGHBOURS, SPRING_PARAMETERS
 from burridge_knopoff.values import joined, real_number, refusal
 
 if TYPE_CHECKING:
@@ -20,29 +20,29 @@ if TYPE_CHECKING:
     from burridge_knopoff.model.model import Model
 
 #: Parameters of the chain, and the range of each number.
-CHAIN = {**SPRING_NUMBERS, **BLOCK_NUMBERS}
+CHAIN_PARAMETERS = {**SPRING_PARAMETERS, **BLOCK_PARAMETERS}
 
 ONE = "one number for the whole chain"
 
-_SINGLE = re.compile(rf"({'|'.join(CHAIN)})\[(0|[1-9][0-9]*)\]")
+_INDEXED_NAME = re.compile(rf"({'|'.join(CHAIN_PARAMETERS)})\[(0|[1-9][0-9]*)\]")
 
 
-def names_of(model: Model) -> tuple[str, ...]:
+def parameter_names(model: Model) -> tuple[str, ...]:
     """Return the names of the parameters of a model: those of its law, of the driver and of the whole chain."""
-    return ("a", *model.law.parameters, "v", *CHAIN)
+    return ("a", *model.law.parameters, "v", *CHAIN_PARAMETERS)
 
 
-def words_of(model: Model) -> str:
+def format_parameter_names(model: Model) -> str:
     """Return the names of the parameters of a model for a message."""
-    return f"{' | '.join(names_of(model))}, or one block or spring, as mass[1]"
+    return f"{' | '.join(parameter_names(model))}, or one block or spring, as mass[1]"
 
 
-def single_of(name: Any) -> tuple[str, int] | None:
+def parse_indexed_name(name: Any) -> tuple[str, int] | None:
     """Return the key of the chain and the number, from 1, of the spring or block that a name such as `mass[3]` means.
 
     None for any other name.
     """
-    found = _SINGLE.fullmatch(name) if isinstance(name, str) else None
+    found = _INDEXED_NAME.fullmatch(name) if isinstance(name, str) else None
     return (found[1], int(found[2])) if found else None
 
 
@@ -53,23 +53,23 @@ def plain_name(name: str) -> str:
     >>> plain_name("mass[3]"), plain_name("sigma")
     ('mass_3', 'sigma')
     """
-    single = single_of(name)
+    single = parse_indexed_name(name)
     return f"{single[0]}_{single[1]}" if single else name
 
 
-def value_of(model: Model, name: str) -> float:
+def parameter_value(model: Model, name: str) -> float:
     """Return the value of a parameter.
 
     Raises ValueError, one line, if the model has no parameter of this name, or several numbers in its place.
     """
-    given = _given(model, name)
+    given = _stored_value(model, name)
     number = real_number(given)
     if number != number:
         raise refusal(name, given, ONE)
     return number
 
 
-def at(model: Model, parameters: Mapping[str, float]) -> Model:
+def set_parameters(model: Model, parameters: Mapping[str, float]) -> Model:
     """Return the same model at other values of some of its parameters.
 
     `pulling` may be a number in place of `neighbours`. A number for one spring or block, as `mass[3]`, makes the chain
@@ -79,52 +79,52 @@ def at(model: Model, parameters: Mapping[str, float]) -> Model:
     """
     changes: dict[str, dict[str, Any]] = {"law": {}, "chain": {}, "single": {}, "driver": {}}
     for name, value in parameters.items():
-        given = _given(model, name)
+        given = _stored_value(model, name)
         if not isinstance(given, float) and given != NEIGHBOURS:
             raise refusal(name, given, ONE)
         if real_number(value) != real_number(value):
             raise refusal(name, value, "a number")
-        single = single_of(name)
-        part = "single" if single else "driver" if name == "v" else "chain" if name in CHAIN else "law"
-        changes[part][name] = CHAIN[single[0]].form(value, name) if single else value
+        single = parse_indexed_name(name)
+        part = "single" if single else "driver" if name == "v" else "chain" if name in CHAIN_PARAMETERS else "law"
+        changes[part][name] = CHAIN_PARAMETERS[single[0]].form(value, name) if single else value
     own: dict[str, Any] = {**changes["driver"]}
     if changes["law"]:
         own["law"] = model.law.at(changes["law"].pop("a", None), **changes["law"])
     if changes["chain"] or changes["single"]:
-        own["chain"] = _with_singles(replace(model.chain, **changes["chain"]), changes["single"])
+        own["chain"] = _set_indexed_parameters(replace(model.chain, **changes["chain"]), changes["single"])
     return replace(model, **own)
 
 
-def _with_singles(chain: Chain, values: Mapping[str, float]) -> Chain:
+def _set_indexed_parameters(chain: Chain, values: Mapping[str, float]) -> Chain:
     """Return a chain at other values of the numbers of some springs and blocks."""
     numbers: dict[str, Any] = {}
     for name, value in values.items():
-        key, number = single_of(name)  # type: ignore[misc]
-        numbers.setdefault(key, chain.numbers_of(key).tolist())[number - 1] = value
+        key, number = parse_indexed_name(name)  # type: ignore[misc]
+        numbers.setdefault(key, chain.parameter_values(key).tolist())[number - 1] = value
     return replace(chain, **numbers) if numbers else chain
 
 
-def _given(model: Model, name: str) -> Any:
+def _stored_value(model: Model, name: str) -> Any:
     """Return a parameter in the form in which the model has it."""
-    single = single_of(name)
+    single = parse_indexed_name(name)
     if single:
-        return _single(model.chain, name, *single)
-    names = names_of(model)
+        return _indexed_value(model.chain, name, *single)
+    names = parameter_names(model)
     if name not in names:
-        raise ValueError(f"{joined('', name)}: not a parameter of this model, expected {words_of(model)}")
+        raise ValueError(f"{joined('', name)}: not a parameter of this model, expected {format_parameter_names(model)}")
     if names.count(name) > 1:
         raise ValueError(f"{name}: got a number of the law {model.law.name} and one of the model, expected one of them")
-    if name in CHAIN:
+    if name in CHAIN_PARAMETERS:
         return getattr(model.chain, name)
     return {"a": model.a, "v": model.v, **model.law.parameters}[name]
 
 
-def _single(chain: Chain, name: str, key: str, number: int) -> float:
+def _indexed_value(chain: Chain, name: str, key: str, number: int) -> float:
     """Return the number of one spring or block, by its name and the parts of it."""
-    count, of = chain.count_of(key), "spring" if key in SPRING_NUMBERS else "block"
-    if key in SPRING_NUMBERS and chain.is_network:
+    count, of = chain.parameter_count(key), "spring" if key in SPRING_PARAMETERS else "block"
+    if key in SPRING_PARAMETERS and chain.is_network:
         raise ValueError(f"{name}: got one spring of a network, expected {key}: only rows and rings number them")
     if not 1 <= number <= count:
         allowed = f"1 to {count}" if count else "none: a single block has no neighbour"
         raise ValueError(f"{name}: got {of} {number}, expected {allowed}")
-    return float(chain.numbers_of(key)[number - 1])
+    return float(chain.parameter_values(key)[number - 1])

@@ -55,21 +55,21 @@ class Number(Range):
         return number if fits else None
 
     def __str__(self) -> str:
-        return f"{'0 or ' * self.or_zero}a {limited('number', self.least, self.most, self.above)}"
+        return f"{'0 or ' * self.or_zero}a {describe_limits('number', self.least, self.most, self.above)}"
 
 
-def limited(noun: str, least: float, most: float, above: bool = False) -> str:
+def describe_limits(noun: str, least: float, most: float, above: bool = False) -> str:
     """Describe a number and its limits; `above`: the lower limit is excluded."""
     if least <= -HUGE:
-        return f"finite {noun}" if most >= HUGE else f"{noun} of at most {_plain(most)}"
+        return f"finite {noun}" if most >= HUGE else f"{noun} of at most {_format_limit(most)}"
     if most >= HUGE:
-        return f"{noun} {'above' if above else 'of at least'} {_plain(least)}"
+        return f"{noun} {'above' if above else 'of at least'} {_format_limit(least)}"
     if above:
-        return f"{noun} above {_plain(least)} and at most {_plain(most)}"
-    return f"{noun} between {_plain(least)} and {_plain(most)}"
+        return f"{noun} above {_format_limit(least)} and at most {_format_limit(most)}"
+    return f"{noun} between {_format_limit(least)} and {_format_limit(most)}"
 
 
-def _plain(limit: float) -> str:
+def _format_limit(limit: float) -> str:
     return str(limit) if isinstance(limit, int) else f"{limit:g}"
 
 
@@ -82,7 +82,7 @@ class Whole(Number):
         return int(value) if is_whole else None
 
     def __str__(self) -> str:
-        return f"a {limited('whole number', self.least, self.most)}"
+        return f"a {describe_limits('whole number', self.least, self.most)}"
 
 
 @dataclass(eq=False, repr=False)

@@ -45,7 +45,7 @@ def sample_states(
     return states[:, 0], states[:, 1]
 
 
-def sampled_states(
+def sample_initial_states(
     blocks: int, count: int, position: Sequence[float], velocity: Sequence[float], seed: int | Sequence[int]
 ) -> list[InitialState]:
     """Return the states of `sample_states` one by one, named state1, state2, …"""
@@ -55,7 +55,7 @@ def sampled_states(
     ]
 
 
-def most_states(width: float) -> int:
+def required_samples(width: float) -> int:
     """Return how many states give any fraction a confidence interval of that half width."""
     count = 0 if width >= 0.5 else math.ceil(0.5 / width)
     while count and half_width(count // 2, count) > width:

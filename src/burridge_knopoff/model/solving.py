@@ -12,20 +12,20 @@ if TYPE_CHECKING:
     from burridge_knopoff.model.chain import Chain
 
 #: Rows and rings of up to this many blocks are solved by elimination.
-ELIMINATED = 1024
+ELIMINATION_LIMIT = 1024
 #: Corrections of a solution at most; each one gains several digits.
 _CORRECTIONS = 20
 #: Relative error at which a solution is right in twice the digits of a double.
-_ENOUGH = 1e-31
+_TOLERANCE = 1e-31
 _SPLITTER = 2.0**27 + 1.0
 
 
 def static_displacement(chain: Chain) -> np.ndarray:
     """Return x with K x = threshold, shape (blocks,), as symmetric to the bit as the chain."""
-    if chain.is_network or chain.blocks > ELIMINATED:
+    if chain.is_network or chain.blocks > ELIMINATION_LIMIT:
         return nearest_solution(chain.sparse_stiffness, chain.thresholds)
-    solve = ring_eliminated if chain.ends == "ring" else eliminated
-    found = solve(chain.diagonal, chain.after, chain.thresholds.copy())
+    solve = solve_ring if chain.ends == "ring" else solve_tridiagonal
+    found = solve(chain.diagonal, chain.coupling_to_next, chain.thresholds.copy())
     if chain.ends == "ring":
         # Make it periodic to the bit, like the ring, so that a periodic state stays periodic.
         period = _period(chain)
@@ -38,11 +38,11 @@ def static_displacement(chain: Chain) -> np.ndarray:
 
 def _period(ring: Chain) -> int:
     """Return the smallest shift along a ring that leaves springs and thresholds unchanged, in blocks."""
-    values = np.array([ring.before, ring.driving, ring.thresholds])
+    values = np.array([ring.coupling_to_previous, ring.driving, ring.thresholds])
     return next(shift for shift in range(1, ring.blocks + 1) if np.array_equal(values, np.roll(values, shift, axis=1)))
 
 
-def eliminated(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
+def solve_tridiagonal(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
     """Solve a tridiagonal system by elimination; changes `load`.
 
     strength : of the spring from each block to the next one, shape (blocks,)
@@ -59,15 +59,15 @@ def eliminated(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> 
     return load
 
 
-def ring_eliminated(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
+def solve_ring(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
     """Solve the system of a ring, a tridiagonal one with corners; strength[-1] is that of the corners."""
     # The corners are a rank-one update: the Sherman-Morrison formula.
     pivot, corner = diagonal.copy(), np.zeros(len(load))
     for end in (0, -1):
         pivot[end] += strength[-1]
         corner[end] += 1.0
-    load = eliminated(pivot, strength, load)
-    other = eliminated(pivot, strength, corner)
+    load = solve_tridiagonal(pivot, strength, load)
+    other = solve_tridiagonal(pivot, strength, corner)
     return load + strength[-1] * other * (load[0] + load[-1]) / (1.0 - strength[-1] * (other[0] + other[-1]))
 
 
@@ -91,7 +91,7 @@ def nearest_solution(matrix: csr_array, load: np.ndarray) -> np.ndarray:
             break
         last, low = size, low + change
         high, low = _sum(high, low)
-        if size <= _ENOUGH * float(np.abs(high).max()):
+        if size <= _TOLERANCE * float(np.abs(high).max()):
             break
     return high
 

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
-from burridge_knopoff.model.drawn import SEED
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import START, STARTS
+from burridge_knopoff.model.random_numbers import SEED
 from burridge_knopoff.model.ranges import TOLERANCE, Number, OneOf, Whole
 from burridge_knopoff.model.sampling import (
     POSITION,
@@ -17,7 +17,7 @@ from burridge_knopoff.model.sampling import (
     SAMPLES,
     VELOCITIES,
     VELOCITY,
-    sampled_states,
+    sample_initial_states,
     seed_at,
 )
 from burridge_knopoff.running.settings import LONGEST
@@ -56,10 +56,10 @@ class Sample:
                 f"symmetric_samples: got {self.symmetric_samples}, expected at most samples ({self.samples})"
             )
 
-    def initial(self, blocks: int, a: float | None = None) -> list[InitialState]:
+    def initial_states(self, blocks: int, a: float | None = None) -> list[InitialState]:
         """Return the initial states of a chain of that many blocks, those drawn for one a or those for every a."""
         seed = self.seed if a is None else seed_at(self.seed, a)
-        return sampled_states(blocks, self.samples, self.position, self.velocity, seed)
+        return sample_initial_states(blocks, self.samples, self.position, self.velocity, seed)
 
 
 #: The defaults of a study.

@@ -172,7 +172,7 @@ def transverse_exponent(
             return -math.inf, math.nan
         perturbation /= length
         runner.carry(perturbation * own)
-        after = runner.after(state, alignment / before if step < 0 else window / steps)
+        after = runner.state_after(state, alignment / before if step < 0 else window / steps)
         if after is None:
             return math.nan, math.nan
         # Rounding grows where symmetric motion is unstable; it is taken away before it counts.
@@ -208,7 +208,7 @@ def watch_chain(
     }
     for i, of_law in enumerate(models):
         for j, a in enumerate(grid):
-            model, initial = of_law.at(a), sample.initial(of_law.blocks, a)
+            model, initial = of_law.at(a), sample.initial_states(of_law.blocks, a)
             runner = Runner(model)
             for k, state in enumerate(initial):
                 fate = watch_state(runner, model.begin(state, sample.start), watch)

@@ -65,7 +65,8 @@ def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0)
     first = np.array([leading_frequency(one, duration) for one in velocity.T])
     interval = duration / count
     whole, *halves = (
-        np.array([_advance(one, found * interval) for one, found in zip(part.T, first, strict=True)]) / interval
+        np.array([_frequency_offset(one, found * interval) for one, found in zip(part.T, first, strict=True)])
+        / interval
         for part in (velocity, velocity[: count // 2], velocity[count // 2 :])
     )
     return first + whole, np.abs(halves[0] - halves[1])
@@ -91,7 +92,7 @@ def leading_frequency(values: np.ndarray, duration: float) -> float:
     return float(frequency[top] + 0.5 * (left - right) / (left - 2.0 * middle + right) * frequency[1])
 
 
-def _advance(values: np.ndarray, frequency: float) -> float:
+def _frequency_offset(values: np.ndarray, frequency: float) -> float:
     """Return by how much a line is above a frequency, both in cycles per sample, by its phases in both halves.
 
     The weight suppresses other lines faster than any power of the number of samples.

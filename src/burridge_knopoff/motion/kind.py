@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.motion.period import period_of, turns_diverge
+from burridge_knopoff.motion.period import has_diverging_cycles, period_of
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.status import Status
 
@@ -56,15 +56,15 @@ CHAOS = (MotionKind.CHAOTIC, MotionKind.SYNCHRONIZED_CHAOS)
 SYNCHRONOUS = (MotionKind.SYNCHRONIZED, MotionKind.SYNCHRONIZED_CHAOS)
 
 #: Kinds that a closed orbit of which one has seen too little may be given.
-OPEN = (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED)
+UNDECIDED_KINDS = (MotionKind.QUASIPERIODIC, MotionKind.UNDETERMINED)
 
 
-def same_result(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+def is_same_result(one: np.ndarray, other: np.ndarray) -> np.ndarray:
     """Tell of which kinds of motion two are one result: synchrony, other regular motion, or one sort of chaos."""
     return (one == other) | (np.isin(one, REGULAR) & np.isin(other, REGULAR))
 
 
-def with_one_chaos(kind: np.ndarray) -> np.ndarray:
+def merge_chaos(kind: np.ndarray) -> np.ndarray:
     """Return kinds with CHAOTIC for every sort of chaos: one that ends, and one with end blocks that move as one."""
     return np.where(np.isin(kind, (*CHAOS, MotionKind.TRANSIENT_CHAOS)), MotionKind.CHAOTIC, kind)
 
@@ -73,22 +73,24 @@ def with_one_chaos(kind: np.ndarray) -> np.ndarray:
 LARGEST_ERROR = 3.0
 
 
-def zero_exponents(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> np.ndarray:
+def is_zero_exponent(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> np.ndarray:
     """Return which exponents, of these standard errors, cannot be distinguished from 0; all of shape (n,)."""
-    return np.abs(exponent) <= np.maximum(settings.zero_exponent, settings.standard_errors * _certain(exponent, error))
+    return np.abs(exponent) <= np.maximum(
+        settings.zero_exponent, settings.standard_errors * _fill_unknown_errors(exponent, error)
+    )
 
 
-def _certain(exponent: np.ndarray, error: np.ndarray) -> np.ndarray:
+def _fill_unknown_errors(exponent: np.ndarray, error: np.ndarray) -> np.ndarray:
     """Return the errors, infinite where that of a finite exponent is not known."""
     return np.where(np.isfinite(exponent) & np.isnan(error), np.inf, error)
 
 
-def judged_distance(mean_distance: float, symmetric: bool) -> float:
+def synchronization_distance(mean_distance: float, symmetric: bool) -> float:
     """Return the ⟨J⟩ that tells synchrony: end blocks that are not each other's mirror images do not synchronize."""
     return mean_distance if symmetric else math.inf
 
 
-def closed_kind(mean_distance: float, period: float, settings: MotionSettings) -> MotionKind:
+def periodic_orbit_kind(mean_distance: float, period: float, settings: MotionSettings) -> MotionKind:
     """Return the kind of a closed orbit with that ⟨J⟩ and that period, which may be infinite: longer than was seen."""
     if mean_distance < settings.synchronization_threshold:
         return MotionKind.SYNCHRONIZED
@@ -117,12 +119,12 @@ class Motion:
     unstable: bool = False
 
     @property
-    def is_open(self) -> bool:
+    def can_be_periodic(self) -> bool:
         """Whether the motion may be a closed orbit of which one has seen too little."""
-        return self.kind in OPEN and not math.isfinite(self.period)
+        return self.kind in UNDECIDED_KINDS and not math.isfinite(self.period)
 
 
-def motion_of(run: Mapping[str, Any], mean_distance: float, settings: MotionSettings) -> Motion:
+def motion_of_completed_run(run: Mapping[str, Any], mean_distance: float, settings: MotionSettings) -> Motion:
     """Return the kind of motion of a completed run.
 
     run : its exponents, the largest first, with their standard errors, which may be NaN or empty, and the arrays named
@@ -141,13 +143,13 @@ def motion_of(run: Mapping[str, Any], mean_distance: float, settings: MotionSett
     """
     exponents = run["lyapunov_exponent"], run["lyapunov_error"]
     points, period = period_of(run, settings)
-    if points and turns_diverge(run, points, settings):
-        found = motion_with(0, math.nan, mean_distance, *exponents, settings)
+    if points and has_diverging_cycles(run, points, settings):
+        found = motion_from_period(0, math.nan, mean_distance, *exponents, settings)
         return found if found.kind in CHAOS else Motion(MotionKind.UNDETERMINED)
-    return motion_with(points, period, mean_distance, *exponents, settings)
+    return motion_from_period(points, period, mean_distance, *exponents, settings)
 
 
-def motion_with(
+def motion_from_period(
     points: int,
     period: float,
     mean_distance: float,
@@ -155,13 +157,13 @@ def motion_with(
     error: np.ndarray,
     settings: MotionSettings,
 ) -> Motion:
-    """Return the kind of motion that repeats after so many section points and such a time; see `motion_of`."""
-    error = _certain(exponent, error)
+    """Return the kind of motion that repeats after this many section points and this time; see `motion_of_run`."""
+    error = _fill_unknown_errors(exponent, error)
     if _is_at_rest(exponent, error, settings):
         return Motion(MotionKind.UNDETERMINED)
     positive = _is_positive(exponent, error, settings)
     if points:
-        return Motion(closed_kind(mean_distance, period, settings), points, period, positive)
+        return Motion(periodic_orbit_kind(mean_distance, period, settings), points, period, positive)
     if positive:
         return Motion(chaotic_kind(mean_distance, settings))
     if not math.isfinite(period):
@@ -169,7 +171,7 @@ def motion_with(
         if kind is not None:
             return Motion(kind)
         period = math.inf
-    return Motion(closed_kind(mean_distance, period, settings), 0, period)
+    return Motion(periodic_orbit_kind(mean_distance, period, settings), 0, period)
 
 
 def _kind_by_exponents(
@@ -177,7 +179,7 @@ def _kind_by_exponents(
 ) -> MotionKind | None:
     """Return the kind of motion that is not chaotic and has not repeated; None if it attracts as closed orbits do."""
     known = np.flatnonzero(~np.isnan(exponent))
-    zero = zero_exponents(exponent, error, settings)
+    zero = is_zero_exponent(exponent, error, settings)
     if len(known) and not zero[0]:
         return MotionKind.UNDETERMINED
     # Errors beyond the threshold of chaos, as where chaos ends within the window, leave the kind open.
@@ -218,10 +220,10 @@ def motion_of_run(run: Mapping[str, Any], symmetric: bool, settings: MotionSetti
     # A number in a file, a word in a trajectory.
     if run["status"] not in (Status.COMPLETED, Status.COMPLETED.name.lower()):
         return Motion(MotionKind.UNDETERMINED)
-    return motion_of(run, judged_distance(float(run["mean_distance"]), symmetric), settings)
+    return motion_of_completed_run(run, synchronization_distance(float(run["mean_distance"]), symmetric), settings)
 
 
-def words_of(motion: Motion, settings: MotionSettings) -> str:
+def format_motion(motion: Motion, settings: MotionSettings) -> str:
     """Return the kind of motion as a sentence has it, with what the longest period of periodic motion leaves open."""
     if motion.kind == MotionKind.QUASIPERIODIC:
         locked = f"; locked with a period of {motion.period:.5g}" if math.isfinite(motion.period) else ""

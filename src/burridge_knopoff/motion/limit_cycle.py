@@ -27,11 +27,11 @@ CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
 #: Time, in the chain's own unit, for which returns are looked for: longer orbits, as locked tori may have, are not
 #: found; and how much farther than it returned the motion may still be from the orbit in the end.
 WINDOW = 8000.0
-FARTHER = 30.0
+MAX_RELATIVE_DISTANCE = 30.0
 
 # Share of the time to the next stop of a block after which a stop of the other one may be a return in a mirror, as that
 # takes half of a period: where they all but stop together it is none.
-SOONEST = 0.1
+MIN_MIRROR_TIME = 0.1
 
 
 def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: float | None = None) -> PeriodicOrbit:
@@ -66,7 +66,7 @@ def orbit_of_motion(model: Model, state: ChainState, settling: float, window: fl
     if runner.run(settling + window) != Status.COMPLETED:
         raise OrbitError(f"a = {model.a!r}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
-    found = orbit_of_events(model, times, values, _stays)
+    found = orbit_of_events(model, times, values, _is_on_orbit)
     if found is None:
         raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found within {window:g}")
     return found
@@ -83,17 +83,17 @@ def orbit_of_events(
     accepted : takes an orbit, the distances of the first and of the last turn of the motion from it, and the one within
         which the motion returned, all for v = 0.1 in the chain's own units, and returns whether the motion lies on it
     """
-    for start, time, symmetry, size in _returns(model, times, values):
+    for start, time, symmetry, size in _close_returns(model, times, values):
         try:
             found = find_periodic_orbit(model, start, time, symmetry)
         except OrbitError:
             continue
-        if accepted(found, *_distances(found, values), size):
+        if accepted(found, *_cycle_distances(found, values), size):
             return simplest(found, CLOSENESS[0])
     return None
 
 
-def _returns(
+def _close_returns(
     model: Model, times: np.ndarray, values: np.ndarray
 ) -> Iterator[tuple[ChainState, float, Symmetry, float]]:
     """Yield a state, after which time it returns, how, and how closely: the closest first, then the shortest."""
@@ -111,7 +111,7 @@ def _returns(
         if np.abs((state - state[order]) / scale).max() <= CLOSENESS[0]:
             repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, _, at in repeated]
         else:
-            soonest = begun + SOONEST * (times[own[1:2]] - begun).sum()
+            soonest = begun + MIN_MIRROR_TIME * (times[own[1:2]] - begun).sum()
             mirrored = np.flatnonzero(stops & (values[:, 0] == other) & (times > soonest))
             repeated += [(times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]) for k in mirrored]
     repeated.sort(key=lambda item: item[0])
@@ -122,20 +122,24 @@ def _returns(
                 break
 
 
-def _stays(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:
+def _is_on_orbit(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:
     """Return whether a motion stays on an orbit, or comes closer to it if the orbit attracts."""
-    return last <= (CLOSENESS[0] if multipliers(orbit).unstable else max(CLOSENESS[0], min(first, FARTHER * size)))
+    return last <= (
+        CLOSENESS[0] if multipliers(orbit).unstable else max(CLOSENESS[0], min(first, MAX_RELATIVE_DISTANCE * size))
+    )
 
 
-def _distances(orbit: PeriodicOrbit, values: np.ndarray) -> tuple[float, float]:
+def _cycle_distances(orbit: PeriodicOrbit, values: np.ndarray) -> tuple[float, float]:
     """Return how far the first and the last turn of a motion are from an orbit, by the events of the motion."""
     block = int(np.flatnonzero(orbit.stop_counts)[0]) + 1
     around, _ = flow(orbit.model, orbit.reference, orbit.period)
-    own, seen = (_stops(events, block) / orbit.model.state_scale for events in (around.log.events.values(), values))
+    own, seen = (
+        _states_at_stops(events, block) / orbit.model.state_scale for events in (around.log.events.values(), values)
+    )
     first, last = (distance(turn, own, share=1.0) for turn in (seen[: len(own)], seen[-len(own) :]))
     return first, last
 
 
-def _stops(values: np.ndarray, block: int) -> np.ndarray:
+def _states_at_stops(values: np.ndarray, block: int) -> np.ndarray:
     """Return the states at the stops of one block, from 1, shape (stops, 2 blocks)."""
     return values[(values[:, 0] == block) & (values[:, 1] == 0), 2:]

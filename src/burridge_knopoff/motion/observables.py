@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.kind import CHAOS, Motion, MotionKind, judged_distance, motion_of
+from burridge_knopoff.motion.kind import CHAOS, Motion, MotionKind, motion_of_completed_run, synchronization_distance
 from burridge_knopoff.motion.phase_locking import recurrence
 from burridge_knopoff.motion.section_returns import Returns, returns_of, state_of
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near, spacing_of
@@ -71,9 +71,9 @@ class SteadyMotion:
         return f"<SteadyMotion: {self.words}>"
 
     @property
-    def is_open(self) -> bool:
+    def can_be_periodic(self) -> bool:
         """Whether the motion may be a closed orbit of which one has seen too little."""
-        return Motion(self.kind, period=self.period).is_open
+        return Motion(self.kind, period=self.period).can_be_periodic
 
     def mirrored(self) -> SteadyMotion:
         """Return the motion seen from the other end of the chain."""
@@ -89,9 +89,9 @@ class SteadyMotion:
     def symmetrized(self) -> SteadyMotion:
         """Return the motion with the returns of its mirror image added: all of a set that is its own mirror image."""
         both = np.concatenate([self.returns, self.mirror_returns])
-        return self.with_returns(both, both if len(self.mirror_returns) else self.mirror_returns)
+        return self.replace_returns(both, both if len(self.mirror_returns) else self.mirror_returns)
 
-    def with_returns(self, returns: np.ndarray, mirror_returns: np.ndarray) -> SteadyMotion:
+    def replace_returns(self, returns: np.ndarray, mirror_returns: np.ndarray) -> SteadyMotion:
         """Return the motion with these returns, and these of its mirror image."""
         return replace(self, returns=returns, mirror_returns=mirror_returns, spacing=spacing_of(returns))
 
@@ -127,7 +127,7 @@ def observe(
     """Observe the motion from a state in one window; None if it does not complete or hardly ever stops.
 
     transient : in which the perturbations turn into the directions of the exponents
-    settings : for the speed of the driver, see `MotionSettings.at_speed`
+    settings : for the speed of the driver, see `MotionSettings.scaled_to_velocity`
     mean_distance : ⟨J⟩ if it is known, instead of being measured; exponents : how many are computed
     """
     known = mean_distance is not None
@@ -145,8 +145,8 @@ def observe(
     found = returns_of(model, window, block, states)
     if found is None:
         return None
-    mean = judged_distance(mean_distance, model.chain.is_mirror_symmetric)
-    told = motion_of(vars(trajectory), mean, settings)
+    mean = synchronization_distance(mean_distance, model.chain.is_mirror_symmetric)
+    told = motion_of_completed_run(vars(trajectory), mean, settings)
     return SteadyMotion(
         returns=found.returns,
         mirror_returns=found.mirror_returns,
@@ -164,7 +164,7 @@ def observe(
     )
 
 
-def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
+def is_on_attractor(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
     """Tell whether a settled motion lies on an attractor, as far as that is resolved.
 
     A closed orbit may lie in the midst of a chaotic attractor, but not on it, unless that is so thin that it looks like
@@ -174,6 +174,6 @@ def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, toleranc
     tolerance : distance within which the returns of closed orbits repeat
     """
     chaotic = attractor.kind in CHAOS and attractor.spacing > tolerance
-    if found.block != attractor.block or (found.repeats(tolerance) and chaotic):
+    if found.block != attractor.block or (found.is_periodic(tolerance) and chaotic):
         return False
     return is_near(found.returns, attractor.returns, max(resolution, SPACINGS * attractor.spacing))

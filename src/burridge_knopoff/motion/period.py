@@ -17,7 +17,7 @@ SELDOM = 0.1
 REPETITIONS = 3
 
 # How much nearer the turns of a period are to each other than those of any shorter one.
-FAR_BETTER = 0.1
+BETTER = 0.1
 
 # Turns diverge if their distance in the last of so many parts of a run is larger than in another part by this factor,
 # and larger than this share of the tolerance.
@@ -51,14 +51,14 @@ def period_of(run: Mapping[str, np.ndarray], settings: MotionSettings) -> tuple[
     if not len(block):
         return 0, math.nan
     stop_count = np.bincount(block, minlength=run["event_position"].shape[1] + 1)[1:]
-    own = np.flatnonzero(stops)[block == sections(stop_count)[0]]
+    own = np.flatnonzero(stops)[block == section_blocks(stop_count)[0]]
     states = np.concatenate([run["event_position"][own], run["event_velocity"][own]], axis=1)
     length = orbit_length(states, settings.period_tolerance, len(states))
     time = run["event_time"][own]
     return 0, float(time[-1] - time[-1 - length]) if length < len(states) else math.nan
 
 
-def turns_diverge(run: Mapping[str, np.ndarray], points: int, settings: MotionSettings) -> bool:
+def has_diverging_cycles(run: Mapping[str, np.ndarray], points: int, settings: MotionSettings) -> bool:
     """Return whether successive turns of a run diverge: it is leaving a periodic orbit that repels.
 
     run, points : that repeats after so many section points
@@ -89,7 +89,7 @@ def section_period(run: Mapping[str, np.ndarray], settings: MotionSettings) -> i
     if not len(time):
         return 0
     longest = len(time) - 1 - int(np.searchsorted(time, time[-1] - settings.longest_period))
-    period = repetition(velocity, settings.period_tolerance, longest)
+    period = repetition_length(velocity, settings.period_tolerance, longest)
     event_time = run["event_time"]
     if not period or not len(event_time):
         return period
@@ -104,7 +104,7 @@ def section_period(run: Mapping[str, np.ndarray], settings: MotionSettings) -> i
     return 0
 
 
-def repetition(sequence: np.ndarray, tolerance: float, longest: int) -> int:
+def repetition_length(sequence: np.ndarray, tolerance: float, longest: int) -> int:
     """Return after how many rows a sequence, shape (n,) or (n, m), repeats within tolerance; 0 if it does not.
 
     longest : largest period looked for; the sequence has to show it REPETITIONS times
@@ -115,7 +115,7 @@ def repetition(sequence: np.ndarray, tolerance: float, longest: int) -> int:
     least = np.inf
     for period in range(1, min(longest, len(sequence) // REPETITIONS) + 1):
         misfit = _misfit(sequence, period)
-        if misfit <= min(tolerance, FAR_BETTER * least):
+        if misfit <= min(tolerance, BETTER * least):
             return period
         least = min(misfit, least)
     return 0
@@ -128,7 +128,7 @@ def _misfit(sequence: np.ndarray, period: int) -> float:
     return float(np.ptp(turns, axis=0).max())
 
 
-def sections(stops: np.ndarray) -> tuple[int, int]:
+def section_blocks(stops: np.ndarray) -> tuple[int, int]:
     """Return the block, from 1 on, at whose stops a motion is seen, and that of its mirror image.
 
     stops : of each block, shape (blocks,)

@@ -20,14 +20,14 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_period
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
 # Turns of an orbit that have to fit into a window at least, and that have to come nearer and nearer at most.
-FEWEST_TURNS = 2
-MOST_TURNS = 4
+MIN_CYCLES = 2
+MAX_CYCLES = 4
 
 # A torus may be locked if its motion was nearer to its last return, by this factor, than at any later time.
-MUCH_NEARER = 0.1
+NEARER = 0.1
 
 # It is locked to a stable orbit that it approaches, and lies no farther from, for v = 0.1.
-LOCKED = 0.03
+MAX_LOCKED_DISTANCE = 0.03
 
 
 def recurrence(times: np.ndarray, returns: np.ndarray) -> float:
@@ -39,13 +39,13 @@ def recurrence(times: np.ndarray, returns: np.ndarray) -> float:
     """
     away = times[-1] - times[:-1]
     apart = np.abs(returns[:-1] - returns[-1]).max(axis=1)
-    often = away <= (times[-1] - times[0]) / FEWEST_TURNS
+    often = away <= (times[-1] - times[0]) / MIN_CYCLES
     away, apart = away[often], apart[often]
     if not len(away):
         return 0.0
     nearest = int(apart.argmin())
     shorter = apart[away < away[nearest]].min(initial=np.inf)
-    return float(away[nearest]) if apart[nearest] <= MUCH_NEARER * shorter else 0.0
+    return float(away[nearest]) if apart[nearest] <= NEARER * shorter else 0.0
 
 
 def locked_orbit(model: Model, returns: np.ndarray, time: float) -> PeriodicOrbit | None:
@@ -59,16 +59,16 @@ def locked_orbit(model: Model, returns: np.ndarray, time: float) -> PeriodicOrbi
         orbit = find_periodic_orbit(model, state_of(returns[-1]), time, Symmetry.ASYMMETRIC)
     except OrbitError:
         return None
-    return orbit if multipliers(orbit).unstable == 0 and _approaches(returns, orbit) else None
+    return orbit if multipliers(orbit).unstable == 0 and _is_approaching(returns, orbit) else None
 
 
-def _approaches(returns: np.ndarray, orbit: PeriodicOrbit) -> bool:
+def _is_approaching(returns: np.ndarray, orbit: PeriodicOrbit) -> bool:
     """Tell whether returns come nearer to a stable orbit with each turn."""
     around = visit(orbit.model, orbit.reference, 0.0, orbit.period)
     if around is None:
         return False
     count = len(around.returns)
-    last = [returns[-count * (k + 1) : len(returns) - count * k] for k in range(min(len(returns) // count, MOST_TURNS))]
+    last = [returns[-count * (k + 1) : len(returns) - count * k] for k in range(min(len(returns) // count, MAX_CYCLES))]
     away = [distance(turn, around.returns) for turn in last]
-    near = len(away) >= FEWEST_TURNS and away[0] <= LOCKED * orbit.model.scale
+    near = len(away) >= MIN_CYCLES and away[0] <= MAX_LOCKED_DISTANCE * orbit.model.scale
     return near and bool((np.diff(away) > 0.0).all())

@@ -21,7 +21,7 @@ from burridge_knopoff.running.ensemble import new_ensemble
 
 # Turns of less than this from one sample to the next have one sense only; an oscillation that passes through its centre
 # has larger ones, and no phase.
-LARGEST_TURN = 0.5 * math.pi
+MAX_PHASE_STEP = 0.5 * math.pi
 
 
 def rotation_number(model: Model, start: ChainState, duration: float) -> tuple[float, float]:
@@ -38,13 +38,13 @@ def rotation_number(model: Model, start: ChainState, duration: float) -> tuple[f
     oscillations = np.stack([states[:, 0] - states[:, -1], middle])
     with np.errstate(divide="ignore", invalid="ignore"):
         turns = np.angle(oscillations[:, 1:] / oscillations[:, :-1])
-    if not (np.abs(turns) <= LARGEST_TURN).all():
+    if not (np.abs(turns) <= MAX_PHASE_STEP).all():
         return math.nan, math.nan
-    whole, first, second = (_ratio(part) for part in (turns, turns[:, : count // 2], turns[:, count // 2 :]))
+    whole, first, second = (_rate_ratio(part) for part in (turns, turns[:, : count // 2], turns[:, count // 2 :]))
     return whole, abs(first - second)
 
 
-def _ratio(turns: np.ndarray) -> float:
+def _rate_ratio(turns: np.ndarray) -> float:
     """Return the ratio of the mean rates of two phases from what they turn by in equal steps, shape (2, n)."""
     time = (np.arange(turns.shape[1]) + 0.5) / turns.shape[1]
     weight = np.exp(-1.0 / (time * (1.0 - time)))

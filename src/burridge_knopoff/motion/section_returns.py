@@ -8,23 +8,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.period import orbit_length, sections
+from burridge_knopoff.motion.period import orbit_length, section_blocks
 from burridge_knopoff.motion.set_distance import SPACINGS, distance, spacing_of
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
 # A velocity of this modulus is rounding.
-STANDING = 1e-14
+ZERO_VELOCITY = 1e-14
 
 # Closed orbits drift by less than the resolution over this once they have converged, since they attract exponentially;
 # other sets fill up so slowly that the resolution itself must do.
-CLOSED_DRIFT = 100.0
+PERIODIC_DRIFT = 100.0
 
 # Fewer returns than this show no set.
-FEWEST_RETURNS = 8
+MIN_RETURNS = 8
 
 # Share in all stops by which a pair of mirror blocks differs at most between two parts of one motion.
-SAME_STOPS = 0.03
+STOP_SHARE_TOLERANCE = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,18 +50,18 @@ class Returns:
     block: int = 1
     mirror_block: int = 1
 
-    def closed(self, tolerance: float) -> bool:
+    def has_periodic_spacing(self, tolerance: float) -> bool:
         """Tell whether the returns are as near to each other as those of a closed orbit."""
         return self.spacing <= tolerance
 
-    def repeats(self, tolerance: float) -> bool:
+    def is_periodic(self, tolerance: float) -> bool:
         """Tell whether the returns also come round one after the other, which thin chaos does not."""
         longest = len(self.returns)
-        return self.closed(tolerance) and orbit_length(self.returns, tolerance, longest) < longest
+        return self.has_periodic_spacing(tolerance) and orbit_length(self.returns, tolerance, longest) < longest
 
-    def settled(self, tolerance: float, resolution: float) -> bool:
+    def is_settled(self, tolerance: float, resolution: float) -> bool:
         """Tell whether both halves of the window show the same set."""
-        allowed = resolution / CLOSED_DRIFT if self.closed(tolerance) else resolution
+        allowed = resolution / PERIODIC_DRIFT if self.has_periodic_spacing(tolerance) else resolution
         return self.drift <= max(allowed, SPACINGS * self.spacing)
 
     def state(self) -> ChainState:
@@ -73,7 +73,7 @@ def state_of(state: np.ndarray) -> ChainState:
     """Return the instant of one return, shape (2 blocks,): a block without velocity sticks there."""
     position, velocity = np.split(state, 2)
     # Another block that stops at the same instant may have been left a rounding of velocity, of either sign.
-    stuck = np.abs(velocity) <= STANDING
+    stuck = np.abs(velocity) <= ZERO_VELOCITY
     return ChainState(position.copy(), np.where(stuck, 0.0, velocity), stuck)
 
 
@@ -95,7 +95,7 @@ def returns_of(
     block : that stops, 1 … N, shape (stops,); states : gives the states at those that a mask of this shape chooses
     """
     stop_count = np.bincount(block.astype(int), minlength=model.blocks + 1)[1:]
-    section, mirror_section = sections(stop_count)
+    section, mirror_section = section_blocks(stop_count)
     returns = states(block == section)
     mirror_returns = returns[:0]
     fewest = len(returns)
@@ -103,7 +103,7 @@ def returns_of(
         position, velocity = np.split(states(block == model.blocks + 1 - mirror_section), 2, axis=1)
         mirror_returns = np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1)
         fewest = min(fewest, len(mirror_returns))
-    if fewest < FEWEST_RETURNS:
+    if fewest < MIN_RETURNS:
         return None
     first, second = np.array_split(returns, 2)
     return Returns(
@@ -118,10 +118,10 @@ def returns_of(
     )
 
 
-def stops_alike(first: np.ndarray, second: np.ndarray) -> bool:
+def has_same_stop_shares(first: np.ndarray, second: np.ndarray) -> bool:
     """Tell whether each pair of mirror blocks has the same share of all stops in two motions.
 
     first, second : stops of each block, in any time, shape (blocks,)
     """
     shares = [(stops + stops[::-1]) / stops.sum() for stops in (first, second)]
-    return bool(np.abs(np.subtract(*shares)).max() <= SAME_STOPS)
+    return bool(np.abs(np.subtract(*shares)).max() <= STOP_SHARE_TOLERANCE)

@@ -22,13 +22,13 @@ def distance(
     bound : what is farther may be given as infinitely far: neighbours beyond it are hardly looked for
     """
     tree = second if isinstance(second, cKDTree) else cKDTree(second)
-    nearest = _nearest(first, tree, bound)
+    nearest = _nearest_distances(first, tree, bound)
     near = int(np.count_nonzero(np.isfinite(nearest)))
     # The quantile lies between two of the sorted distances; only where the bound parts these does their size matter.
     below = math.floor(share * (len(first) - 1)) + 1
     if near < below:
         return np.inf
-    return float(np.quantile(_nearest(first, tree, np.inf) if near == below < len(first) else nearest, share))
+    return float(np.quantile(_nearest_distances(first, tree, np.inf) if near == below < len(first) else nearest, share))
 
 
 def is_near(first: np.ndarray, second: np.ndarray, limit: float, share: float = NEAR_SHARE) -> bool:
@@ -36,12 +36,12 @@ def is_near(first: np.ndarray, second: np.ndarray, limit: float, share: float = 
     return distance(first, second, share, limit) <= limit
 
 
-def least_distance(first: np.ndarray, second: np.ndarray, bound: float = np.inf) -> float:
+def minimum_distance(first: np.ndarray, second: np.ndarray, bound: float = np.inf) -> float:
     """Return the distance between the two nearest returns of two sets; infinite if it is beyond the bound."""
-    return float(_nearest(first, cKDTree(second), bound).min())
+    return float(_nearest_distances(first, cKDTree(second), bound).min())
 
 
-def _nearest(first: np.ndarray, tree: cKDTree, bound: float) -> np.ndarray:
+def _nearest_distances(first: np.ndarray, tree: cKDTree, bound: float) -> np.ndarray:
     """Return how far each of the first returns is from the nearest in a tree; infinite beyond the bound."""
     # The tree leaves out what lies just at the bound. Where two sets are far apart it hardly looks.
     nearest, _ = tree.query(first, p=np.inf, distance_upper_bound=np.nextafter(bound, np.inf))

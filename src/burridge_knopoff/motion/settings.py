@@ -58,20 +58,20 @@ class MotionSettings:
         check_fields(self)
 
     @property
-    def told(self) -> dict[str, Any]:
+    def attributes(self) -> dict[str, Any]:
         """The settings as attributes of a file."""
         return {name: getattr(self, name) for name in fields_of(type(self))} | {"section": str(self.section)}
 
-    def at_speed(self, v: float) -> MotionSettings:
+    def scaled_to_velocity(self, v: float) -> MotionSettings:
         """Return the settings that a driver of speed v asks for: slower motion is smaller, and takes longer."""
         share = min(1.0, v / 0.1)
         return replace(
-            self.scaled(share),
+            self.scaled_by(share),
             period_tolerance=share * self.period_tolerance,
             longest_period=self.longest_period / share,
         )
 
-    def scaled(self, share: float) -> MotionSettings:
+    def scaled_by(self, share: float) -> MotionSettings:
         """Return settings whose thresholds of exponents are that share of these."""
         return replace(self, zero_exponent=share * self.zero_exponent, chaotic_exponent=share * self.chaotic_exponent)
 

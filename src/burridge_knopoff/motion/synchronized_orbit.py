@@ -29,7 +29,7 @@ LONGEST_PERIOD = 500.0
 SEEDS = (0.05, 0.1, 0.02, 0.2)
 
 # Turns of the run from which the orbit of one turn is looked for.
-TURNS = 8
+CYCLES = 8
 
 
 def synchronized_orbit(model: Model) -> PeriodicOrbit:
@@ -62,7 +62,7 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
     if not model.chain.is_mirror_symmetric:
         raise OrbitError("chain: got one that is not its own mirror image, expected one in which blocks move as one")
     seeds = [unit(model.chain) * a for a in SEEDS]
-    for find in (_of_one_turn, _settled):
+    for find in (_single_cycle_orbit, _settled_orbit):
         for a in seeds:
             try:
                 return KnownOrbits(find(model_at(model, a)))
@@ -71,22 +71,22 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
     raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit at a = {', '.join(map(repr, seeds))}")
 
 
-def _rest(model: Model) -> ChainState:
+def _state_at_rest(model: Model) -> ChainState:
     return ChainState(np.zeros(model.blocks), np.zeros(model.blocks), np.ones(model.blocks, dtype=bool))
 
 
-def _of_one_turn(model: Model) -> PeriodicOrbit:
+def _single_cycle_orbit(model: Model) -> PeriodicOrbit:
     """Return the orbit on which the end blocks stop once in a period, from the last turns of a run from rest.
 
     The run itself may end on another synchronous motion, of several turns.
     """
     unit_of_time = model.chain.own_units.time
     runner = Runner(model, keep_events=True, events_from=SETTLING * unit_of_time, stops_only=True)
-    runner.begin(_rest(model))
+    runner.begin(_state_at_rest(model))
     if runner.run((SETTLING + LONGEST_PERIOD) * unit_of_time) != Status.COMPLETED:
         raise OrbitError(f"a = {model.a!r}: the run from rest ends at τ = {runner.clock!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
-    own = np.flatnonzero(values[:, 0] == 1)[-TURNS - 1 :]
+    own = np.flatnonzero(values[:, 0] == 1)[-CYCLES - 1 :]
     for first, second in pairwise(own.tolist()):
         try:
             found = find_periodic_orbit(
@@ -99,7 +99,7 @@ def _of_one_turn(model: Model) -> PeriodicOrbit:
     raise OrbitError(f"a = {model.a!r}: no synchronized orbit of one turn")
 
 
-def _settled(model: Model) -> PeriodicOrbit:
+def _settled_orbit(model: Model) -> PeriodicOrbit:
     """Return the orbit on which a run from rest settles."""
     unit_of_time = model.chain.own_units.time
-    return orbit_of_motion(model, _rest(model), SETTLING * unit_of_time, LONGEST_PERIOD * unit_of_time)
+    return orbit_of_motion(model, _state_at_rest(model), SETTLING * unit_of_time, LONGEST_PERIOD * unit_of_time)

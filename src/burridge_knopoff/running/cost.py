@@ -16,7 +16,7 @@ def cost_of(model: Model, begun: ChainState, settings: Settings) -> tuple[float,
     begun : state at the start; without exponents only blocks that slip share the cost of an event, and those that slip
         at the start are taken to go on together
     """
-    exponents = settings.exponents_of(model.chain)
+    exponents = settings.exponent_count(model.chain)
     together = model.blocks if exponents else int((~begun.stuck).sum())
     event = together * (SECONDS + exponents * SECONDS_OF_PERTURBATION)
     return EVENTS * model.blocks * event, BYTES * model.blocks

@@ -8,7 +8,7 @@ from burridge_knopoff.model.chain import Chain
 
 # Longest stretch whose modes are refined: long double has no fast matrix product, and beyond this the solution of the
 # modes would take longer than the simulation.
-REFINED = 32
+REFINEMENT_LIMIT = 32
 
 
 def normal_modes(chain: Chain, first: int, last: int) -> tuple[np.ndarray, np.ndarray]:
@@ -19,15 +19,15 @@ def normal_modes(chain: Chain, first: int, last: int) -> tuple[np.ndarray, np.nd
     length = last - first + 1
     ends = (first == 0, last == chain.blocks - 1)
     diagonal = chain.diagonal[first : last + 1]
-    coupling = chain.after[0]
+    coupling = chain.coupling_to_next[0]
     # A stretch that only the right end closes is the mirror image of one that only the left end closes.
     mirrored = ends[1] and not ends[0]
     if mirrored:
         diagonal = diagonal[::-1]
     matrix = np.diag(diagonal) - coupling * (np.eye(length, k=1) + np.eye(length, k=-1))
     eigenvalue, vector = np.linalg.eigh(matrix)
-    if length <= REFINED:
-        eigenvalue, vector = _refined(matrix, eigenvalue, vector)
+    if length <= REFINEMENT_LIMIT:
+        eigenvalue, vector = _refine(matrix, eigenvalue, vector)
     if mirrored:
         vector = vector[::-1]
     elif ends[0] == ends[1]:
@@ -37,7 +37,7 @@ def normal_modes(chain: Chain, first: int, last: int) -> tuple[np.ndarray, np.nd
     return eigenvalue, np.ascontiguousarray(vector.T)
 
 
-def _refined(matrix: np.ndarray, eigenvalue: np.ndarray, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _refine(matrix: np.ndarray, eigenvalue: np.ndarray, vector: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Return eigenvalues and eigenvectors (columns) correct to the last bit or so: one Newton step in long double.
 
     An error in the modes is the same at every event and adds up, where rounding averages out.

@@ -19,7 +19,7 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any, TypeVar
 
-from burridge_knopoff.running.cache import forget, kept
+from burridge_knopoff.running.cache import cached_call, delete_unused
 
 _LOG = logging.getLogger(__name__)
 
@@ -28,10 +28,10 @@ _T = TypeVar("_T")
 _R = TypeVar("_R")
 
 
-class Shared:
+class ParallelMap:
     """Carries functions out for many items, in several processes at once if there is a pool of them.
 
-    pool : None if this process does all the work; folder : see `shared_out`
+    pool : None if this process does all the work; folder : see `parallel_map`
     Function, items and results have to be picklable. A call must not rely on what another call has changed.
     """
 
@@ -49,7 +49,7 @@ class Shared:
         call = partial(_timed, self._begin(what), function)
         return list(map(self._ended, self._pool.map(call, *items) if self._pool else map(call, *items)))
 
-    def and_on(
+    def work_through(
         self,
         what: str,
         function: Callable[[_T], _R],
@@ -98,7 +98,7 @@ class Shared:
 
 
 @contextmanager
-def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Shared]:
+def parallel_map(processes: int, folder: str | Path | None = None) -> Iterator[ParallelMap]:
     """Yield what carries functions out for many items in several processes at once.
 
     On macOS this process does all the work.
@@ -108,12 +108,12 @@ def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Sha
     """
     # macOS forbids fork once libraries have threads, and a fresh interpreter would run the caller's script again.
     if processes == 1 or sys.platform == "darwin":
-        yield (each := Shared(None, folder))
+        yield (each := ParallelMap(None, folder))
     else:
         context = get_context("fork")
         told, tell = context.Pipe(duplex=False)
         with told, tell, ProcessPoolExecutor(processes, context, _end_with_parent, (told,)) as pool:
-            each = Shared(pool, folder)
+            each = ParallelMap(pool, folder)
             try:
                 yield each
             except KeyboardInterrupt:
@@ -122,7 +122,7 @@ def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Sha
                 raise
     each.log()
     if folder:
-        forget(Path(folder), each.asked)
+        delete_unused(Path(folder), each.asked)
 
 
 def _log(what: str, taken: Sequence[tuple[float, bool]]) -> None:
@@ -136,7 +136,7 @@ def _log(what: str, taken: Sequence[tuple[float, bool]]) -> None:
 def _timed(folder: Path | None, function: Callable[..., Any], *items: Any) -> tuple[Any, float, Path | None, bool]:
     """Return the result of a call, the seconds it took, its file in the cache, and whether it was read from there."""
     begin = time.perf_counter()
-    result, path, was_read = kept(folder, function, *items) if folder else (function(*items), None, False)
+    result, path, was_read = cached_call(folder, function, *items) if folder else (function(*items), None, False)
     return result, time.perf_counter() - begin, path, was_read
 
 

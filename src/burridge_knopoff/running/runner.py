@@ -19,14 +19,14 @@ from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_array, real_number, refusal
 
 #: Solvers with a fixed step.
-STEPPING = ("rk4", "euler")
+FIXED_STEP_SOLVERS = ("rk4", "euler")
 
 # Real motion stays far below: a slip of a block takes about one time unit or longer.
 EVENTS_PER_BLOCK_AND_UNIT = 1000
 STEP_LIMIT = 10**10
 
 #: Runs that are best carried out together: enough for full lanes, few enough to stay in the processor's cache.
-TOGETHER = 64
+LOCKSTEP_RUNS = 64
 
 # Velocity, as a share of 1, of the driver's or of the fastest block's, that rounding may leave a block at the instant
 # at which it stops, together with another one. It has either sign, and the block stops at once.
@@ -79,8 +79,8 @@ class Runner:
         quasistatic = is_quasistatic(loading, model, solver)
         self.model = model
         # These decide the steps: a continued run repeats the steps of the whole run only if they are equal.
-        stepping = solver in STEPPING
-        self.solver = model, solver, step if stepping else None, loading
+        stepping = solver in FIXED_STEP_SOLVERS
+        self.step_key = model, solver, step if stepping else None, loading
         blocks = model.blocks
         rate_limit = EVENTS_PER_BLOCK_AND_UNIT * blocks
         self.log = EventLog(blocks, events_from, keep_events, rate_limit, stops_only, MOST_NUMBERS)
@@ -121,7 +121,7 @@ class Runner:
         """
         check_state(self.model, at)
         self._place(at, at.time if clock is None else clock)
-        if clock is None and at.last_step is not None and at.last_step[0] == self.solver:
+        if clock is None and at.last_step is not None and at.last_step[0] == self.step_key:
             self.kernel.resume(at.last_step[1], at.time)
 
     def _place(self, at: ChainState, clock: float) -> None:
@@ -133,7 +133,7 @@ class Runner:
         at = replace(self.state(), time=self.clock)
         if status != Status.COMPLETED:
             return at
-        object.__setattr__(at, "last_step", (self.solver, self.kernel.mark()))
+        object.__setattr__(at, "last_step", (self.step_key, self.kernel.mark()))
         return at
 
     def carry(self, perturbations: np.ndarray) -> None:
@@ -152,10 +152,10 @@ class Runner:
             self.kernel.halting_block = halting_block
             self.kernel.end = self.observer.end if until is None else until
         elif until is not None or halting_block >= 0:
-            raise ValueError(f"solver: got {self.solver[1]!r}, expected series | map for a run to a time or a stop")
-        return self.ended(self.kernel.run())
+            raise ValueError(f"solver: got {self.step_key[1]!r}, expected series | map for a run to a time or a stop")
+        return self.status_of(self.kernel.run())
 
-    def ended(self, how: int) -> Status:
+    def status_of(self, how: int) -> Status:
         """Return the status of a run that has ended so; raises ValueError as `run` does."""
         status = Status(how)
         for key, table, remedy in (
@@ -169,7 +169,7 @@ class Runner:
                 raise ValueError(f"{key}: got more than {most}, expected {remedy}")
         return status
 
-    def after(self, at: ChainState, time: float) -> ChainState | None:
+    def state_after(self, at: ChainState, time: float) -> ChainState | None:
         """Return the state a given time after an instant, or None if the run fails; the clock starts at 0.
 
         at : of the model's number of blocks; Newton's method comes by states that no motion has, which are not refused

@@ -119,7 +119,7 @@ class Settings:
             allowed = f"the run would keep {numbers:.1e} numbers for it, at most {MOST_NUMBERS:.0e}"
             raise refusal("trajectory_sampling", self.trajectory_sampling, allowed)
 
-    def exponents_of(self, chain: Chain) -> int:
+    def exponent_count(self, chain: Chain) -> int:
         """Return the number of Lyapunov exponents that are computed."""
         return min(self.lyapunov_exponents, 2 * chain.blocks)
 

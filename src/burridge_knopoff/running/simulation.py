@@ -38,7 +38,7 @@ def run(
 
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
+class PreparedRun:
     """A run that has not begun. runner : its solver, at the instant `begun`"""
 
     model: Model
@@ -59,7 +59,7 @@ def prepare(
     *,
     section_only: bool = False,
     stops_only: bool = False,
-) -> Prepared:
+) -> PreparedRun:
     """Return a run that has not begun; parameters and errors are those of `run`."""
     settings = Settings() if settings is None else settings
     settings.check_chain(model.chain)
@@ -70,7 +70,7 @@ def prepare(
         begun = model.begin(initial, settings.start)
     runner = _runner(model, settings, begun.time, section_only, stops_only)
     runner.begin(begun)
-    return Prepared(model, initial, settings, runner, begun)
+    return PreparedRun(model, initial, settings, runner, begun)
 
 
 def _runner(model: Model, settings: Settings, time: float, section_only: bool, stops_only: bool) -> Runner:
@@ -84,7 +84,7 @@ def _runner(model: Model, settings: Settings, time: float, section_only: bool, s
     count = math.floor(trajectory / settings.trajectory_sampling + 1e-9)
     trajectory_time = end - settings.trajectory_sampling * np.arange(count, -1, -1)
     aligned = time + max(0.0, settings.transient - settings.lyapunov_alignment)
-    exponents = Exponents(model.blocks, settings.exponents_of(model.chain), aligned, edge)
+    exponents = Exponents(model.blocks, settings.exponent_count(model.chain), aligned, edge)
     return Runner(
         model,
         settings.solver,

@@ -15,7 +15,7 @@ class Status(IntEnum):
 
 
 #: The words for the status numbers in files.
-ENDS = {int(status): status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED}
+STATUS_WORDS = {int(status): status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED}
 
 #: Exit code of a command that wrote its results although its run did not complete.
 EXIT_CODE = 3

@@ -11,7 +11,7 @@ from burridge_knopoff.kernel._core import StopFlag
 _T = TypeVar("_T")
 
 
-def in_threads(threads: int, function: Callable[..., _T], *items: Iterable[Any]) -> list[_T]:
+def map_in_threads(threads: int, function: Callable[..., _T], *items: Iterable[Any]) -> list[_T]:
     """Return the results of a function for each item of one or several sequences, in their order.
 
     The kernel releases Python's global lock while it runs, so that threads use all cores. An error of one call, or

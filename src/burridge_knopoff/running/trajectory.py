@@ -149,7 +149,7 @@ def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str,
     gains ln(1 + T/(1 + A)), which a run of this length cannot tell from an exponent of that over T. The error includes
     both.
     """
-    count = settings.exponents_of(runner.model.chain)
+    count = settings.exponent_count(runner.model.chain)
     batch = np.full((settings.batches, count), np.nan)
     mean = np.full(count, np.nan)
     error = np.full(count, np.nan)

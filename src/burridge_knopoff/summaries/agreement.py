@@ -15,11 +15,11 @@ from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import ANSWER, PERIOD, Answer, Variable, flag
 from burridge_knopoff.motion.kind import (
     CHAOS,
-    OPEN,
     REGULAR,
     SYNCHRONOUS,
+    UNDECIDED_KINDS,
     MotionKind,
-    same_result,
+    is_same_result,
 )
 from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.summaries.event_order import common_order
@@ -145,13 +145,15 @@ def _fill_settled(
         # Chaos that ends long after the run is chaos in the run.
         lasting = np.where(mean < threshold, MotionKind.SYNCHRONIZED_CHAOS, MotionKind.CHAOTIC)
         finer = np.where(finer == MotionKind.TRANSIENT_CHAOS, lasting, finer)
-        told = there & np.isin(finer, (*REGULAR, *CHAOS)) & (np.isin(kind, OPEN) | same_result(kind, finer))
+        told = (
+            there & np.isin(finer, (*REGULAR, *CHAOS)) & (np.isin(kind, UNDECIDED_KINDS) | is_same_result(kind, finer))
+        )
         told |= (
             known & np.isin(finer, SYNCHRONOUS) & (mine < attractors.attrs["resolution"] * attractors.attrs["v"] / 0.1)
         )
         kind[...] = np.where(told, finer, kind)
         values["period"][law, initial] = np.where(told, period, values["period"][law, initial])
-        there &= (finer == MotionKind.UNDETERMINED) | same_result(kind, finer)
+        there &= (finer == MotionKind.UNDETERMINED) | is_same_result(kind, finer)
         # Errors as wide as what two laws may differ by hide whether two motions are one.
         telling = allowed <= np.maximum(relative_tolerance * np.maximum(mean, mine), threshold)
         known &= np.isfinite(mine) & (kind != MotionKind.UNDETERMINED) & (telling | ~there)

@@ -18,7 +18,7 @@ from burridge_knopoff.attractors.labels import UNDETERMINED, label
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import NOTHING, slot_coordinates, slot_values, slot_variables
 from burridge_knopoff.continuation.along_a import Continuation
-from burridge_knopoff.dataset.columns import empty
+from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.model.initial import InitialState
@@ -123,7 +123,7 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
         "start": start,
         "synchronization_threshold": motion.synchronization_threshold,
         "section": str(motion.section),
-        "longest_period": motion.at_speed(model.v).longest_period,
+        "longest_period": motion.scaled_to_velocity(model.v).longest_period,
         "position_box": np.array(settings.position),
         "velocity_box": np.array(settings.velocity),
         **{key: value for key, value in asdict(settings).items() if key not in ("position", "velocity")},
@@ -133,7 +133,7 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
 
 def _basins(found: Continuation) -> dict[str, np.ndarray]:
     """Return how many of the drawn states reach each attractor, and their fraction with its interval."""
-    values = empty(
+    values = empty_columns(
         VARIABLES,
         {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors))},
         "basin",
@@ -170,7 +170,7 @@ def _steps(found: Continuation) -> dict[str, np.ndarray]:
 def _reached(found: Continuation, states: Sequence[InitialState], label_limit: float) -> dict[str, np.ndarray]:
     """Return which branch each initial state reaches under each convention of contact and start."""
     shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(found.grid)}
-    values = empty(VARIABLES, shape, "initial")
+    values = empty_columns(VARIABLES, shape, "initial")
     for k, place in enumerate(found.grid):
         reached = _labels_of_states(found.models[place], found.attractors[place], states, label_limit)
         for where in np.argwhere(reached != UNDETERMINED):
@@ -183,7 +183,7 @@ def _reached(found: Continuation, states: Sequence[InitialState], label_limit: f
 def _followed(found: Continuation, branch: np.ndarray, side: np.ndarray, section: Section) -> dict[str, np.ndarray]:
     """Return what a run along each attractor shows that an initial state reaches, shape of both (…, a)."""
     sizes = {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors)), "block": found.models[0].blocks}
-    values = empty(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")
+    values = empty_columns(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")
     for k, place in enumerate(found.grid):
         wanted = {*zip(branch[..., k].ravel().tolist(), side[..., k].ravel().tolist(), strict=True)}
         for slot, row in enumerate(found.rows(place)):
@@ -201,7 +201,7 @@ def _rounded(
 ) -> dict[str, np.ndarray]:
     """Return which branch the corners of each initial state reach under the convention of the models and `start`."""
     shape = {"initial": len(states), "a": len(found.grid), "corner": CORNERS}
-    values = empty(VARIABLES, shape, "rounded")
+    values = empty_columns(VARIABLES, shape, "rounded")
     for k, place in enumerate(found.grid):
         model = found.models[place]
         for n, state in enumerate(states):
@@ -215,7 +215,7 @@ def _rounded(
 
 def _is_allowed(state: InitialState, contact: str, blocks: int) -> bool:
     """Tell whether blocks may have the velocities of a state: under one-sided contact none slips backward."""
-    return contact == "symmetric" or bool(state.numbers(blocks)[1].min() >= 0.0)
+    return contact == "symmetric" or bool(state.coordinates(blocks)[1].min() >= 0.0)
 
 
 def corners(state: InitialState, contact: str, blocks: int) -> list[InitialState]:
@@ -225,7 +225,7 @@ def corners(state: InitialState, contact: str, blocks: int) -> list[InitialState
     contact : if one_sided, velocities are 0 at least
     """
     above = np.arange(CORNERS)[:, None] >> (np.arange(2 * blocks) % 6) & 1
-    numbers = np.concatenate(state.numbers(blocks)) + ROUNDING * (2 * above - 1)
+    numbers = np.concatenate(state.coordinates(blocks)) + ROUNDING * (2 * above - 1)
     if contact == "one_sided":
         numbers[:, blocks:] = np.maximum(numbers[:, blocks:], 0.0)
     return [InitialState(state.name, tuple(row[:blocks].tolist()), tuple(row[blocks:].tolist())) for row in numbers]
@@ -254,7 +254,7 @@ def _sweeps(found: Continuation) -> dict[str, np.ndarray]:
     there = [k for k in range(count) if attractors[k]] or [0]
     ends = (there[0], there[-1])
     sweeps = max(1, *(len(attractors[end]) for end in ends))
-    values = empty(VARIABLES, {"direction": 2, "sweep": sweeps, "a": count}, "sweep")
+    values = empty_columns(VARIABLES, {"direction": 2, "sweep": sweeps, "a": count}, "sweep")
     for direction, (end, steps, following) in enumerate(
         zip(ends, (range(ends[0], count), range(ends[1], -1, -1)), (found.upward, found.downward), strict=True)
     ):

@@ -167,7 +167,7 @@ def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:
     runner = Runner(model, perturbations=np.eye(2 * model.blocks))
     fastest = float(eigenvalues(model).real.max())
     duration = min(DURATION, LARGEST_GROWTH / fastest) if fastest > 0.0 else DURATION
-    end = runner.after(start, duration)
+    end = runner.state_after(start, duration)
     if end is None:
         return math.nan, math.nan
     moduli = np.abs(np.linalg.eigvals(runner.perturbations))

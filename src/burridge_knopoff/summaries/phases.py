@@ -19,7 +19,7 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import AXES, STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.sampling import fraction_interval
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.along_attractor import along_attractor
 
@@ -94,7 +94,7 @@ def one_law(
     label_limit : time by which a state has to reach one of them
     processes : that work at once; no result depends on them
     """
-    with shared_out(processes) as each:
+    with parallel_map(processes) as each:
         found = each("phases", partial(_at, phases=phases, label_limit=label_limit), known)
     model, grid = known[0].model, [item.model.a for item in known]
     inner = model.chain.blocks - 2

@@ -13,14 +13,14 @@ from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.ranges import Number, OneOf, Range, Whole
 from burridge_knopoff.values import refusal
 
-#: One number for all blocks, a list with one number each, or the keys or the text of a `Drawn`.
+#: One number for all blocks, a list with one number each, or the keys or the text of a `RandomNumbers`.
 Numbers = float | Sequence[float] | Mapping[str, Any] | str
 
 SEED = Whole(0, 2**32 - 1)
 
 
 @dataclass(eq=False, repr=False)
-class Drawn(Range):
+class RandomNumbers(Range):
     """Numbers drawn independently for the blocks, uniform between `low` and `high`.
 
     each : range of `low` and `high`
@@ -32,7 +32,7 @@ class Drawn(Range):
 
     def _fit(self, value: Any, key: str) -> str | None:
         if isinstance(value, str) and value.startswith("random="):
-            value = _read(value)
+            value = _parse(value)
         if not isinstance(value, Mapping):
             return None
         limit = Field(self.each, str(self.each))
@@ -46,18 +46,18 @@ class Drawn(Range):
         return "{random: uniform, low, high, seed}"
 
 
-def _read(text: str) -> dict[str, Any]:
-    return {name: _plain(value) for name, _, value in (part.partition("=") for part in text.split(","))}
+def _parse(text: str) -> dict[str, Any]:
+    return {name: _parse_number(value) for name, _, value in (part.partition("=") for part in text.split(","))}
 
 
-def _plain(text: str) -> Any:
+def _parse_number(text: str) -> Any:
     for kind in (int, float):
         with contextlib.suppress(ValueError):
             return kind(text)
     return text
 
 
-def numbers_of(given: Numbers, blocks: int, name: str) -> np.ndarray:
+def block_values(given: Numbers, blocks: int, name: str) -> np.ndarray:
     """Return the numbers of all blocks, shape (blocks,).
 
     name : of the quantity; different quantities of one seed are independent
@@ -66,6 +66,6 @@ def numbers_of(given: Numbers, blocks: int, name: str) -> np.ndarray:
     """
     if not isinstance(given, str):
         return np.array(np.broadcast_to(given, blocks), dtype=float)  # type: ignore[arg-type]
-    drawn = _read(given)
+    drawn = _parse(given)
     unit = np.random.default_rng([drawn["seed"], *name.encode()]).random(blocks)
     return np.minimum(drawn["low"] + (drawn["high"] - drawn["low"]) * unit, drawn["high"])
