@@ -149,7 +149,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     ),
     "law_speed": (
         f"{GOOD}laws: {{m: {{formula: log(3 - a*u)/log(3)}}}}\nv: 40\n",
-        ["v: got 40.0, expected one up to ten times which the law m is analytic"],
+        ["v: got 40.0, expected a velocity up to ten times which the law m is analytic"],
     ),
     "springs": (f"{GOOD}chain: {{coupling: [1, 2, 3]}}\n", ["chain.coupling: got 3 numbers, expected 1, or 2"]),
     "ring_springs": (

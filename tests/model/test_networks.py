@@ -245,13 +245,13 @@ def test_refused_networks(tmp_path):
     path = written(tmp_path, {(1, 2): 1.0, (3, 4): 2.0})
     assert Chain(springs=path).blocks == 4
     for options, message in (
-        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for one block or more"),
+        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for at least one block"),
         ({"pulling": [1, 0, 0, 0]}, "chain.pulling: got 0 for all of the 2 blocks connected to block 3, expected"),
         ({"blocks": 5}, "chain.pulling: got 0 for all of the 1 blocks connected to block 5, expected"),
         ({"blocks": 3, "pulling": 1}, "chain.springs: got block 4, expected at most chain.blocks (3)"),
-        ({"coupling": 2.0}, "chain.coupling: got 2.0, expected none beside chain.springs"),
-        ({"ends": "ring"}, "chain.ends: got ring, expected open beside chain.springs"),
-        ({"grid": (2, 2)}, "chain.grid: got [2, 2], expected none beside chain.springs"),
+        ({"coupling": 2.0}, "chain.coupling: got 2.0, expected none together with chain.springs"),
+        ({"ends": "ring"}, "chain.ends: got ring, expected open together with chain.springs"),
+        ({"grid": (2, 2)}, "chain.grid: got [2, 2], expected none together with chain.springs"),
         ({"mass": [1, 2]}, "chain.mass: got 2 numbers, expected 1, or 4"),
     ):
         with refused(message):
@@ -260,7 +260,7 @@ def test_refused_networks(tmp_path):
         ({"blocks": 5}, "chain.blocks: got 5, expected 4 for chain.grid [2, 2]"),
         ({"grid": (2,)}, "chain.grid: got (2,), expected a list (of 2;"),
         ({"grid": (2000, 2000)}, "chain.grid: got [2000, 2000], expected at most 1000000 blocks"),
-        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for one block or more"),
+        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for at least one block"),
         ({"threshold": {**UNIFORM, "high": 0.25}}, "chain.threshold.high: got 0.25, expected at least low (0.5)"),
         ({"threshold": "random=uniform,low=1"}, "chain.threshold.high: missing"),
         ({"threshold": {}}, "chain.threshold.random: missing"),

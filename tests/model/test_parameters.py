@@ -110,7 +110,7 @@ def test_other_contact_and_the_shape_of_the_chain_stay():
         (
             Model(Chain(2), FormulaLaw(0.1, "1/(1 + a*u*mass)", mass=2.0)),
             {"mass": 1.0},
-            "mass: got a number of the law",
+            "mass: got a parameter of both the law",
         ),
     ],
 )

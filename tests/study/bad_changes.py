@@ -58,7 +58,7 @@ BAD_CHANGES = [
     ({"chain": {"threshold": 1e7}}, ["chain.threshold: got 10000000.0, expected a number between 1e-06 and 1e+06"]),
     ({"solver": "map"}, ["solver.nonlinear: 'map'", "not linear in the speed"]),
     ({"window": None, "windows": 10}, ["windows: unknown key (did you mean window?), expected one of: a, "]),
-    ({"attractors": {"pushes": 8}}, ["attractors.pushes: unknown key (it is called perturbations now), expected"]),
+    ({"attractors": {"pushes": 8}}, ["attractors.pushes: unknown key (renamed to perturbations), expected"]),
     ({"window": 10**400}, ["window: 1000"]),
     (
         {"basins": {"pixels": 9000, "tiles": 1, "a": {"linearized": [0.1], "nonlinear": []}}},

@@ -1,4 +1,4 @@
-"""What a point file is, for its seal; without the kernel, which a dry run need not have."""
+"""The identity of a point file, for its seal. This module does not import the kernel, so that a dry run needs none."""
 
 from __future__ import annotations
 

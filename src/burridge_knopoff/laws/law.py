@@ -1,7 +1,7 @@
 """Friction laws: a formula for Φ in the slip speed and the friction parameter a.
 
 Everything else follows from the formula: the slope, the Taylor series of both in the kernel, the start of a slip, and
-the minimum friction. A new law is a class with a formula, or a formula in a config.
+the least friction. A new law is a class with a formula, or a formula in a config.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ MAX_SPEED = 10.0
 # Φ(0) may exceed 1 by this much because of rounding in the formula.
 ROUNDING = 1e-12
 
-# Number of speeds at which the minimum friction is first sampled.
+# Number of speeds at which the least friction is first sampled.
 SAMPLES = 256
 _FRACTIONS = np.linspace(0.0, 1.0, SAMPLES + 1)
 
@@ -165,7 +165,7 @@ class Law(Unchanging):
         return float(np.abs(self.slope(np.linspace(0.0, MAX_SPEED, 4 * SAMPLES + 1))).max())
 
     def least_friction(self, fastest: float) -> float:
-        """Return the minimum friction at speeds from 0 to `fastest`."""
+        """Return the least friction at speeds from 0 to `fastest`."""
         speed = fastest * _FRACTIONS
         # A diverging run may reach speeds at which the law is not defined.
         with np.errstate(invalid="ignore"):

@@ -4,8 +4,8 @@ A setting is a field of a dataclass whose type is annotated with a range and a d
 
     step: Annotated[float, Number(1e-9, 10.0), "step of rk4"] = 1e-3
 
-This line alone defines the setting for Python, the options of `bk simulate`, the config of a study and the tables of
-config/README.md. The decorator `settings` makes `help` show the plain type.
+This single line defines the setting in Python, in the options of `bk simulate`, in the config of a study and in the
+tables of config/README.md. The decorator `settings` makes `help` show the plain type.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 from burridge_knopoff.model.ranges import Range
 from burridge_knopoff.values import joined
 
-#: Default of a required field, and of an optional field whose value is derived from others.
+#: Default of a required field, and of an optional field whose value follows from other fields.
 REQUIRED, FOLLOWS = object(), object()
 
 
@@ -34,7 +34,7 @@ class Field:
 
 @dataclass(eq=False, repr=False)
 class Keys(Range):
-    """A mapping with known keys, each a field; its form has all defaults, in the order of the fields."""
+    """A mapping with known keys, each of which is a field. Its form has all defaults, in the order of the fields."""
 
     fields: Mapping[str, Field]
     #: Appended to the description of the keys.
@@ -59,16 +59,16 @@ class Keys(Range):
         return f"{{{', '.join(self.fields)}}}{self.words}"
 
 
-#: Keys of earlier configs, and what they are called now.
+#: Keys of earlier configs, and their present names.
 RENAMED = {"fraction_samples": "fraction_width", "pushes": "perturbations"}
 
 
 def unknown_key_error(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
-    """Return the error for an unknown key: its place, its new name or the closest known key, and all known keys."""
+    """Return the error for an unknown key, with its present name or the closest known key, and all known keys."""
     near = get_close_matches(name, allowed, 1) if isinstance(name, str) else []
     hint = f" (did you mean {near[0]}?)" if near else ""
     if RENAMED.get(name) in allowed:
-        hint = f" (it is called {RENAMED[name]} now)"
+        hint = f" (renamed to {RENAMED[name]})"
     return ValueError(f"{joined(place, name)}: unknown key{hint}, expected one of: {', '.join(allowed)}")
 
 
@@ -107,7 +107,7 @@ def settings_from_config(kind: type[_T], config: Mapping[str, Any]) -> _T:
 def check_fields(settings: Any, place: str = "") -> None:
     """Convert the settings of a new dataclass to their form: 3 becomes 3.0, a list becomes a tuple.
 
-    None stays where the value is derived from others.
+    None is kept if the value follows from other fields.
 
     place : prefix of the names in messages
     Raises ValueError, one line, for anything out of range.

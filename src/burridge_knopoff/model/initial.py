@@ -21,9 +21,9 @@ _BLOCK_VALUES = Either((COORDINATE, Several(COORDINATE, 1, MAXIMUM_BLOCKS), Rand
 @settings
 @dataclass(frozen=True)
 class InitialState:
-    """A named initial state: positions U(0) and velocities U'(0), one number for all blocks, one a block, or drawn.
+    """A named initial state: positions U(0) and velocities U'(0), one number for all blocks, one per block, or random.
 
-    `Model.begin` turns it into a `ChainState`, which knows which blocks stick and the position of uniform sliding.
+    `Model.begin` turns it into a `ChainState`, in which some blocks may stick.
 
     Raises ValueError, one line, for a number out of range and for different numbers of positions and velocities.
 
@@ -38,8 +38,12 @@ class InitialState:
     """
 
     name: str
-    position: Annotated[Numbers, _BLOCK_VALUES, "initial positions U(0): one number for all, one a block, or drawn"]
-    velocity: Annotated[Numbers, _BLOCK_VALUES, "initial velocities U'(0): one number for all, one a block, or drawn"]
+    position: Annotated[
+        Numbers, _BLOCK_VALUES, "initial positions U(0): one number for all blocks, one per block, or random"
+    ]
+    velocity: Annotated[
+        Numbers, _BLOCK_VALUES, "initial velocities U'(0): one number for all blocks, one per block, or random"
+    ]
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -49,13 +53,13 @@ class InitialState:
 
     @property
     def blocks(self) -> int | None:
-        """Number of blocks that the state tells: that of its lists, 1 for numbers alone, None for drawn numbers."""
+        """Number of blocks: the length of the lists, 1 for single numbers, None for random numbers."""
         lists = [len(values) for values in (self.position, self.velocity) if isinstance(values, tuple)]
         drawn = isinstance(self.position, str) or isinstance(self.velocity, str)
         return lists[0] if lists else None if drawn else 1
 
     def coordinates(self, blocks: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return U(0) and U'(0) of a number of blocks, each of shape (blocks,).
+        """Return U(0) and U'(0) for this number of blocks, each of shape (blocks,).
 
         Raises ValueError, one line, if the state has lists of another length.
         """
@@ -76,7 +80,7 @@ PAPER_STATES = {
 
 
 def initial_state(name: str, position: Numbers | None = None, velocity: Numbers | None = None) -> InitialState:
-    """Return one of the paper's states by its name, or the given numbers under this name.
+    """Return one of the paper's states by its name, or a state of this name with the given numbers.
 
     Raises ValueError for an unknown name without numbers.
     """

@@ -13,9 +13,9 @@ if TYPE_CHECKING:
 
 #: Rows and rings of up to this many blocks are solved by elimination.
 ELIMINATION_LIMIT = 1024
-#: Corrections of a solution at most; each one gains several digits.
+#: Maximum number of corrections of a solution; each one adds several digits.
 _CORRECTIONS = 20
-#: Relative error at which a solution is right in twice the digits of a double.
+#: Relative error at which a solution is correct to twice the precision of a double.
 _TOLERANCE = 1e-31
 _SPLITTER = 2.0**27 + 1.0
 
@@ -27,11 +27,11 @@ def static_displacement(chain: Chain) -> np.ndarray:
     solve = solve_ring if chain.ends == "ring" else solve_tridiagonal
     found = solve(chain.diagonal, chain.coupling_to_next, chain.thresholds.copy())
     if chain.ends == "ring":
-        # Make it periodic to the bit, like the ring, so that a periodic state stays periodic.
+        # The solution is made periodic to the bit, as the ring is, so that a periodic state stays periodic.
         period = _period(chain)
         found = np.tile(found[:period], chain.blocks // period)
     if chain.is_mirror_symmetric:
-        # Make it mirror-symmetric to the bit, like the chain.
+        # The solution is made mirror-symmetric to the bit, as the chain is.
         found = 0.5 * (found + found[::-1])
     return found
 
@@ -47,8 +47,8 @@ def solve_tridiagonal(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarr
 
     strength : of the spring from each block to the next one, shape (blocks,)
 
-    Not by LAPACK: the last bit of LAPACK's result depends on the memory addresses of its arguments, so that all numbers
-    of a study would change with the folder it runs in.
+    LAPACK is not used because the last bit of its result depends on the memory addresses of its arguments: all results
+    of a study would change with the folder in which it runs.
     """
     pivot = diagonal.copy()
     for i in range(1, len(load)):
@@ -60,7 +60,7 @@ def solve_tridiagonal(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarr
 
 
 def solve_ring(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Solve the system of a ring, a tridiagonal one with corners; strength[-1] is that of the corners."""
+    """Solve the system of a ring, which is tridiagonal except for its corners, of strength strength[-1]."""
     # The corners are a rank-one update: the Sherman-Morrison formula.
     pivot, corner = diagonal.copy(), np.zeros(len(load))
     for end in (0, -1):
@@ -74,8 +74,8 @@ def solve_ring(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> 
 def nearest_solution(matrix: csr_array, load: np.ndarray) -> np.ndarray:
     """Return the doubles nearest to the exact solution of a sparse, positive definite system.
 
-    SuperLU solves it, and iterative refinement in twice the precision makes the result independent of the rounding of
-    SuperLU, which differs from run to run, and as symmetric as the system.
+    The rounding errors of SuperLU differ from run to run. Iterative refinement in twice the precision makes the result
+    independent of them, and as symmetric as the system.
 
     Reference: N. J. Higham, Accuracy and Stability of Numerical Algorithms (2002), chapter 12.
     """
@@ -117,7 +117,7 @@ def _product(one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray
 def _residual(matrix: csr_array, load: np.ndarray, high: np.ndarray, low: np.ndarray) -> np.ndarray:
     """Return load − K (high + low), to twice the precision of a double.
 
-    The terms of each row are cut into parts whose sums are exact, so that their order does not count (S. M. Rump,
+    The terms of each row are split into parts whose sums are exact, so that their order does not matter (S. M. Rump,
     T. Ogita and S. Oishi, SIAM J. Sci. Comput. 31 (2008) 189).
     """
     start, count = matrix.indptr[:-1], np.diff(matrix.indptr)

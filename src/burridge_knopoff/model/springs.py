@@ -55,7 +55,7 @@ def _compress(index: np.ndarray, strength: np.ndarray, damping: np.ndarray) -> N
 
 
 def row_neighbours(strength: np.ndarray, damping: np.ndarray) -> Neighbours:
-    """Return the neighbours in a row or a ring: the previous block, then the next one.
+    """Return the neighbours in a row or a ring: the previous block, then the next.
 
     strength, damping : of the springs and dashpots to the previous block, shape (blocks,), 0 at an open end
     """
@@ -86,8 +86,8 @@ def network_neighbours(
 class SpringsFile(Range):
     """The name of a file of springs. Its form ends with a digest of the content: `faults.txt@0123456789abcdef`.
 
-    The digest makes a changed file another value, so that results made with the old one are out of date. A name that
-    has a digest already is not read before its springs are needed.
+    With the digest a changed file is a different value, so that results of the old file are out of date. A file whose
+    name already has a digest is not read until its springs are needed.
     """
 
     def _fit(self, value: Any, key: str) -> str | None:
@@ -100,17 +100,17 @@ class SpringsFile(Range):
 
 
 def has_digest(springs: str) -> bool:
-    """Tell whether a name of a file of springs ends with the digest of its content."""
+    """Return whether the name of a file of springs ends with the digest of its content."""
     return _NAME_WITH_DIGEST.fullmatch(springs) is not None
 
 
 @lru_cache(maxsize=4)
 def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return the springs of a file: the blocks (0 …) that each one joins, its strength and its dashpot.
+    """Return the springs of a file: the two blocks (0 …) that each spring joins, its strength and its dashpot.
 
     springs : name of the file and digest, as `SpringsFile` returns it
 
-    Raises ValueError, one line, if the file cannot be read, has other content, or is no list of springs.
+    Raises ValueError, one line, if the file cannot be read, has other content, or is not a list of springs.
     """
     path, digest = _NAME_WITH_DIGEST.fullmatch(springs).groups()  # type: ignore[union-attr]
     content = _content(path)
