@@ -117,6 +117,6 @@ def test_no_number_depends_on_the_processes_or_on_what_was_kept(tmp_path, monkey
         for item in fields(one):
             same(getattr(one, item.name), getattr(two, item.name))
     told = [line for line in caplog.messages if line.startswith("searched")]
-    assert [line.partition("; ")[2] for line in told] == ["", "", *(f"{n} kept from a run before" for n in (2, 3))]
+    assert [line.partition("; ")[2] for line in told] == ["", "", *(f"{n} from the cache" for n in (2, 3))]
     # By its name the display knows how far a search has come: one for each gap of the grid.
     assert len(list((tmp_path / "compared with the next").iterdir())) == 2

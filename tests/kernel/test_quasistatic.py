@@ -188,5 +188,5 @@ def test_runs_that_continue_one_another_have_the_catalogue_of_the_whole(blocks):
 
 def test_friction_that_does_not_drop_is_refused():
     model = Model(Chain(3), law_of("nonlinear", 0.1))
-    with pytest.raises(ValueError, match="friction of the law nonlinear does not drop as slip begins"):
+    with pytest.raises(ValueError, match="friction of the law nonlinear does not drop at the start of a slip"):
         record_events(model, at_rest(model), 10.0, loading="quasistatic")

@@ -76,8 +76,8 @@ def test_motions_are_alike_by_how_often_mirror_blocks_stop(first, second, alike)
 )
 def test_a_block_that_hardly_ever_stops_shows_no_returns(stops, expected):
     """In a window four times as long as well; the mirror image is seen at the mirror block."""
-    assert period.sections(np.array(stops)) == expected
-    assert period.sections(np.array(stops[::-1])) == expected[::-1]
+    assert period.section_blocks(np.array(stops)) == expected
+    assert period.section_blocks(np.array(stops[::-1])) == expected[::-1]
 
 
 def test_a_block_without_velocity_sticks():

@@ -48,7 +48,7 @@ BEGUN = {
     [
         (ChainState(ZEROS, ZEROS, SLIPPING, math.nan), "state.time: got nan, expected a finite number"),
         (ChainState(ZEROS, -ONES, SLIPPING), "state.velocity: got -1.0, expected at least 0 under contact one_sided"),
-        (ChainState(ZEROS, [0.0, 1.0, 1.0], STUCK), "state.velocity[1]: got 1.0, expected 0, as this block sticks"),
+        (ChainState(ZEROS, [0.0, 1.0, 1.0], STUCK), "state.velocity[1]: got 1.0, expected 0 because this block sticks"),
         (ChainState(ZEROS, [0.0, np.nan, 0.0], SLIPPING), ": got nan, expected"),
     ],
 )

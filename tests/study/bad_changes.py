@@ -70,7 +70,7 @@ BAD_CHANGES = [
     ({"events": "none"}, ["events: 'none'", "window | all"]),
     ({"agreement ": {}}, ["'agreement ': unknown key"]),
     ({"agreement": []}, ["agreement: []"]),
-    ({"lyapunov_exponents": 7}, ["lyapunov_exponents: 7", "at most 6", "two a block"]),
+    ({"lyapunov_exponents": 7}, ["lyapunov_exponents: 7", "at most 6", "two per block"]),
     ({"lyapunov_exponents": 5, "initial": {"x": PAIR}}, ["lyapunov_exponents: 5", "at most 4"]),
     ({"lyapunov_alignment": 500, "transient": 400}, ["lyapunov_alignment: got 500.0, expected at most transient"]),
     ({"laws": {"m": {"formula": "1/(1 + 0.3*u)"}}}, ["laws.m.formula: '1/(1 + 0.3*u)'", "depends on a"]),
@@ -120,7 +120,10 @@ BAD_CHANGES = [
     ({"solvers": {"steps": 0.1}}, ["solvers.steps: unknown key", "step"]),
     ({"catalogue": {"a": [0.0801]}}, ["catalogue.a: 0.0801", "grid"]),
     ({"catalogue": {"low": 2.0, "high": 1.0}}, ["catalogue.high: 1.0", "more than low"]),
-    ({"catalogue": {"loading": "quasistatic"}}, ["catalogue.loading: 'quasistatic'", "does not drop as slip begins"]),
+    (
+        {"catalogue": {"loading": "quasistatic"}},
+        ["catalogue.loading: 'quasistatic'", "does not drop at the start of a slip"],
+    ),
     (
         {"catalogue": {"loading": "quasistatic"}, "laws": {"carlson_langer": {}}, "solver": "rk4"},
         ["catalogue.loading: 'quasistatic'", "steady with the solver rk4"],

@@ -1,7 +1,8 @@
-"""What kind of motion a trajectory has settled on, in windows as long as it takes to tell a torus from weak chaos.
+"""The kind of motion on which a trajectory has settled, in windows long enough to distinguish a torus from weak chaos.
 
-Most kinds show in the usual window. What may be a torus takes more, test by test: a closed orbit to which it is locked,
-the growth of perturbations in a longer window, exponents in one that is longer still, and in the longest one.
+Most kinds are decided in the usual window. Motion that may lie on a torus takes more tests: a search for a periodic
+orbit to which it is locked, the growth of perturbations in a longer window, and exponents in two windows that are
+longer still.
 """
 
 from __future__ import annotations
@@ -21,25 +22,26 @@ from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.simulation import run
 
-#: Error of ⟨J⟩ of an attractor that is followed once more, beyond its standard errors, for v = 0.1.
+#: Difference of ⟨J⟩ between two runs on the same attractor beyond their standard errors, for v = 0.1.
 SAME_MEAN = 1e-3
 
 
 @dataclass(frozen=True)
 class Classifier:
-    """Measures settled motion and tells its kind.
+    """Measures settled motion and determines its kind.
 
-    transient : in which perturbations turn into the directions of the exponents
-    window : the usual one; the others are given in units of it
+    transient : time in which perturbations align with the directions of the exponents
+    window : the usual window; the other windows are given in units of it
     settings : the thresholds, for v = 0.1
-    growth_window : on a torus perturbations grow in proportion to time at most, and the logarithm of what they gain in
-        this window hardly exceeds the share `regular_growth` of what that makes; in chaos it grows with the window.
-        Below that share the motion is regular, above `chaotic_growth` chaotic. In between longer windows decide; with 0
-        they always do. Of 583 tori and locked tori one gained more than 3.6, 18 on an orbit longer than the window; of
-        53 chaotic motions with exponents below 0.002 four gained less than 1.4, all with exponents below 2.2e-4
-    longer_window : an exponent of 0.001 is beyond its error in it. In one four times longer closed orbits that hardly
-        attract have not closed
-    longest_window : exponents of 3e-5 are beyond their error in it
+    growth_window : window in which the growth of perturbations is tested; 0 skips this test. On a torus perturbations
+        grow at most in proportion to time, and the logarithm of their growth rarely exceeds `regular_growth` times the
+        logarithm for linear growth. In chaos it is proportional to the window. The motion is regular below the first
+        limit and chaotic above `chaotic_growth`; in between longer windows decide. Of 583 tori and locked tori only one
+        gained more than 3.6: 18, on an orbit longer than the window. Of 53 chaotic motions with exponents below 0.002
+        four gained less than 1.4, all with exponents below 2.2e-4
+    longer_window : window in which an exponent of 0.001 exceeds its error. Even in a window four times as long, some
+        weakly attracting periodic orbits do not repeat
+    longest_window : window in which an exponent of 3e-5 exceeds its error
     """
 
     model: Model
@@ -53,17 +55,18 @@ class Classifier:
     longest_window: float = 100.0
 
     def measure(self, start: ChainState) -> SteadyMotion | None:
-        """Measure the motion from a state that has settled; None if it does not complete or hardly ever stops.
+        """Measure the motion from a settled state; None if the run does not complete or has too few stops.
 
-        Where it turns out to be on its way to another motion, its kind is left open and `left_for` is set.
+        If the motion proves to be a transient, its kind remains undecided and `left_for` is a state of the later
+        motion.
         """
         usual = self._observe(start, self.window)
         if usual is None or not usual.can_be_periodic:
             return usual
         for test in (self._classify_as_locked, self._classify_as_long_orbit, self._classify_by_growth):
-            told = test(usual, start)
-            if told is not None:
-                return told
+            found = test(usual, start)
+            if found is not None:
+                return found
         return self._classify_by_exponents(usual, start)
 
     @property
@@ -80,18 +83,18 @@ class Classifier:
         return observe(self.model, start, self.transient, window, settings or self._scaled_settings, mean_distance)
 
     def _classify_as_locked(self, usual: SteadyMotion, _: ChainState) -> SteadyMotion | None:
-        """Tell the motion by the closed orbit to which it is locked; None if none is found."""
+        """Return the motion on the periodic orbit to which it is locked; None if no such orbit is found."""
         orbit = locked_orbit(self.model, usual.returns, usual.recurrence)
         return (
             None if orbit is None else self._mark_if_left(self._motion_on_orbit(usual, orbit), usual, orbit.reference)
         )
 
     def _classify_as_long_orbit(self, usual: SteadyMotion, _: ChainState) -> SteadyMotion | None:
-        """Return a motion that attracts as a closed orbit does and is longer than the window as it is."""
+        """Return the motion unchanged if its exponents are those of a periodic orbit longer than the window."""
         return usual if math.isinf(usual.period) else None
 
     def _classify_by_growth(self, usual: SteadyMotion, start: ChainState) -> SteadyMotion | None:
-        """Tell motion far from synchrony by the growth of two perturbations; None where that leaves it open."""
+        """Decide motion far from synchrony by the growth of two perturbations; None if the growth is inconclusive."""
         if not self.growth_window or self._known_distance(usual) is None:
             return None
         window = self.growth_window * self.window
@@ -111,9 +114,9 @@ class Classifier:
         return replace(usual, kind=MotionKind.QUASIPERIODIC, period=seen.period, exponent=exponent)
 
     def _classify_by_exponents(self, usual: SteadyMotion, start: ChainState) -> SteadyMotion:
-        """Tell the motion by its exponents in the longer window, and if need be in the longest one.
+        """Decide the motion by its exponents in the longer window and, if necessary, in the longest.
 
-        The longer window shows smaller exponents, which are judged by thresholds smaller by the root of the ratio of
+        The longer window resolves smaller exponents. Their thresholds are divided by the square root of the ratio of
         the windows.
         """
         window = self.longer_window * self.window
@@ -124,9 +127,9 @@ class Classifier:
             last = longer.state()
             if longer.kind not in CHAOS and self._has_drifted(usual, longer):
                 return replace(usual, left_for=last)
-            # The returns stay those of the usual window: their number decides how attractors are told apart.
-            told = {name: getattr(longer, name) for name in ("kind", "section_period", "period", "exponent")}
-            found = replace(usual, **told)
+            # The returns remain those of the usual window, since their number affects how attractors are distinguished.
+            changed = {name: getattr(longer, name) for name in ("kind", "section_period", "period", "exponent")}
+            found = replace(usual, **changed)
             orbit = locked_orbit(self.model, longer.returns, longer.recurrence) if found.can_be_periodic else None
             if orbit is not None:
                 return self._mark_if_left(self._motion_on_orbit(found, orbit), usual, orbit.reference)
@@ -137,44 +140,44 @@ class Classifier:
         return self._classify_in_longest_window(found, last)
 
     def _classify_in_longest_window(self, found: SteadyMotion, start: ChainState) -> SteadyMotion:
-        """Return the motion with its exponents in the longest window, as chaos if the largest is beyond its error."""
+        """Return the motion with its exponents in the longest window; chaos if the largest one exceeds its error."""
         settings = self._scaled_settings
         options = replace(run_options(self.transient, self.longest_window * self.window, settings), events="none")
         trajectory = run(self.model, start, options, section_only=True)
         if trajectory.status != "completed":
             return found
         exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
-        # Errors alone decide: they hold what growth in proportion to time looks like.
+        # No threshold is needed: the errors include linear growth.
         chaotic = exponent[0] > settings.standard_errors * error[0]
         return replace(found, kind=self._chaos_kind(found) if chaotic else found.kind, exponent=exponent)
 
     def _mark_if_left(self, found: SteadyMotion, usual: SteadyMotion, last: ChainState) -> SteadyMotion:
-        """Return the motion, or where its ⟨J⟩ is another one from the last state on, as being on its way there."""
+        """Return the motion, marked as a transient if ⟨J⟩ after its last state differs."""
         if found.kind in CHAOS:
             return found
         later = self._observe(last, self.window)
         return replace(usual, left_for=last) if later is not None and self._has_other_mean(found, later) else found
 
     def _known_distance(self, usual: SteadyMotion) -> float | None:
-        """Return ⟨J⟩ where it is certain to be far from synchrony: the usual window is part of the longer one."""
+        """Return ⟨J⟩ if it is certain to exceed the threshold of synchrony in the longer window too, otherwise None."""
         far = usual.mean_distance / self.longer_window > self._scaled_settings.synchronization_threshold
         return usual.mean_distance if far else None
 
     def _has_drifted(self, usual: SteadyMotion, longer: SteadyMotion) -> bool:
-        """Tell whether the last returns of a longer window lie elsewhere than those of the usual one."""
+        """Return whether the last returns of a longer window lie elsewhere than those of the usual window."""
         if usual.block != longer.block:
             return False
         reach = max(SAME_MEAN * self.model.scale, SPACINGS * usual.spacing)
         return not is_near(longer.returns[-len(usual.returns) :], usual.returns, reach)
 
     def _has_other_mean(self, one: SteadyMotion, other: SteadyMotion) -> bool:
-        """Tell whether ⟨J⟩ of two motions differs beyond its errors."""
+        """Return whether ⟨J⟩ of two motions differs by more than its errors."""
         error = float(np.hypot(one.mean_distance_error, other.mean_distance_error))
         allowed = self._scaled_settings.standard_errors * error + SAME_MEAN * self.model.scale
         return abs(one.mean_distance - other.mean_distance) > allowed
 
     def _motion_on_orbit(self, motion: SteadyMotion, orbit: PeriodicOrbit) -> SteadyMotion:
-        """Return a motion that is locked to a closed orbit as motion on that; its multiplier gives an exponent."""
+        """Return a motion that is locked to a periodic orbit with kind, period and exponents of this orbit."""
         mean = synchronization_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
         rate = np.log(np.abs(multipliers(orbit).whole[0])) / orbit.period
         kind = periodic_orbit_kind(mean, orbit.period, self._scaled_settings)

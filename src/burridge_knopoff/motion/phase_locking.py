@@ -1,8 +1,8 @@
-"""Whether what looks like a torus is locked: the closed orbit that it drifts to, too slowly for that to be seen.
+"""Locking of motion that looks like a torus: the periodic orbit to which it drifts, too slowly for a repetition.
 
-On a locked torus a trajectory comes back to where it was far more closely after a turn of the closed orbit than after
-any shorter time: it has only drifted along a little. From there Newton's method finds the orbit, however slowly it
-attracts. That it attracts this trajectory its last turns show: each is nearer to the orbit than the one before.
+On a locked torus a trajectory returns much more closely after one period of the periodic orbit than after any shorter
+time, because it drifts only a little in one period. From such a return Newton's method finds the orbit, however weakly
+it attracts. The orbit attracts this trajectory if each of the last cycles is closer to the orbit than the one before.
 
 Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 7.3 (phase locking).
 """
@@ -19,23 +19,24 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# Turns of an orbit that have to fit into a window at least, and that have to come nearer and nearer at most.
+# Smallest number of cycles of an orbit in a window, and largest number of cycles that are tested for their approach.
 MIN_CYCLES = 2
 MAX_CYCLES = 4
 
-# A torus may be locked if its motion was nearer to its last return, by this factor, than at any later time.
+# A torus may be locked if one earlier return was closer to the last return, by this factor, than all returns in
+# between.
 NEARER = 0.1
 
-# It is locked to a stable orbit that it approaches, and lies no farther from, for v = 0.1.
+# Largest distance of the last cycle from the stable orbit to which the motion is locked, for v = 0.1.
 MAX_LOCKED_DISTANCE = 0.03
 
 
 def recurrence(times: np.ndarray, returns: np.ndarray) -> float:
-    """Return how long before its last return a motion was nearest to it; 0 if that tells nothing.
+    """Return the time from the closest earlier return to the last return, or 0 if it does not suggest locking.
 
     times, returns : of the motion, shapes (n,) and (n, 2 blocks)
 
-    It tells that the motion may be locked if it was not nearly as near at any later time.
+    The motion may be locked if no return in between was nearly as close to the last return.
     """
     away = times[-1] - times[:-1]
     apart = np.abs(returns[:-1] - returns[-1]).max(axis=1)
@@ -63,7 +64,7 @@ def locked_orbit(model: Model, returns: np.ndarray, time: float) -> PeriodicOrbi
 
 
 def _is_approaching(returns: np.ndarray, orbit: PeriodicOrbit) -> bool:
-    """Tell whether returns come nearer to a stable orbit with each turn."""
+    """Return whether returns approach a stable orbit with each cycle."""
     around = visit(orbit.model, orbit.reference, 0.0, orbit.period)
     if around is None:
         return False

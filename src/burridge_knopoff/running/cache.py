@@ -1,7 +1,7 @@
 """Cache of the results of long calls in a folder. A run that was killed or extended computes only what is missing.
 
-The key of a result is everything that decides it: the code of the function and of the modules it imports, the versions
-of NumPy and SciPy, and the values of the arguments.
+The key of a result contains everything on which it depends: the code of the function and of the modules it imports, the
+versions of NumPy and SciPy, and the values of the arguments.
 """
 
 from __future__ import annotations
@@ -46,9 +46,9 @@ def cached_call(folder: Path, function: Callable[..., Any], *items: Any) -> tupl
 
 
 def delete_unused(folder: Path, asked: Collection[Path]) -> None:
-    """Delete the cached results in the subfolders of a folder, except the files in `asked`; other files stay.
+    """Delete the cached results in the subfolders of a folder, except the files in `asked`. Other files are kept.
 
-    Neighbouring caches of other settings, whose folders are named by 16 hexadecimal digits, are deleted too.
+    Caches of other settings in neighbouring folders, which are named by 16 hexadecimal digits, are deleted as well.
     """
     result = f"*/{32 * _DIGIT}"
     for path in (*folder.glob(result), *folder.parent.glob(f"{16 * _DIGIT}/{result}")):
@@ -57,7 +57,7 @@ def delete_unused(folder: Path, asked: Collection[Path]) -> None:
 
 
 def _key_parts(value: Any) -> Iterator[bytes]:
-    """Yield bytes that are equal for equal values and only for these, however the values share objects."""
+    """Yield bytes that are equal for equal values only, even if parts of a value are the same object."""
     match value:
         case np.ndarray():
             yield f"{value.dtype}{value.shape}".encode()

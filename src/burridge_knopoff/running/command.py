@@ -1,4 +1,4 @@
-"""The `bk simulate` command of a run. It names every setting that decides the result, each once."""
+"""The `bk simulate` command of a run. It gives every setting on which the result depends, each once."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
 
-#: Options of the chain, with the field of `Chain` that each one sets.
+#: Options of the chain: each sets the field of `Chain` of the same name.
 CHAIN_OPTIONS = tuple(name for name in fields_of(Chain) if name != "blocks")
 
 
 def simulate_command(model: Model, initial: InitialState, settings: Settings) -> str:
-    """Return the command that repeats this run, quoted for a shell; settings with their default are left out."""
+    """Return the command that repeats this run, quoted for a shell. Settings with default values are omitted."""
     words = ["bk", "simulate", *_law_options(model.law), "--a", repr(model.law.a)]
     words += [*_changed_options(model.chain), *_changed_options(model), "--initial", initial.name]
     if model.chain.springs or (initial.blocks != model.blocks and not model.chain.grid):
@@ -29,7 +29,7 @@ def simulate_command(model: Model, initial: InitialState, settings: Settings) ->
 
 
 def _law_options(law: Law) -> Iterator[str]:
-    """Yield the options of a law: a built-in name or a formula, its own name, and the numbers that matter."""
+    """Yield the options of a law: a built-in name or a formula, its own name, and parameters without default value."""
     kind = next((name for name, built_in in LAWS.items() if type(law) is built_in), "")
     usual = law.defaults if kind else {}
     yield from ("--law", kind) if kind else (f"--formula={law.formula}",)
@@ -43,7 +43,7 @@ def _law_options(law: Law) -> Iterator[str]:
 def _changed_options(part: Any) -> Iterator[str]:
     for key, field in fields_of(type(part)).items():
         value = getattr(part, key)
-        # The initial state or the springs tell the number of blocks.
+        # The initial state or the springs give the number of blocks.
         if value is not None and value != field.default and key != "blocks":
             yield from (f"--{key.replace('_', '-')}", _format_value(value))
 

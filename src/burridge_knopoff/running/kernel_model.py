@@ -1,4 +1,4 @@
-"""A model as the kernel reads it."""
+"""Conversion of a model to the form that the kernel reads."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 Unlike a pickle, the file runs no code when it is read. Supported are None, booleans, numbers, texts, bytes,
 enumerations, lists, tuples, mappings, NumPy arrays and numbers, and objects by their attributes. An array or object
-that occurs in several places is a single object again after reading.
+that occurs several times is read as a single object.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def pack(value: Any) -> bytes:
 
     def pack_array(value: np.ndarray) -> Any:
         if value.dtype.hasobject:
-            raise TypeError(f"an array of objects cannot be kept: {value.dtype}")
+            raise TypeError(f"an array of objects cannot be packed: {value.dtype}")
         order: Literal["F", "C"] = "F" if value.flags.f_contiguous and not value.flags.c_contiguous else "C"
         arrays.append(value.tobytes(order))
         return ["array", value.dtype.str, list(value.shape), order]
@@ -65,9 +65,9 @@ def pack(value: Any) -> bytes:
 
 
 def unpack(content: bytes) -> Any:
-    """Return the value written by `pack`; raises ValueError, LookupError or AttributeError for other content.
+    """Return the value written by `pack`. Raises ValueError, LookupError or AttributeError for other content.
 
-    The classes of objects have to be in modules that have been imported.
+    The modules that define the classes of objects must have been imported.
     """
     line, _, data = content.partition(b"\n")
     top, packed_objects = json.loads(line)

@@ -1,4 +1,4 @@
-"""One run of a model: from an initial state to a trajectory with a readable status."""
+"""One run of a model: from an initial state to a trajectory."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ def run(
 ) -> Trajectory:
     """Run one simulation of a model and return its trajectory.
 
-    initial : initial state, or an instant of an earlier motion. From an instant the clock starts at its time, and
-        `start` is ignored
-    section_only : leave out ⟨J⟩ and the least friction and spring force (NaN), which takes an eighth of the time
-    stops_only : keep only the stops in the event window and no other events, which halves the memory
+    initial : initial state, or a state of an earlier run. In the second case the clock starts at the time of the state,
+        and `start` is ignored
+    section_only : omit ⟨J⟩ and the least friction and spring force (NaN), which take an eighth of the time
+    stops_only : store only the stops in the event window and no other events, which halves the memory
 
     Raises ValueError, one line, for anything that the model or the solver does not allow.
     """
-    made = prepare(model, initial, settings, section_only=section_only, stops_only=stops_only)
-    return made.result(made.runner.run())
+    prepared = prepare(model, initial, settings, section_only=section_only, stops_only=stops_only)
+    return prepared.result(prepared.runner.run())
 
 
 @dataclass(frozen=True, eq=False)
 class PreparedRun:
-    """A run that has not begun. runner : its solver, at the instant `begun`"""
+    """A run that has not started. runner : its solver, in the state `begun`"""
 
     model: Model
     initial: InitialState
@@ -48,7 +48,7 @@ class PreparedRun:
     begun: ChainState
 
     def result(self, status: Status) -> Trajectory:
-        """Return the trajectory, when the run has ended so."""
+        """Return the trajectory after the run has ended with a status."""
         return collect(self.model, self.initial, self.settings, self.runner, self.begun, status)
 
 
@@ -60,7 +60,7 @@ def prepare(
     section_only: bool = False,
     stops_only: bool = False,
 ) -> PreparedRun:
-    """Return a run that has not begun; parameters and errors are those of `run`."""
+    """Return a run that has not started; parameters and errors are those of `run`."""
     settings = Settings() if settings is None else settings
     settings.check_chain(model.chain)
     if isinstance(initial, ChainState):
@@ -74,7 +74,7 @@ def prepare(
 
 
 def _runner(model: Model, settings: Settings, time: float, section_only: bool, stops_only: bool) -> Runner:
-    """Return a solver for a run that starts at a time, with the observers that the settings ask for."""
+    """Return a solver for a run that starts at a given time, with an observer according to the settings."""
     duration = settings.duration
     end = time + duration
     edge = time + settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches
