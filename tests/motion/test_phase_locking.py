@@ -125,11 +125,11 @@ def test_each_turn_has_to_be_nearer(tell, v, away, expected):
     orbit = SimpleNamespace(model=replace(LOCKED, v=v), reference="reference", period=100.0)
     # The oldest turn is not whole, and is not compared.
     returns = np.concatenate([on_orbit[20:], *(on_orbit + distance for distance in away[::-1])])
-    assert locking._approaches(returns, orbit) == expected
+    assert locking._is_approaching(returns, orbit) == expected
     assert asked[0][:4] == (orbit.model, "reference", 0.0, 100.0)
 
 
 def test_what_an_orbit_that_does_not_complete_shows_is_not_approached(tell):
     tell(locking, "visit", [None])
     orbit = SimpleNamespace(model=LOCKED, reference="reference", period=100.0)
-    assert not locking._approaches(np.zeros((5, 6)), orbit)
+    assert not locking._is_approaching(np.zeros((5, 6)), orbit)
