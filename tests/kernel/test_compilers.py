@@ -94,7 +94,7 @@ def found_here(model):
         measured = "distance position velocity batch_integral crossing_time crossing highest_speed lowest_force"
         yield from (found[name] for name in measured.split())
         yield from (events[name] for name in ("time", "moment", "energy_released", "energy_damped"))
-        if runner.solver[1] == "series":
+        if runner.step_key[1] == "series":
             yield runner.exponents.results()["growth"]
 
     def new_catalogue():
