@@ -25,9 +25,7 @@ CATALOGUE_VARIABLES = {
         _EVENT,
         "f8",
         "time of the first start on the slip clock",
-        {
-            "comment": "equal to time under steady loading; under quasi-static loading the slip clock stops between events"
-        },
+        {"comment": "equal to time under steady loading; stops between events under quasi-static loading"},
     ),
     "duration": _V(_EVENT, "f8", "slip time from the first start to the last stop"),
     "epicentre": _V(_EVENT, "i4", "block that starts first"),
@@ -71,7 +69,10 @@ def catalogue_dataset(
     if len(events.slip):
         data["blocks"][2]["sample_dimension"] = "slip"
     title = f"Slip events of a Burridge-Knopoff chain of {model.blocks} blocks, {model.law.name} friction law"
-    contents = "One row for each event, a set of slips of neighbouring blocks that overlap in time. Blocks are numbered from 1."
+    contents = (
+        "One row for each event, a set of slips of neighbouring blocks that overlap in time. Blocks are numbered "
+        "from 1."
+    )
     about = {
         **model_attributes(model),
         "contact": model.contact,
