@@ -100,8 +100,8 @@ def decode_flags(flags: xarray.DataArray) -> xarray.DataArray:
     values, meanings = np.atleast_1d(flags.attrs["flag_values"]), flags.attrs["flag_meanings"].split()
     for value, meaning in zip(values, meanings, strict=True):
         words[flags.values == value] = meaning
-    told = {name: text for name, text in flags.attrs.items() if not name.startswith("flag_")}
-    return flags.copy(data=words).drop_attrs().assign_attrs(told)
+    attributes = {name: text for name, text in flags.attrs.items() if not name.startswith("flag_")}
+    return flags.copy(data=words).drop_attrs().assign_attrs(attributes)
 
 
 class Answer(IntEnum):

@@ -59,7 +59,7 @@ def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0)
     check_state(model, state)
     count = 2 * math.ceil(0.5 * duration / (SPACING * longest_spacing(model.chain)))
     if 2 * count * model.blocks > MOST_NUMBERS:
-        raise refusal("duration", duration, f"a shorter one: {model.blocks} blocks are kept at {count} instants")
+        raise refusal("duration", duration, f"a shorter one: {model.blocks} blocks are stored at {count} times")
     start = (state.position[None], state.velocity[None], state.stuck[None].astype(bool))
     velocity = new_ensemble(model).run(*start, np.linspace(0.0, duration, count + 1).tolist())["velocity"][0]
     first = np.array([leading_frequency(one, duration) for one in velocity.T])

@@ -137,7 +137,7 @@ def _cycle_distances(orbit: PeriodicOrbit, values: np.ndarray) -> tuple[float, f
     own, seen = (
         _states_at_stops(events, block) / orbit.model.state_scale for events in (around.log.events.values(), values)
     )
-    first, last = (distance(turn, own, share=1.0) for turn in (seen[: len(own)], seen[-len(own) :]))
+    first, last = (distance(cycle, own, share=1.0) for cycle in (seen[: len(own)], seen[-len(own) :]))
     return first, last
 
 

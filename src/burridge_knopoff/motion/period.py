@@ -124,9 +124,9 @@ def repetition_length(sequence: np.ndarray, tolerance: float, longest: int) -> i
 
 def _misfit(sequence: np.ndarray, period: int) -> float:
     """Return the distance between cycles in the second half of a sequence, or in its last REPETITIONS cycles."""
-    judged = max(len(sequence) - len(sequence) // 2, REPETITIONS * period) // period * period
-    turns = sequence[len(sequence) - judged :].reshape(-1, period, *sequence.shape[1:])
-    return float(np.ptp(turns, axis=0).max())
+    length = max(len(sequence) - len(sequence) // 2, REPETITIONS * period) // period * period
+    cycles = sequence[len(sequence) - length :].reshape(-1, period, *sequence.shape[1:])
+    return float(np.ptp(cycles, axis=0).max())
 
 
 def section_blocks(stops: np.ndarray) -> tuple[int, int]:

@@ -70,6 +70,6 @@ def _is_approaching(returns: np.ndarray, orbit: PeriodicOrbit) -> bool:
         return False
     count = len(around.returns)
     last = [returns[-count * (k + 1) : len(returns) - count * k] for k in range(min(len(returns) // count, MAX_CYCLES))]
-    away = [distance(turn, around.returns) for turn in last]
+    away = [distance(cycle, around.returns) for cycle in last]
     near = len(away) >= MIN_CYCLES and away[0] <= MAX_LOCKED_DISTANCE * orbit.model.scale
     return near and bool((np.diff(away) > 0.0).all())

@@ -38,16 +38,16 @@ def rotation_number(model: Model, start: ChainState, duration: float) -> tuple[f
     middle = states[:, [(model.blocks - 1) // 2, model.blocks // 2]].sum(axis=1)
     oscillations = np.stack([states[:, 0] - states[:, -1], middle])
     with np.errstate(divide="ignore", invalid="ignore"):
-        turns = np.angle(oscillations[:, 1:] / oscillations[:, :-1])
-    if not (np.abs(turns) <= MAX_PHASE_STEP).all():
+        phase_steps = np.angle(oscillations[:, 1:] / oscillations[:, :-1])
+    if not (np.abs(phase_steps) <= MAX_PHASE_STEP).all():
         return math.nan, math.nan
-    whole, first, second = (_rate_ratio(part) for part in (turns, turns[:, : count // 2], turns[:, count // 2 :]))
+    whole, first, second = (_rate_ratio(part) for part in (phase_steps, phase_steps[:, : count // 2], phase_steps[:, count // 2 :]))
     return whole, abs(first - second)
 
 
-def _rate_ratio(turns: np.ndarray) -> float:
+def _rate_ratio(phase_steps: np.ndarray) -> float:
     """Return the ratio of the mean rates of two phases from their changes in equal time steps, shape (2, n)."""
-    time = (np.arange(turns.shape[1]) + 0.5) / turns.shape[1]
+    time = (np.arange(phase_steps.shape[1]) + 0.5) / phase_steps.shape[1]
     weight = np.exp(-1.0 / (time * (1.0 - time)))
-    ends, middle = (turns * weight).sum(axis=1)
+    ends, middle = (phase_steps * weight).sum(axis=1)
     return float(ends / middle) if middle else math.nan
