@@ -68,7 +68,7 @@ def test_uniform_sliding(law, blocks, transient):
     run = simulate(law, a, state, v=v, transient=transient, window=4000.0, lyapunov_exponents=2 * blocks)
     assert run.event_count == 0
     slope = a if law == "linearized" else a / (1.0 + a * v) ** 2
-    # The modes turn: within a window of T a vector's length differs from exp(λT) by less than the ratio e² of axes.
+    # The modes rotate: after a time T a vector's length differs from exp(λT) by less than the ratio e² of axes.
     assert np.abs(run.lyapunov_exponent - slope / 2).max() < 2.0 / 4000.0
     assert run.lyapunov_exponent.sum() == pytest.approx(blocks * slope, abs=1e-9)
     assert run.lyapunov_infinite_count == 0

@@ -158,7 +158,7 @@ def solved(matrix, load):
 
 @given(st.integers(2, 4), st.integers(2, 3), strength, st.integers(0, 2**32 - 1))
 def test_a_network_slides_where_the_exact_solution_rounds_to(columns, rows, coupling, seed):
-    """Also where the driver hardly holds it, so that a double solution has few digits."""
+    """Also if the driver is weakly coupled, so that a solution in double precision has few correct digits."""
     blocks = columns * rows
     drawn = {"random": "uniform", "low": 0.5, "high": 2.0, "seed": seed}
     chain = Chain(grid=(columns, rows), coupling=coupling, pulling=[1e-6, *(blocks - 1) * [0.0]], threshold=drawn)

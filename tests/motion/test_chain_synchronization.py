@@ -78,13 +78,13 @@ def test_two_blocks_synchronize_below_the_critical_a_only():
     beyond = fate(model(2, critical + 0.005), state, watch)
     assert beyond.outcome == Outcome.NOT_SYNCHRONIZED
     assert 1e-3 < beyond.distance < 0.1
-    # So near that neither the distance nor its rate can tell within the time limit.
+    # So close that neither the distance nor its rate is conclusive within the time limit.
     assert fate(model(2, critical - 1e-4), state, watch).outcome == Outcome.UNDETERMINED
 
 
 @pytest.mark.parametrize("blocks", [4, 7, 8, 10])
 def test_transverse_exponent_against_two_trajectories(blocks, law):
-    """A second trajectory is kept 1e-7 beside the symmetric one: the rate of growth of their distance is the same.
+    """A second trajectory is kept at 1e-7 from the symmetric one: their distance grows at the same rate.
 
     Antisymmetric parts only, so that errors of second order, which are symmetric, do not count.
     """
@@ -194,7 +194,7 @@ FAR, NEAR = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
         # Still falling: the largest is below half of that of the quarter before.
         ([*FAR[:8], (0.2, 0.24), (0.2, 0.1)], None, Fate(Outcome.UNDETERMINED, distance=0.24, mean_distance=0.22)),
         ([*FAR[:6], (0.3, 0), (0.3, 0), *[(0.2, 0.2)] * 2], None, Fate(APART, distance=0.2, mean_distance=0.2)),
-        # Near symmetric motion it is undetermined but for an exponent beyond three errors.
+        # Near symmetric motion the outcome is undetermined unless the exponent exceeds three errors.
         (NEAR, (0.31, 0.1), Fate(APART, math.nan, 0.008, 0.008, 0, 0.31)),
         (NEAR, (0.29, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0, 0.29)),
         (NEAR, (math.nan, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0)),

@@ -49,13 +49,13 @@ def run_of(velocity, states, first_event=0.0, falling=False):
 
 
 def test_a_state_that_comes_back_as_its_mirror_image_has_not_come_back():
-    """W' repeats after three points, the state of all blocks after six: every other turn it is the mirror image."""
+    """W' repeats after three points, the state of all blocks after six: three points lead to the mirror image."""
     velocity = np.tile([1.0, 2.0, 3.0], 60)
     turn = np.array([[0.1, 0.0, 0.4], [0.2, 0.0, 0.5], [0.3, 0.0, 0.6]])
     states = np.tile(np.concatenate([turn, turn[:, ::-1]]), (30, 1))
     assert section_period(run_of(velocity, states), MOTION) == 6
     assert section_period(run_of(velocity, np.tile(turn, (60, 1))), MOTION) == 3
-    # Positions alone tell it, velocities alone too.
+    # Positions alone show the period, and so do velocities alone.
     run = run_of(velocity, np.tile(turn, (60, 1)))
     for name in ("event_position", "event_velocity"):
         assert section_period({**run, name: states}, MOTION) == 6
@@ -66,10 +66,10 @@ def test_a_state_that_comes_back_as_its_mirror_image_has_not_come_back():
     assert section_period(run_of(velocity, drifting), MOTION) == 0
     assert section_period(run_of(velocity, states, first_event=150.0), MOTION) == 6
     assert section_period(run_of(velocity, states, first_event=1e9), MOTION) == 3
-    # Too few states to show three turns say nothing; enough of them that do not repeat in three say that it is none.
+    # Fewer than three cycles of states are inconclusive; three cycles that do not repeat exclude the period.
     assert section_period(run_of(velocity, states, first_event=172.0), MOTION) == 3
     assert section_period(run_of(velocity, states, first_event=165.0), MOTION) == 0
-    # Nor is one that is longer than what is looked for.
+    # Nor is a period longer than the longest one searched for.
     assert section_period(run_of(velocity, states), replace(MOTION, longest_period=5)) == 0
 
 
@@ -124,7 +124,7 @@ def test_the_words_of_a_kind():
         (0.1, 0, (0.0079, -0.0009), np.nan, MotionKind.UNDETERMINED),
         (0.1, 0, (-0.0079, -0.009), np.nan, MotionKind.UNDETERMINED),
         (0.1, 3, (-0.0079, -0.009), np.nan, MotionKind.PERIODIC),
-        # Of the first two exponents, whose values decide, both errors have to be small; that of a third tells nothing.
+        # The errors of the first two exponents, whose values decide, must be small; that of a third has no effect.
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-5, 1e-2), MotionKind.QUASIPERIODIC),
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-2, 1e-5), MotionKind.UNDETERMINED),
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-2, 1e-5, 1e-5), MotionKind.UNDETERMINED),
@@ -162,7 +162,7 @@ def test_the_longest_period_decides_and_no_window(period, kind, points):
 
 
 def test_a_longer_period_is_known_from_the_stops():
-    """The motion is locked: it has not left its closed orbit, but shows no period that a run would show."""
+    """The motion is locked: it has not left its periodic orbit, but no period is observed within a run."""
     states = np.tile(np.random.default_rng(5).random((50, 3)), (12, 1))
     run = run_of(states[:, 0], states) | {"lyapunov_exponent": np.zeros(2), "lyapunov_error": np.full(2, 1e-5)}
     found = motion_of_completed_run(run, 0.1, replace(MOTION, longest_period=40.0))
@@ -247,7 +247,7 @@ def test_an_orbit_that_repels(period, exponents, error, unstable):
 @pytest.mark.parametrize(
     ("growth", "kind"),
     [
-        # Turn by turn: an orbit that repels, one that attracts, and a distance that is only rounding.
+        # Cycle by cycle: a repelling orbit, an attracting orbit, and a distance of rounding errors.
         (1.01, MotionKind.UNDETERMINED),
         (-1.01, MotionKind.UNDETERMINED),
         (0.99, MotionKind.PERIODIC),
@@ -256,7 +256,7 @@ def test_an_orbit_that_repels(period, exponents, error, unstable):
     ],
 )
 def test_what_leaves_an_orbit_is_not_periodic(growth, kind):
-    """However near it passes: of a run whose turns diverge one does not know where it goes."""
+    """However close it passes, the fate of a run whose cycles diverge is undetermined."""
     size = 1e-12 if growth == 1.001 else 1e-7
     away = size * float(growth) ** (np.arange(700.0) - (700.0 if abs(growth) > 1.0 else 0.0))
     run = run_of(0.2 + np.repeat(away, 3) + np.tile([0.0, 0.3, 0.1], 700), np.zeros((2100, 3)), first_event=np.inf)

@@ -62,7 +62,7 @@ def test_an_orbit_elsewhere_is_not_that_of_a_motion(monkeypatch):
     [(3, "nonlinear", 0.19, [0.0, -0.04, -0.9]), (2, "linearized", 0.08, [0.0, -0.5])],
 )
 def test_chaos_lies_on_none_of_the_orbits_that_it_passes_by(blocks, law, a, position, monkeypatch):
-    """Of three blocks, and a thin one of two: Newton's method finds unstable ones beside the motion."""
+    """Of three blocks, and a thin one of two blocks: Newton's method finds unstable orbits near the motion."""
     passed = []
 
     def find(*arguments):

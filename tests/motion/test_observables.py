@@ -101,7 +101,7 @@ def test_mirror_images_of_a_motion():
         (ROWS + 1.1e-3, MotionKind.PERIODIC, 0.0, 0.0, False),
         (ROWS + 0.029, MotionKind.CHAOTIC, 0.01, 0.1, True),  # three spacings of the attractor
         (ROWS + 0.031, MotionKind.CHAOTIC, 0.01, 0.1, False),
-        (ROUND, MotionKind.CHAOTIC, 0.01, 0.0, False),  # a closed orbit is no part of chaos
+        (ROUND, MotionKind.CHAOTIC, 0.01, 0.0, False),  # a periodic orbit is not part of chaos
         (ROUND, MotionKind.CHAOTIC, 1e-7, 0.0, True),  # but of chaos so thin that it looks like one
         (ROWS, MotionKind.CHAOTIC, 0.01, 0.0, True),  # chaos seen for so long that it looks like one
         (ROUND, MotionKind.QUASIPERIODIC, 0.01, 0.0, True),

@@ -110,7 +110,7 @@ def test_what_has_settled(spacing, drift, closed, settled):
         (np.tile(ROWS[:5], (8, 1)), 1e-6, True),
         (np.tile(ROWS[:5], (8, 1)), 1.1e-6, False),
         (ROWS, 1e-6, False),
-        # Bands of chaos that are visited in turn and are wider than the tolerance.
+        # Bands of chaos that are visited in order and are wider than the tolerance.
         (np.tile(ROWS[:5], (8, 1)) + 5e-6 * ROWS, 1e-6, False),
         (np.tile(ROWS[:20], (2, 1)), 1e-6, False),  # not seen twice in two thirds of the window
     ],

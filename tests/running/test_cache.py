@@ -122,7 +122,7 @@ def test_nothing_is_a_pickle(tmp_path):
     content = cached_call(tmp_path, first, MODEL)[1].read_bytes()
     with pytest.raises(pickle.UnpicklingError):
         pickle.loads(content)
-    # A class that nobody has imported is not looked for.
+    # A class whose module has not been imported is not searched for.
     with pytest.raises(LookupError):
         unpack(b'[["object",0],[["attributes","antigravity:x",{}]]]\n')
 
@@ -133,7 +133,7 @@ def told(number):
 
 @pytest.mark.parametrize("processes", [1, 2])
 def test_what_nothing_asks_for_is_deleted_at_the_end(tmp_path, processes):
-    """Also what other settings have left beside it; but nothing if a call has failed, and never anything else."""
+    """Caches of other settings in neighbouring folders too, but nothing if a call failed, and no other files."""
     before, now = tmp_path / (16 * "0"), tmp_path / (16 * "1")
     others = [tmp_path / "mine", now / "mine", now / "told" / "mine", tmp_path / "kept/told" / (32 * "a")]
     for path in others:

@@ -1,4 +1,4 @@
-"""What bounds a run while it goes on: Ctrl-C, and how much it keeps."""
+"""Limits during a run: Ctrl-C, and the amount of data that it stores."""
 
 import signal
 import subprocess

@@ -41,7 +41,8 @@ def rotation_number(model: Model, start: ChainState, duration: float) -> tuple[f
         phase_steps = np.angle(oscillations[:, 1:] / oscillations[:, :-1])
     if not (np.abs(phase_steps) <= MAX_PHASE_STEP).all():
         return math.nan, math.nan
-    whole, first, second = (_rate_ratio(part) for part in (phase_steps, phase_steps[:, : count // 2], phase_steps[:, count // 2 :]))
+    halves = phase_steps[:, : count // 2], phase_steps[:, count // 2 :]
+    whole, first, second = map(_rate_ratio, (phase_steps, *halves))
     return whole, abs(first - second)
 
 
