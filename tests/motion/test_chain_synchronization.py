@@ -180,7 +180,7 @@ class Scripted:
         return ChainState(np.array([outer, 0.0, 0.0, 0.0]), np.array([0.0, inner, 0.0, 0.0]), np.zeros(4, bool))
 
 
-FAR, NEAR = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
+FAR, NEAR_SYMMETRY = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
 
 
 @pytest.mark.parametrize(
@@ -195,9 +195,9 @@ FAR, NEAR = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
         ([*FAR[:8], (0.2, 0.24), (0.2, 0.1)], None, Fate(Outcome.UNDETERMINED, distance=0.24, mean_distance=0.22)),
         ([*FAR[:6], (0.3, 0), (0.3, 0), *[(0.2, 0.2)] * 2], None, Fate(APART, distance=0.2, mean_distance=0.2)),
         # Near symmetric motion the outcome is undetermined unless the exponent exceeds three errors.
-        (NEAR, (0.31, 0.1), Fate(APART, math.nan, 0.008, 0.008, 0, 0.31)),
-        (NEAR, (0.29, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0, 0.29)),
-        (NEAR, (math.nan, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0)),
+        (NEAR_SYMMETRY, (0.31, 0.1), Fate(APART, math.nan, 0.008, 0.008, 0, 0.31)),
+        (NEAR_SYMMETRY, (0.29, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0, 0.29)),
+        (NEAR_SYMMETRY, (math.nan, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0)),
         ([(0.0, 0.011)] * 10, None, Fate(APART, distance=0.011, mean_distance=0.011, pairs=1)),
         # Synchronized, if the exponent says so.
         ([*FAR[:2], (1e-12, 1e-13)], (-0.01, 1.0), Fate(Outcome.SYNCHRONIZED, 60.0, 1e-12, 1e-12, 2, -0.01)),

@@ -11,18 +11,18 @@ from numpy.typing import ArrayLike
 from burridge_knopoff.values import real_array, real_number, refusal
 
 #: Smallest number of events to which a slope is fitted.
-FEWEST = 10
+MIN_EVENTS = 10
 #: Number of random catalogues for p, which gives a standard error of 0.007 near p = 0.05.
-DRAWN = 999
+BOOTSTRAP_SIZE = 999
 #: Largest number of events in a random catalogue: in larger ones the distances have the same distribution except for a
 #: factor.
-MOST_DRAWN = 300
+MAX_BOOTSTRAP_EVENTS = 300
 #: Smaller values of p are not distinguished.
 SMALLEST_P = 0.005
 # If the range is wider than this many times the distance of all events from one end, the other end counts as infinite.
-FAR = 1000.0
-# Magnitudes and ends above LARGE are multiplied by SHRINKING, since their sums and differences would overflow.
-LARGE, SHRINKING = 1e300, 2.0**-64
+INFINITE_RATIO = 1000.0
+# Magnitudes and ends above SCALING_LIMIT are multiplied by SCALING, since their sums and differences would overflow.
+SCALING_LIMIT, SCALING = 1e300, 2.0**-64
 
 
 @dataclass(frozen=True)
@@ -62,8 +62,8 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
     and s² the variance of the magnitudes in the range. If the range ends on the centres, b is too high by the fraction
     bw/2 or more. p is sensitive to the rounding as well.
 
-    Raises ValueError for fewer than FEWEST events in the range, if all magnitudes are equal or too close to each other
-    for b to be finite, if a magnitude in the range is infinite or any is NaN, and if `low` is not finite.
+    Raises ValueError for fewer than MIN_EVENTS events in the range, if all magnitudes are equal or too close to each
+    other for b to be finite, if a magnitude in the range is infinite or any is NaN, and if `low` is not finite.
 
     References: K. Aki, Bull. Earthq. Res. Inst. 43 (1965) 237; for two ends, R. Page, Bull. Seismol. Soc. Am. 58 (1968)
     1131; H. W. Lilliefors, J. Am. Stat. Assoc. 62 (1967) 399 and 64 (1969) 387; for bins, T. Utsu, Geophys. Bull.
@@ -87,8 +87,8 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
     low, high = float(low), float(high)
     inside = np.sort(magnitude[(magnitude >= low) & (magnitude <= high)])
     where = f"between {low:g} and {high:g}"
-    if len(inside) < FEWEST:
-        raise ValueError(f"magnitude: got {len(inside)} events {where}, expected {FEWEST} or more")
+    if len(inside) < MIN_EVENTS:
+        raise ValueError(f"magnitude: got {len(inside)} events {where}, expected {MIN_EVENTS} or more")
     if math.isinf(inside[-1]):
         raise ValueError(f"magnitude: got {inside[-1]:g} {where}, expected finite magnitudes")
     if inside[0] == inside[-1]:
@@ -113,21 +113,21 @@ def _distances(inside: np.ndarray, low: float, high: float) -> tuple[np.ndarray,
     Returns the distances in ascending order and the width of the range, both in a unit of about the largest distance;
     the inverse of this unit, a power of 2, so that nothing is rounded; and whether the end is `high`.
     """
-    width = high / FAR - low / FAR
+    width = high / INFINITE_RATIO - low / INFINITE_RATIO
     if width > float(inside[-1]) - low:
         high = math.inf
     elif width > high - float(inside[0]):
         low = -math.inf
     factor = 1.0
-    if max(abs(value) for value in (low, high, *inside[[0, -1]].tolist()) if math.isfinite(value)) > LARGE:
-        factor = SHRINKING
+    if max(abs(value) for value in (low, high, *inside[[0, -1]].tolist()) if math.isfinite(value)) > SCALING_LIMIT:
+        factor = SCALING
         inside, low, high = factor * inside, factor * low, factor * high
     mean = float(inside.mean())
     rises = math.isinf(low) or (math.isfinite(high) and mean - low > high - mean)
     distance = (high - inside)[::-1] if rises else inside - low
     largest = float(distance[-1])
     unit = math.ldexp(1.0, math.frexp(largest)[1] - 1)
-    width = (high - low) / unit if math.isfinite(high - low) else FAR * (largest / unit)
+    width = (high - low) / unit if math.isfinite(high - low) else INFINITE_RATIO * (largest / unit)
     return distance / unit, width, factor / unit, rises
 
 
@@ -142,9 +142,9 @@ def format_p_value(p: float) -> str:
 
 def _p_value(difference: float, decay: float, count: int) -> float:
     """Return the probability of at least this Kolmogorov-Smirnov distance in catalogues of the fitted distribution."""
-    size = min(count, MOST_DRAWN)
+    size = min(count, MAX_BOOTSTRAP_EVENTS)
     # Cumulative sums of exponential numbers, divided by their total, are uniform numbers in ascending order.
-    sums = np.random.default_rng(count).standard_exponential((DRAWN, size + 1)).cumsum(axis=1)
+    sums = np.random.default_rng(count).standard_exponential((BOOTSTRAP_SIZE, size + 1)).cumsum(axis=1)
     uniform = sums[:, :-1] / sums[:, -1:]
     # A uniform distribution is the limit of a small decay.
     decay = max(decay, 1e-6)
@@ -152,7 +152,7 @@ def _p_value(difference: float, decay: float, count: int) -> float:
     drawn = _largest_difference(share, _decay(share.mean(axis=1)))
     # Dependence on the number of events: M. A. Stephens, J. Am. Stat. Assoc. 69 (1974) 730.
     difference *= (math.sqrt(count) + 0.26) / (math.sqrt(size) + 0.26)
-    return (1 + int((drawn >= difference).sum())) / (DRAWN + 1)
+    return (1 + int((drawn >= difference).sum())) / (BOOTSTRAP_SIZE + 1)
 
 
 def _largest_difference(share: np.ndarray, decay: np.ndarray) -> np.ndarray:

@@ -42,11 +42,11 @@ INTERVAL = 20.0
 
 # The distance still falls if its maximum over a quarter of the run, divided by that over the quarter before, is below
 # this.
-FALLING = 0.5
+DECREASE = 0.5
 
 # Motion closer than this to symmetric motion, for v = 0.1, is judged by the transverse exponent of the symmetric
 # motion.
-NEAR = 0.01
+NEAR_SYMMETRY = 0.01
 STANDARD_ERRORS = 3.0
 
 # Longest time after which the motion is made symmetric again and its perturbation rescaled to length 1. This time and
@@ -113,9 +113,9 @@ def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate
             return Fate(outcome, check * INTERVAL, nearest, nearest, len(distances), exponent)
     quarter = len(history) // 4
     last, before = np.array(history[-quarter:]), np.array(history[-2 * quarter : -quarter])
-    undetermined = last.max() < FALLING * before.max()
+    undetermined = last.max() < DECREASE * before.max()
     exponent = math.nan
-    if last.max() < NEAR * model.scale:
+    if last.max() < NEAR_SYMMETRY * model.scale:
         exponent, error = transverse_exponent(model, runner.state(), *_times(model, watch))
         undetermined |= not exponent > STANDARD_ERRORS * error
     return Fate(

@@ -23,7 +23,7 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.simulation import run
 
 #: Difference of ⟨J⟩ between two runs on the same attractor beyond their standard errors, for v = 0.1.
-SAME_MEAN = 1e-3
+MEAN_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
@@ -167,13 +167,13 @@ class Classifier:
         """Return whether the last returns of a longer window lie elsewhere than those of the usual window."""
         if usual.block != longer.block:
             return False
-        reach = max(SAME_MEAN * self.model.scale, SPACINGS * usual.spacing)
+        reach = max(MEAN_TOLERANCE * self.model.scale, SPACINGS * usual.spacing)
         return not is_near(longer.returns[-len(usual.returns) :], usual.returns, reach)
 
     def _has_other_mean(self, one: SteadyMotion, other: SteadyMotion) -> bool:
         """Return whether ⟨J⟩ of two motions differs by more than its errors."""
         error = float(np.hypot(one.mean_distance_error, other.mean_distance_error))
-        allowed = self._scaled_settings.standard_errors * error + SAME_MEAN * self.model.scale
+        allowed = self._scaled_settings.standard_errors * error + MEAN_TOLERANCE * self.model.scale
         return abs(one.mean_distance - other.mean_distance) > allowed
 
     def _motion_on_orbit(self, motion: SteadyMotion, orbit: PeriodicOrbit) -> SteadyMotion:

@@ -11,13 +11,13 @@ from burridge_knopoff.motion.settings import MotionSettings
 
 # A pair of mirror blocks stops rarely if its number of stops, divided by that of the pair with the most stops, is less
 # than this: such stops do not occur in every window.
-SELDOM = 0.1
+RARE_STOPS = 0.1
 
 # A period must be observed at least this many times.
 REPETITIONS = 3
 
 # The distance between cycles of a period must be less than that of any shorter period by this factor.
-BETTER = 0.1
+IMPROVEMENT = 0.1
 
 # Cycles diverge if their distance in the last of PARTS parts of a run exceeds that in another part by the factor
 # DIVERGENCE, and exceeds ROUNDING times the tolerance.
@@ -116,7 +116,7 @@ def repetition_length(sequence: np.ndarray, tolerance: float, longest: int) -> i
     least = np.inf
     for period in range(1, min(longest, len(sequence) // REPETITIONS) + 1):
         misfit = _misfit(sequence, period)
-        if misfit <= min(tolerance, BETTER * least):
+        if misfit <= min(tolerance, IMPROVEMENT * least):
             return period
         least = min(misfit, least)
     return 0
@@ -138,10 +138,10 @@ def section_blocks(stops: np.ndarray) -> tuple[int, int]:
     only one does. Only ratios of the numbers matter, so that the choice does not depend on the length of the run.
     """
     pairs = stops + stops[::-1]
-    outer = int(np.argmax(pairs >= SELDOM * pairs.max()))
+    outer = int(np.argmax(pairs >= RARE_STOPS * pairs.max()))
     inner = len(stops) - 1 - outer
     fewer, more = sorted((outer, inner), key=lambda one: (stops[one], -one))
-    if stops[fewer] >= SELDOM * stops[more]:
+    if stops[fewer] >= RARE_STOPS * stops[more]:
         return outer + 1, outer + 1
     return more + 1, fewer + 1
 

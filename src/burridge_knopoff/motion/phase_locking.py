@@ -25,7 +25,7 @@ MAX_CYCLES = 4
 
 # A torus may be locked if one earlier return was closer to the last return, by this factor, than all returns in
 # between.
-NEARER = 0.1
+RECURRENCE_RATIO = 0.1
 
 # Largest distance of the last cycle from the stable orbit to which the motion is locked, for v = 0.1.
 MAX_LOCKED_DISTANCE = 0.03
@@ -46,7 +46,7 @@ def recurrence(times: np.ndarray, returns: np.ndarray) -> float:
         return 0.0
     nearest = int(apart.argmin())
     shorter = apart[away < away[nearest]].min(initial=np.inf)
-    return float(away[nearest]) if apart[nearest] <= NEARER * shorter else 0.0
+    return float(away[nearest]) if apart[nearest] <= RECURRENCE_RATIO * shorter else 0.0
 
 
 def locked_orbit(model: Model, returns: np.ndarray, time: float) -> PeriodicOrbit | None:

@@ -32,7 +32,7 @@ DIGITS = 12
 _POINT = ("law", "initial", "a")
 _PAIR = ("other_law", "initial", "a")
 # ⟨J⟩ of a run and of its attractor may differ by this share beyond their errors.
-SAME_MEAN = 0.01
+MEAN_TOLERANCE = 0.01
 KIND_COMMENT = (
     "that of the attractor that the run has come to, which was seen for longer; a run on its way to synchrony counts "
     "as synchronized; where no attractor is known, or the run is on none, as far as the run alone shows it"
@@ -135,7 +135,7 @@ def _fill_settled(
         _, error = reached(own, *names, "mean_distance_error")
         mine, my_error = (values[name][law, initial] for name in ("mean_distance", "mean_distance_error"))
         allowed = np.maximum(
-            standard_errors * np.hypot(error, my_error), np.maximum(SAME_MEAN * np.maximum(mean, mine), threshold)
+            standard_errors * np.hypot(error, my_error), np.maximum(MEAN_TOLERANCE * np.maximum(mean, mine), threshold)
         )
         there = known & (np.abs(mean - mine) <= allowed)
         kind, (_, finer), (_, period) = (
