@@ -78,7 +78,7 @@ def measured() -> dict[str, float]:
         )
     for name, kind in BUILT_IN.items():
         law = kind(0.08)
-        for chosen, label in ((law, "built in"), (FormulaLaw(0.08, law.formula, **law.numbers), "by formula")):
+        for chosen, label in ((law, "built in"), (FormulaLaw(0.08, law.formula, **law.parameters), "by formula")):
             found[f"{name} {label}"] = bare(Model(Chain(3), chosen), "plus")
     unequal = Chain(3, coupling=[1.0, 1.1], threshold=[1.0, 1.05, 1.0])
     found["nonlinear, unequal springs and thresholds"] = bare(Model(unequal, law_of("nonlinear", 0.08)), "plus")

@@ -111,7 +111,7 @@ def settled(model: Model) -> ChainState:
     generator = np.random.default_rng(1)
     position = -0.9 + 0.0005 * generator.uniform(-1.0, 1.0, model.blocks) - model.sliding_offset
     rest = ChainState(position, np.zeros(model.blocks), np.ones(model.blocks, dtype=bool))
-    after = Runner(model).after(rest, 0.5 / model.v)
+    after = Runner(model).state_after(rest, 0.5 / model.v)
     if after is None:
         raise RuntimeError(f"{model.blocks} blocks, v = {model.v}: the run from rest did not complete")
     return after

@@ -61,7 +61,7 @@ def local_exponents(results: Path, study: Study, attractors: xarray.Dataset, a: 
     """Return the slope of log f against log ε over a factor of 27 about each of SMALLER, linearized law."""
     known = known_of(results, attractors, study.model("linearized", a))
     plane = BasinSettings(initial=study.state(study.config["basins"]["initial"]))
-    position, velocity = plane.initial.numbers(known.model.blocks)
+    position, velocity = plane.initial.coordinates(known.model.blocks)
 
     def label(points: np.ndarray) -> np.ndarray:
         where = states(position, *points.T, velocity)

@@ -17,7 +17,7 @@ from burridge_knopoff import Chain, ChainState, Model, law_of
 from burridge_knopoff.kernel._core import Catalogue, Clouds, Exponents
 from burridge_knopoff.model.model import CONTACTS
 from burridge_knopoff.running.ensemble import new_ensemble
-from burridge_knopoff.running.runner import STEPPING, Runner, new_observer, run_together
+from burridge_knopoff.running.runner import FIXED_STEP_SOLVERS, Runner, new_observer, run_together
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.values import MOST_NUMBERS
 
@@ -49,14 +49,14 @@ def random_state(model: Model, random: np.random.Generator) -> ChainState:
 
 def go_on(model: Model, state: ChainState, random: np.random.Generator, loading: str) -> tuple[str, ChainState]:
     """Run from a state in a random way; return the way and the state at the end, or the same one if the run failed."""
-    solver = str(random.choice(["series", "series", "series", "map", *STEPPING]))
+    solver = str(random.choice(["series", "series", "series", "map", *FIXED_STEP_SOLVERS]))
     blocks, begin = model.blocks, state.time
     end = begin + random.choice([0.0, 0.7, 5.0, 25.0])
     edges = np.linspace(begin + (end - begin) * random.choice([0.0, 0.3]), end, 4)
     times = np.sort(random.uniform(begin, end, 7))
     section = Section("block", int(random.integers(1, blocks + 1))) if random.random() < 0.5 else SUM
     vectors = int(random.choice([0, 0, 1, 2 * blocks]))
-    is_observed = solver in STEPPING or (loading == "steady" and random.random() < 0.5)
+    is_observed = solver in FIXED_STEP_SOLVERS or (loading == "steady" and random.random() < 0.5)
     runner = Runner(
         model,
         solver,
@@ -71,7 +71,7 @@ def go_on(model: Model, state: ChainState, random: np.random.Generator, loading:
         loading=loading,
     )
     runner.begin(state)
-    status = runner.run() if solver in STEPPING else runner.run(end, int(random.integers(-1, blocks)))
+    status = runner.run() if solver in FIXED_STEP_SOLVERS else runner.run(end, int(random.integers(-1, blocks)))
     runner.log.events.values()
     runner.observer.results()
     runner.exponents.results()
@@ -111,7 +111,7 @@ def move_together(model: Model, random: np.random.Generator) -> str:
         runner.begin(random_state(model, random))
         runners.append(runner)
     for runner, end in zip(runners, run_together(runners), strict=True):
-        runner.ended(end)
+        runner.status_of(end)
         runner.observer.results()
         runner.exponents.results()
     return "in lockstep"

@@ -136,8 +136,8 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     ),
     "formula_call": (f"{GOOD}laws: {{m: {{formula: open(u)}}}}\n", ["laws.m: got 'open(u)'", "expected"]),
     "formula_lines": (f'{GOOD}laws: {{m: {{formula: "1 - a*(u\\n)"}}}}\n', ["laws.m: ", "not a formula"]),
-    "formula_start": (f"{GOOD}laws: {{m: {{formula: 1.1 - a*u}}}}\n", ["laws.m: ", "at u = 0 it is 1.1"]),
-    "formula_none": (f"{GOOD}laws: {{m: {{formula: a*u}}}}\n", ["laws.m: ", "at u = 0 it is 0"]),
+    "formula_start": (f"{GOOD}laws: {{m: {{formula: 1.1 - a*u}}}}\n", ["laws.m: ", "its value at u = 0 is 1.1"]),
+    "formula_none": (f"{GOOD}laws: {{m: {{formula: a*u}}}}\n", ["laws.m: ", "its value at u = 0 is 0"]),
     "formula_pole_for_two_blocks": (
         f"{GOOD}laws: {{m: {{formula: 1/(1 - 0.3*a*u)}}}}\n",
         ["chains.two_blocks.a: got 0.34, at which ", "laws.m: ", "at a = 0.34", "not analytic"],
@@ -149,7 +149,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     ),
     "law_speed": (
         f"{GOOD}laws: {{m: {{formula: log(3 - a*u)/log(3)}}}}\nv: 40\n",
-        ["v: got 40.0, expected one up to ten times which the law m is analytic"],
+        ["v: got 40.0, expected a velocity up to ten times which the law m is analytic"],
     ),
     "springs": (f"{GOOD}chain: {{coupling: [1, 2, 3]}}\n", ["chain.coupling: got 3 numbers, expected 1, or 2"]),
     "ring_springs": (

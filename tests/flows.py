@@ -50,7 +50,7 @@ def carry(model, start, end, perturbations=None, solver="series"):
 
 def later(model, start, end):
     """Return the instant that a state reaches at time `end`."""
-    reached = Runner(model).after(start, end)
+    reached = Runner(model).state_after(start, end)
     assert reached is not None
     return reached
 

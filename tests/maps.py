@@ -8,9 +8,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from burridge_knopoff import ChainState
-from burridge_knopoff.motion.kind import motion_with
+from burridge_knopoff.motion.kind import motion_from_period
 from burridge_knopoff.motion.observables import SteadyMotion
-from burridge_knopoff.motion.period import repetition
+from burridge_knopoff.motion.period import repetition_length
 from burridge_knopoff.motion.section_returns import returns_of
 
 BATCHES = 6
@@ -37,7 +37,7 @@ class MapModel:
     def begin(self, state, start="moving"):
         return ChainState(np.array(state.position), np.full(1, 0.1), np.zeros(1, dtype=bool))
 
-    def starts_stuck(self, position, velocity, start):
+    def stuck_blocks(self, position, velocity, start):
         return np.zeros(position.shape, dtype=bool)
 
     def orbit(self, x, steps):
@@ -67,8 +67,8 @@ def observe(model, start, transient, window, settings, mean_distance=None, expon
     exponent = np.sort([0.0, growth.mean()])[::-1]
     error = np.where(exponent == 0.0, 0.0, np.std(batches) / np.sqrt(BATCHES))
     found = returns_of(model, window, np.ones(len(x)), rows_of(x).__getitem__)
-    points = repetition(x, settings.period_tolerance, int(min(settings.longest_period, len(x) // 3)))
-    told = motion_with(points, float(points) if points else np.nan, np.inf, exponent, error, settings)
+    points = repetition_length(x, settings.period_tolerance, int(min(settings.longest_period, len(x) // 3)))
+    told = motion_from_period(points, float(points) if points else np.nan, np.inf, exponent, error, settings)
     return SteadyMotion(
         found.returns,
         found.mirror_returns,

@@ -152,9 +152,9 @@ def test_a_crashed_job_says_why_its_point_is_missing(results):
 @pytest.mark.parametrize("law", PAPER_LAWS)
 def test_other_sources_make_points_stale(results, monkeypatch, law):
     path = point(results, law)
-    about = points.point_about
+    about = points.point_identity
     monkeypatch.setattr(
-        points, "point_about", lambda command: about(command) | ({"sources": "0"} if law in command else {})
+        points, "point_identity", lambda command: about(command) | ({"sources": "0"} if law in command else {})
     )
     stale = {finding.path: finding.reason for finding in check_study(results).findings if finding.kind == "stale"}
     assert "was made by other sources" in stale[path]

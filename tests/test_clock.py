@@ -60,7 +60,7 @@ def events_later(state):
     return found.time - state.time, found.moment, found.interval
 
 
-def exponents_of(state, loading="quasistatic"):
+def exponent_count(state, loading="quasistatic"):
     found = event_exponents(ROUGH, state, state.time + 64.0, count=3, loading=loading)
     return found.status.name, found.events, found.exponent[:2], found.error[:2]
 
@@ -82,8 +82,8 @@ CALLS = {
     "record_events, quasi-static": (at_rest, lambda state: events_of(state, loading="quasistatic")),
     "record_events by rk4": (at_rest, lambda state: events_of(state, solver="rk4", step=2.0**-6)),
     "record_events, some": (at_rest, events_later),
-    "event_exponents": (at_rest, exponents_of),
-    "event_exponents, steady": (at_rest, lambda state: exponents_of(state, "steady")),
+    "event_exponents": (at_rest, exponent_count),
+    "event_exponents, steady": (at_rest, lambda state: exponent_count(state, "steady")),
     "event_multipliers": (at_rest, lambda state: np.abs(event_multipliers(ROUGH, state, state.time + 0.25))),
     "limit_cycle": (settled, lambda state: orbit_of(limit_cycle(PAPER, state, window=1000.0))),
     "find_periodic_orbit": (

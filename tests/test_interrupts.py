@@ -42,8 +42,8 @@ def function(name, call, module=""):
 
 
 SWEEP = function("sweep", "sweep('linearized', [0.1, 0.16, 0.2], window=1e7, cores=2)")
-RUNS = "with shared_out(2) as each: each('runs', slow, [0.1, 0.16, 0.2])"
-PROCESSES = function("shared_out", RUNS, ".running.processes")
+RUNS = "with parallel_map(2) as each: each('runs', slow, [0.1, 0.16, 0.2])"
+PROCESSES = function("parallel_map", RUNS, ".running.processes")
 # Each goes on for minutes.
 PROGRAMS = {
     "run": function("simulate", "slow(0.16)"),

@@ -6,8 +6,8 @@ Model: `Model` is a `Chain` under a friction `Law`. `law_of` returns the built-i
 by a formula. A run begins at an `InitialState`; a `ChainState` is the state at a later time.
 
 Runs: `simulate` returns a `Run`, whose `Trajectory` is computed with `Settings` and seen on a `Section`. `sweep`
-computes many runs over any parameters. `open_study` opens the results of a study, and `in_words` translates the values
-of a flag.
+computes many runs over any parameters. `open_study` opens the results of a study, and `decode_flags` translates the
+values of a flag.
 
 Slip events: `record_events` and `Run.catalogue` return a `Catalogue` with the `SlipEvents` of a run. `fit_slope` fits
 the `Slope` of their magnitudes. `event_multipliers` and `event_exponents` return the multipliers and the

@@ -18,7 +18,7 @@ from burridge_knopoff.motion.settings import MOTION
 from tests.motion.stand_in import stand_in
 from tests.motion.test_chain_synchronization import two_block_exponent
 
-STATES = Sample(samples=8, symmetric_samples=0).initial(2)
+STATES = Sample(samples=8, symmetric_samples=0).initial_states(2)
 APART = InitialState("apart", (-0.9, -0.85), (0.1, 0.1))
 
 
@@ -158,7 +158,7 @@ def test_mirror_images_have_the_same_numbers(monkeypatch):
 @pytest.mark.parametrize("start", ["moving", "tested"])
 def test_states_that_are_followed_further_begin_as_the_start_says(monkeypatch, tell, start):
     """With a tested start blocks stick if their spring force −(K U) is at most the threshold."""
-    initial = Sample(samples=12).initial(2)
+    initial = Sample(samples=12).initial_states(2)
     position = np.array([state.position for state in initial])
     stuck = position @ np.array([[-2.0, 1.0], [1.0, -2.0]]) <= 1.0
     assert 0.2 < stuck.mean() < 0.9

@@ -13,10 +13,10 @@ from burridge_knopoff.attractors.lifetime import lifetimes
 from burridge_knopoff.attractors.search import Search, find_attractors
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.sampling import fraction_interval, sample_states, sampled_states
+from burridge_knopoff.model.sampling import fraction_interval, sample_initial_states, sample_states
 from burridge_knopoff.motion.classification import Classifier
 from burridge_knopoff.motion.kind import MotionKind
-from burridge_knopoff.motion.observables import lies_on
+from burridge_knopoff.motion.observables import is_on_attractor
 from burridge_knopoff.motion.section_returns import visit
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 
@@ -29,7 +29,7 @@ def model(law="linearized", a=0.08):
 
 
 def states(count, seed=5):
-    return sampled_states(3, count, (-1.5, 1.5), (0.0, 0.2), seed)
+    return sample_initial_states(3, count, (-1.5, 1.5), (0.0, 0.2), seed)
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +73,7 @@ def test_an_unstable_motion_is_no_attractor():
     unstable, stable = (Search(model(a=a), SETTINGS) for a in (0.1, 0.08))
     symmetric = unstable.model.begin(InitialState("symmetric", (-0.9, -0.95, -0.9), (0.1, 0.1, 0.1)))
     assert Classifier(unstable.model, 2000.0, 1000.0, MOTION).measure(symmetric).mean_distance == 0.0
-    assert visit(unstable.model, symmetric, 2000.0, 1000.0).settled(1e-6, 1e-3)
+    assert visit(unstable.model, symmetric, 2000.0, 1000.0).is_settled(1e-6, 1e-3)
     index = unstable.reach(symmetric)
     found = unstable.attractors[index]
     assert found.symmetry == ASYMMETRIC
@@ -102,9 +102,9 @@ def test_a_motion_lies_on_its_own_attractor_only(search):
     for index, attractor in enumerate(search.attractors):
         again = visit(search.model, attractor.motion.state(), 500.0, 1000.0)
         others = [other.motion for k, other in enumerate(search.attractors) if k not in (index, attractor.partner)]
-        assert lies_on(again, attractor.motion, 1e-3, 1e-6)
+        assert is_on_attractor(again, attractor.motion, 1e-3, 1e-6)
         assert search.reach(again.state()) in (index, attractor.partner)
-        assert not any(lies_on(again, other, 1e-3, 1e-6) for other in others)
+        assert not any(is_on_attractor(again, other, 1e-3, 1e-6) for other in others)
 
 
 def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
@@ -209,9 +209,9 @@ def test_orbits_that_pushes_soon_fall_back_to_are_no_slow_set():
     assert not any(item.slow for item in found)
     for item in pairs:
         later = visit(chosen, item.motion.state(), 50_000.0, 3000.0)
-        assert later.closed(1e-9)
-        assert lies_on(later, item.motion, 1e-9, 1e-9)
-        assert not any(lies_on(later, other.motion, 1e-5, 1e-5) for other in pairs if other is not item)
+        assert later.has_periodic_spacing(1e-9)
+        assert is_on_attractor(later, item.motion, 1e-9, 1e-9)
+        assert not any(is_on_attractor(later, other.motion, 1e-5, 1e-5) for other in pairs if other is not item)
 
 
 @pytest.mark.parametrize(
@@ -234,7 +234,7 @@ def test_runs_of_any_model_end_on_its_attractors(found_model):
     if not found_model.chain.is_mirror_symmetric:
         assert {(item.symmetry, item.partner) for item in reached} == {(ASYMMETRIC, k) for k in range(len(reached))}
     options = Settings(transient=8000.0, window=3000.0, batches=6, events="none", lyapunov_exponents=0)
-    drawn = sampled_states(found_model.blocks, 12, settings.position, settings.velocity, settings.seed)
+    drawn = sample_initial_states(found_model.blocks, 12, settings.position, settings.velocity, settings.seed)
     for state, index in list(zip(drawn, labels, strict=False))[:5]:
         if index >= 0:
             run = simulate(found_model, initial=state, settings=options)

@@ -6,7 +6,7 @@ import pytest
 from burridge_knopoff import Chain, Model, MotionSettings, SearchSettings, label_states, law_of
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.kernel._core import Clouds
-from burridge_knopoff.model.sampling import sample_states, sampled_states
+from burridge_knopoff.model.sampling import sample_initial_states, sample_states
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
@@ -44,7 +44,7 @@ def test_labels_are_those_of_one_by_one(law, blocks, a, share, first, last):
     search = Search(model, SETTINGS, MotionSettings())
     box = (-1.5, 1.5), (0.0, 0.2)
     position, velocity = sample_states(blocks, 100 if blocks > 3 else 200, *box, 5)
-    starts = [model.begin(state) for state in sampled_states(blocks, len(position), *box, 5)]
+    starts = [model.begin(state) for state in sample_initial_states(blocks, len(position), *box, 5)]
     for start in starts[:12]:
         search.reach(start)
     assert search.attractors

@@ -11,7 +11,7 @@ from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.basins import fractions
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.sampling import sample_states
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.running.runner import Runner
 from tests.motion.stand_in import stand_in
 
@@ -53,7 +53,7 @@ def test_patience_is_reduced_if_a_sample_arrives_early(tell, came, expected):
     asked = tell(fractions, "label_arrays", [(labels, times, None), (np.zeros(50, dtype=int), None, None)])
     known = [chaos, stand_in(partner=1, ahead=0.0)]
     search = Search(MODEL, SearchSettings(samples=20, fraction_width=0.134), attractors=known)
-    with shared_out(1) as each:
+    with parallel_map(1) as each:
         (search,), _ = fractions.fraction_labels([search], "moving", each)
     assert [item.patience for item in search.attractors] == [expected, 0.0]
     assert [(len(position), limit) for _, _, position, _, _, limit in asked] == [(20, 20_000.0), (50, 200_000.0)]
@@ -69,7 +69,7 @@ def test_states_of_the_basin_fractions_begin_as_the_start_says(tell):
     asked = tell(fractions, "label_arrays", [(np.zeros(50, dtype=int), None, None)] * 3)
     settings = SearchSettings(samples=0, fraction_width=0.134)
     for a, start in ((0.08, "tested"), (0.08, "moving"), (0.09, "tested")):
-        with shared_out(1) as each:
+        with parallel_map(1) as each:
             fractions.fraction_labels([Search(MODEL.at(a), settings, attractors=[stand_in()])], start, each)
     positions, velocities, sticks = zip(*(arguments[2:5] for arguments in asked), strict=True)
     expected = sticking(positions[0] + MODEL.sliding_offset)

@@ -4,15 +4,15 @@ import numpy as np
 import pytest
 
 from burridge_knopoff.basins.fractions import STEP, required_states
-from burridge_knopoff.model.sampling import fraction_interval, half_width, most_states
+from burridge_knopoff.model.sampling import fraction_interval, half_width, required_samples
 
 
 @pytest.mark.parametrize("width", [0.3, 0.1, 0.02, 0.005])
 def test_a_fraction_of_one_half_needs_the_most_states(width):
-    most = most_states(width)
+    most = required_samples(width)
     assert max(half_width(hits, most) for hits in range(0, most + 1, max(1, most // 50))) <= width
     assert half_width(int(0.48 * most), int(0.97 * most)) > width or most < 50
-    assert most_states(0.5) == 0
+    assert required_samples(0.5) == 0
 
 
 @pytest.mark.parametrize("share", [0.0, 0.03, 0.2, 0.5])

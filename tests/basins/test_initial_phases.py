@@ -131,7 +131,7 @@ def test_opposite_phases_are_a_normal_mode():
     frequency = np.sqrt(2.0 - a**2 / 4.0)
     x, speed = start.position[0], start.velocity[0] - MODEL.v
     for time in (0.5, 3.0, 20.0):
-        end = Runner(MODEL).after(start, time)
+        end = Runner(MODEL).state_after(start, time)
         sine, cosine = np.sin(frequency * time), np.cos(frequency * time)
         expected = np.exp(0.5 * a * time) * (x * cosine + (speed - 0.5 * a * x) / frequency * sine)
         assert end.position == pytest.approx([expected, 0.0, -expected], abs=1e-12)

@@ -33,7 +33,7 @@ def test_runs_that_continue_one_another_have_the_catalogue_of_the_whole(blocks):
     model = Model(Chain(blocks, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
     whole = record_events(model, at_rest(model), 300.0)
     parts, at = [], at_rest(model)
-    # The end of the first run is in the midst of an event.
+    # The first run ends within an event.
     for end in (float(whole.time[10] + 0.3 * whole.duration[10]), 177.7, 300.0):
         parts.append(record_events(model, at, end))
         at = parts[-1].final

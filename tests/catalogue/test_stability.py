@@ -113,7 +113,7 @@ def test_exponents_per_event_depend_on_no_unit(blocks, loading):
 
 
 def test_a_chain_that_slips_at_the_start_or_never_rests_has_exponents():
-    """The times of rest are looked for from the start of the run; there may be none."""
+    """The times of rest are searched for from the start of the run; there may be none."""
     model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.02)
     slipping = ChainState(rough(model).position, np.array([3.0, 0.0, 0.0]), np.array([False, True, True]))
     runner = Runner(model, keep_events=True)
@@ -136,7 +136,7 @@ def test_a_chain_that_slips_at_the_start_or_never_rests_has_exponents():
 def test_multipliers_begin_at_rest(loading, share):
     """Once they were wrong from a block beyond its backward threshold, which starts before any loading."""
     model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.02, "symmetric")
-    # Spring forces, as shares of the thresholds, below the threshold but for the first block.
+    # Spring forces, as fractions of the thresholds, below the threshold except at the first block.
     position = np.linalg.solve(model.chain.stiffness, -np.array([share, 0.3, -0.2]))
     start = ChainState(position - model.sliding_offset, np.zeros(3), np.ones(3, dtype=bool))
     # Some events later, between two of them.

@@ -12,7 +12,7 @@ from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.cli import main
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.motion.kind import motion_of_run, words_of
+from burridge_knopoff.motion.kind import format_motion, motion_of_run
 from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.show.attractors import attractor_table
@@ -104,7 +104,7 @@ def test_exponents(capsys, tmp_path):
     trajectory = run(MODEL, PAPER_STATES["minus"], settings)
     for number, value in enumerate(trajectory.lyapunov_exponent, 1):
         assert f"\n{number}  {value + 0.0:.6f}" in printed
-    assert f"motion: {words_of(motion_of_run(vars(trajectory), True, MOTION), MOTION)}\n" in printed
+    assert f"motion: {format_motion(motion_of_run(vars(trajectory), True, MOTION), MOTION)}\n" in printed
     value, error = map(float, printed.split("symmetric motion: ")[1].splitlines()[0].split(" +- "))
     orbit = synchronized_orbit(MODEL)
     assert value == pytest.approx(np.log(multipliers(orbit).transverse.real) / orbit.period, abs=4.0 * error)

@@ -117,6 +117,6 @@ def test_results_do_not_depend_on_processes_or_the_cache(tmp_path, monkeypatch, 
         for item in fields(one):
             same(getattr(one, item.name), getattr(two, item.name))
     told = [line for line in caplog.messages if line.startswith("searched from initial states")]
-    assert [line.partition("; ")[2] for line in told] == ["", "", *(f"{n} kept from a run before" for n in (2, 3))]
+    assert [line.partition("; ")[2] for line in told] == ["", "", *(f"{n} from the cache" for n in (2, 3))]
     # The cache has one file for each gap of the grid.
     assert len(list((tmp_path / "neighbours compared").iterdir())) == 2

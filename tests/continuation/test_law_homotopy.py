@@ -7,7 +7,7 @@ from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_
 from burridge_knopoff.continuation import law_homotopy
 from burridge_knopoff.continuation.law_homotopy import STEPS, follow_law, match_branches
 from burridge_knopoff.continuation.matching import SAME_SET
-from burridge_knopoff.motion.set_distance import least_distance
+from burridge_knopoff.motion.set_distance import minimum_distance
 from tests.motion.stand_in import shown
 
 SETTINGS = SearchSettings(samples=40, transient=1500.0, window=1500.0, perturbations=4)
@@ -34,7 +34,7 @@ def test_an_attractor_is_followed_to_the_one_of_the_other_law(models, found):
     for one, other in zip(*found, strict=True):
         end = follow_law(*models, one.motion.state(), SETTINGS)
         assert end is not None
-        assert least_distance(end.returns, other.motion.returns) < 1e-3
+        assert minimum_distance(end.returns, other.motion.returns) < 1e-3
 
 
 def test_branches_are_joined_whatever_their_numbers(models, found):

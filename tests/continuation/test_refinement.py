@@ -7,7 +7,7 @@ from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher
 from burridge_knopoff.continuation.refinement import refine_searches
 from burridge_knopoff.continuation.settings import RefinementSettings
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 from tests.motion.stand_in import ASYMMETRIC, at
 
 STILL, OTHER = 0.0, 5.0
@@ -27,7 +27,7 @@ def values():
                 self.attractors = attractors(self.model.a)
 
         ends = [Scripted(Model(Chain(3), law_of("linearized", a)), attractors=attractors(a)) for a in (low, high)]
-        with shared_out(1) as each:
+        with parallel_map(1) as each:
             (inner,) = refine_searches(ends, RefinementSettings(resolution), Matcher(1.0), each)
         return [search.model.a for search in inner], asked
 

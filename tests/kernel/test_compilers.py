@@ -59,7 +59,7 @@ def starts(model):
     return stuck, *((generator.uniform(-0.9, 0.3, shape), generator.uniform(0.0, 0.2, shape)) for shape in shapes)
 
 
-def exponents_of(model):
+def exponent_count(model):
     """Return two exponents, or none of a long chain, which then moves in groups."""
     return Exponents(model.blocks, 2 if model.blocks < 20 else 0, 0.0, EDGES)
 
@@ -70,7 +70,7 @@ def case(model, monkeypatch):
     *arrays, value, slope, linear, rate, steepest, v, symmetric = kernel_model(model).values()
     monkeypatch.undo()
     stuck, one, many = starts(model)
-    settings = [exponents_of(model).matrix().shape[1], COUNT, STEP]
+    settings = [exponent_count(model).matrix().shape[1], COUNT, STEP]
     numbers = [value, slope, linear, rate, steepest, v, symmetric]
     return settings, *arrays, numbers, EDGES, TIMES, *one, stuck, *many
 
@@ -81,7 +81,7 @@ def found_here(model):
     start = ChainState(position, np.where(stuck, 0.0, velocity), stuck)
 
     def runner_of(solver, catalogue):
-        made = {"observer": new_observer(model, EDGES, TIMES, TIMES), "exponents": exponents_of(model)}
+        made = {"observer": new_observer(model, EDGES, TIMES, TIMES), "exponents": exponent_count(model)}
         runner = Runner(model, solver, step=STEP, keep_events=True, catalogue=catalogue, **made)
         runner.begin(start)
         return runner
@@ -94,7 +94,7 @@ def found_here(model):
         measured = "distance position velocity batch_integral crossing_time crossing highest_speed lowest_force"
         yield from (found[name] for name in measured.split())
         yield from (events[name] for name in ("time", "moment", "energy_released", "energy_damped"))
-        if runner.solver[1] == "series":
+        if runner.step_key[1] == "series":
             yield runner.exponents.results()["growth"]
 
     def new_catalogue():

@@ -1,4 +1,4 @@
-"""The stub beside the kernel's sources is that of its compiled module."""
+"""The stub next to the kernel's sources matches the compiled module."""
 
 from tests.kernel.core_stub import STUB, core_stub
 

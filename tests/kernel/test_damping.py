@@ -201,7 +201,7 @@ def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
 
 @pytest.mark.parametrize("groups", [False, True])
 def test_an_overdamped_slip_ends_where_friction_balances_the_springs(groups):
-    """It only decays behind a driver that stands, and comes to rest but for rounding: the force falls to θ Φ(0)."""
+    """Behind a stationary driver the slip decays and comes to rest within rounding: the force falls to θ Φ(0)."""
     one = Model(Chain(1, pulling=2.0, threshold=3.0, pulling_damping=10.0), law_of("carlson_langer", 1.0), 0.01)
     table, _, _ = recorded(one, at_rest(one), 90.0, groups, loading="quasistatic")
     assert len(table["time"]) > 10

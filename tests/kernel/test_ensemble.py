@@ -1,4 +1,4 @@
-"""Trajectories in lanes: those of single runs to the bit, whatever goes on in other lanes."""
+"""Trajectories in lanes equal single runs to the bit, independent of other lanes."""
 
 from concurrent.futures import ThreadPoolExecutor
 
@@ -192,7 +192,7 @@ def test_threads_share_the_work():
 
 
 def test_a_trajectory_without_bound_ends_alone():
-    """A fast block under a law that drives it ever faster ends as diverged, beside one that goes on."""
+    """A fast block under a law that accelerates it without limit ends as diverged; another trajectory continues."""
     model = Model(Chain(3), law_of("linearized", 1.9), 0.1, "symmetric")
     position, velocity = np.array([[5.0, -5.0, 5.0], [0.0, 0.0, 0.0]]), np.array([[3.0, -3.0, 3.0], [0.1, 0.1, 0.1]])
     found = new_ensemble(model).run(position, velocity, np.zeros((2, 3)), [1.0, 300.0])

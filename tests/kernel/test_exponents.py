@@ -27,8 +27,10 @@ def side_by_side(model, start, end, *, interval=3.0, distance=1e-7, batches=14):
     for _ in range(round(end / interval)):
         position, velocity = np.split(start.vector() + offset, 2)
         # One of the two may stick a little longer than the other.
-        other = runner.after(ChainState(position, np.where(stuck, 0.0, np.maximum(velocity, 0.0)), stuck), interval)
-        start, stuck = runner.after(start, interval), other.stuck
+        other = runner.state_after(
+            ChainState(position, np.where(stuck, 0.0, np.maximum(velocity, 0.0)), stuck), interval
+        )
+        start, stuck = runner.state_after(start, interval), other.stuck
         offset = other.vector() - start.vector()
         length = np.linalg.norm(offset)
         growth.append(np.log(length / distance) / interval)
@@ -66,7 +68,7 @@ def test_uniform_sliding(law, blocks, transient):
     run = simulate(law, a, state, v=v, transient=transient, window=4000.0, lyapunov_exponents=2 * blocks)
     assert run.event_count == 0
     slope = a if law == "linearized" else a / (1.0 + a * v) ** 2
-    # The modes turn: within a window of T a vector's length differs from exp(λT) by less than the ratio e² of axes.
+    # The modes rotate: after a time T a vector's length differs from exp(λT) by less than the ratio e² of axes.
     assert np.abs(run.lyapunov_exponent - slope / 2).max() < 2.0 / 4000.0
     assert run.lyapunov_exponent.sum() == pytest.approx(blocks * slope, abs=1e-9)
     assert run.lyapunov_infinite_count == 0

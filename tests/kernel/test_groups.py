@@ -68,7 +68,7 @@ def test_a_mirrored_chain_moves_as_its_mirror_image():
 
 @pytest.mark.parametrize("section", [SUM, Section("block", 17)])
 def test_observables_are_those_of_the_chain_as_a_whole(section):
-    """⟨J⟩, samples, section crossings, states and extremes, in a window that begins in the midst of the motion."""
+    """⟨J⟩, samples, section crossings, states and extremes, in a window that begins during the motion."""
     model = Model(Chain(40, coupling=4.0, pulling=1.0), law_of("nonlinear", 0.2), 0.1)
     start = at_rest(model, 5)
     found = []

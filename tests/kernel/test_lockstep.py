@@ -22,7 +22,7 @@ LAWS = "linearized", "nonlinear", "carlson_langer", "exponential", "stribeck"
 
 @st.composite
 def batches(draw):
-    """Models that differ in numbers alone, with a state and settings of its own each."""
+    """Models that differ only in parameters, each with its own state and settings."""
     generator = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
     blocks = draw(st.integers(1, 7))
     ends = draw(st.sampled_from(["open", "ring"])) if blocks > 2 else "open"
@@ -36,7 +36,7 @@ def batches(draw):
         chain = Chain(blocks, generator.uniform(0.3, 3.0), generator.uniform(0.5, 2.0), ends=ends, **damped)
         model = Model(chain, law_of(law, a), float(generator.choice([0.01, 0.1, 0.5])), contact)
         position, velocity = generator.uniform(-0.5, 0.4, blocks), generator.uniform(0.0, 0.2, blocks)
-        # Blocks that move as one, but for rounding.
+        # Blocks that move identically except for rounding.
         if generator.random() < 0.4:
             position, velocity = position + position[::-1], velocity + velocity[::-1]
         own = Settings(
@@ -68,15 +68,15 @@ def test_each_gives_what_it_gives_alone(members):
     made = [prepare(*member) for member in members]
     ends = run_together([one.runner for one in made])
     for first, one, end in zip(alone, made, ends, strict=True):
-        together = one.result(one.runner.ended(end))
+        together = one.result(one.runner.status_of(end))
         assert contents(first) == contents(together)
-        # The marks by which both go on are the same as well.
+        # The marks from which both continue are equal as well.
         longer = Settings(transient=0.0, window=20.0, lyapunov_exponents=0)
         assert contents(run(one.model, first.final, longer)) == contents(run(one.model, together.final, longer))
 
 
 def test_runs_of_all_kinds_at_once():
-    """Those that no lane takes, long chains in groups, closed forms and steps, are carried out beside the others."""
+    """Runs that cannot use a lane (long chains in groups, closed forms, fixed steps) are carried out alone."""
     members = []
     for law in LAWS:
         for blocks in (2, 3, 24):
@@ -90,7 +90,7 @@ def test_runs_of_all_kinds_at_once():
                     members += 2 * [(model, state, own)]
     made = [prepare(*member) for member in members]
     for member, one, end in zip(members, made, run_together([one.runner for one in made]), strict=True):
-        assert contents(run(*member)) == contents(one.result(one.runner.ended(end)))
+        assert contents(run(*member)) == contents(one.result(one.runner.status_of(end)))
 
 
 def test_runs_halt_at_stops_and_go_on():
@@ -127,7 +127,7 @@ def test_runs_end_in_all_ways():
     assert {one.status for one in alone} == {"completed", "diverged"}
     made = [prepare(*member) for member in members]
     for one, other, end in zip(alone, made, run_together([one.runner for one in made]), strict=True):
-        assert contents(one) == contents(other.result(other.runner.ended(end)))
+        assert contents(one) == contents(other.result(other.runner.status_of(end)))
 
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])

@@ -63,7 +63,7 @@ def chains(draw, ends=("open", "ring")):
 
 
 def are_equal(one, other):
-    """Tell whether states are the same to the bit; NaN are those after the end of motion without bound."""
+    """Return whether states are equal to the bit; after the end of unbounded motion they are NaN."""
     return np.array_equal(one, other, equal_nan=True)
 
 
@@ -99,7 +99,7 @@ def test_mirror_images_move_as_mirror_images(drawn):
 @settings(max_examples=40)
 @given(chains(("ring",)), st.integers(1, 24), st.integers(1, 5))
 def test_a_ring_knows_no_first_block(drawn, turn, period):
-    """A turned state moves as the turned state; one that repeats along the ring goes on to do so."""
+    """A rotated state has the rotated motion; a state that is periodic along the ring stays periodic."""
     model, position, velocity, duration = drawn
     blocks = model.blocks // period * period
     repeated = Model(replace(model.chain, blocks=max(blocks, 3), threshold=1.0), model.law, model.v)
@@ -114,7 +114,7 @@ def test_a_ring_knows_no_first_block(drawn, turn, period):
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_stiff_springs_of_three_blocks(engine):
-    """A state beside which asymmetric ones grow by exp(0.039 τ): told 3.5e-4 as ⟨J⟩ once."""
+    """Asymmetric perturbations of this state grow as exp(0.039 τ), but ⟨J⟩ must stay 0."""
     model = Model(Chain(3, coupling=250.0, pulling=1.0), law_of("linearized", 0.3))
     x, u, count = states_of(engine, model, (-1.0, -0.95, -1.0), (0.1, 0.12, 0.1), 2000.0)
     assert count > 1000
@@ -123,7 +123,7 @@ def test_stiff_springs_of_three_blocks(engine):
 
 @pytest.mark.parametrize("engine", ["series", "ensemble"])
 def test_stiff_springs_of_five_blocks(engine):
-    """From rest, as textbooks give springs; told 0.138 as ⟨J⟩ once. Its starts have one time each."""
+    """From rest, with dimensional springs; mirror blocks must start at the same time, and ⟨J⟩ must stay 0."""
     model = Model(Chain(5, coupling=250.0, pulling=40.0, threshold=50.0), law_of("nonlinear", 1.0), v=0.01)
     position = 1e-4 * np.array([4.0, -3.0, 2.0, -3.0, 4.0])
     x, u, count = states_of(engine, model, position, np.zeros(5), 2000.0, "tested")

@@ -30,7 +30,7 @@ def check_crossings(run):
 
 @pytest.mark.parametrize("blocks", [2, 4, 7, 8, 16])
 def test_section_of_other_chains(law, blocks):
-    """W is looked for in a lane behind those of the blocks, which may be the first of a vector of its own."""
+    """W is in a lane after those of the blocks, which may be the first lane of another vector."""
     run = dense(law, 0.2, wave(blocks))
     time, w, change = check_crossings(run)
     # By the secant, whose error is a second derivative times the interval squared over the slope.

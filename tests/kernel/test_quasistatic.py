@@ -145,7 +145,7 @@ def test_balances(groups):
 
 @pytest.mark.parametrize("groups", [False, True])
 def test_energy_released_is_what_the_springs_lose(groups):
-    """The driver stands, and does no work, while blocks slip."""
+    """The driver stops, and does no work, while blocks slip."""
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
     start = resting(model, np.random.default_rng(1).uniform(-0.9, -0.6, 12))
     table, _, _ = recorded(model, start, 60.0, groups, loading="quasistatic")
@@ -159,7 +159,7 @@ def test_energy_released_is_what_the_springs_lose(groups):
             assert runner.run(float(at)) == Status.COMPLETED
             position = runner.state().position + model.sliding_offset
             energies.append(0.5 * position @ model.chain.stiffness @ position)
-        # Meanwhile the driver goes on by 2e-7 v against the force of its springs, 12 at most.
+        # Meanwhile the driver advances by 2e-7 v against the force of its springs, at most 12.
         assert energies[0] - energies[1] == pytest.approx(released, rel=1e-12, abs=12 * 2e-7 * model.v)
 
 
@@ -188,5 +188,5 @@ def test_runs_that_continue_one_another_have_the_catalogue_of_the_whole(blocks):
 
 def test_friction_that_does_not_drop_is_refused():
     model = Model(Chain(3), law_of("nonlinear", 0.1))
-    with pytest.raises(ValueError, match="friction of the law nonlinear does not drop as slip begins"):
+    with pytest.raises(ValueError, match="friction of the law nonlinear does not drop at the start of a slip"):
         record_events(model, at_rest(model), 10.0, loading="quasistatic")

@@ -1,4 +1,4 @@
-"""Runs that go on where another ended: the whole run to the bit in the same way of moving, the same motion in any."""
+"""Continued runs equal the whole run: to the bit with the same division into groups, otherwise to rounding."""
 
 import numpy as np
 import pytest

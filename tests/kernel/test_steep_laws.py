@@ -1,4 +1,4 @@
-"""Laws in which friction rises next to rest: while a block slips fast nothing in its motion tells of that."""
+"""Laws in which friction rises near rest, which does not affect the motion while a block slips fast."""
 
 import numpy as np
 import pytest

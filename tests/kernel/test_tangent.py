@@ -262,7 +262,7 @@ def test_perturbations_change_nothing_of_the_run(law):
 
 
 def test_a_solver_that_begins_again_has_forgotten_its_stops(law):
-    """A block that starts at τ = 0 does not turn round from a stop of the run before."""
+    """A start at τ = 0 is not a reversal after a stop in the previous run."""
     model = Model(Chain(2), law_of(law, 0.1))
     # Held beyond their thresholds until τ = 0.
     held = ChainState(np.array([-0.4, -0.5]), np.zeros(2), np.ones(2, dtype=bool))

@@ -7,7 +7,7 @@ import pytest
 
 from burridge_knopoff import law_of
 from burridge_knopoff.laws import LAWS
-from burridge_knopoff.laws.blend import blend, mirrored
+from burridge_knopoff.laws.blend import blend, mirror_law
 
 SPEEDS = np.linspace(0.0, 1.5, 7)
 
@@ -23,7 +23,7 @@ def test_a_blend_is_the_weighted_mean_of_two_laws(share):
         assert mixed.a == 0.2
 
 
-def test_numbers_of_one_name_are_those_of_their_own_law():
+def test_parameters_of_the_same_name_belong_to_their_own_law():
     one, other = (law_of("mine", 0.1, {"formula": "1 - k*a*u", "k": k}) for k in (1.0, 3.0))
     assert float(blend(one, other, 0.5)(1.0)) == pytest.approx(1.0 - 2.0 * 0.1)
 
@@ -31,14 +31,14 @@ def test_numbers_of_one_name_are_those_of_their_own_law():
 def test_negative_numbers_stand_in_brackets():
     law = law_of("mine", 0.1, {"formula": "1 - a*u*c**2", "c": -2.0})
     assert float(blend(law, law, 0.5)(1.0)) == pytest.approx(0.6)
-    assert float(mirrored(law, 0.1).slope(1.0)) == pytest.approx(0.4)
+    assert float(mirror_law(law, 0.1).slope(1.0)) == pytest.approx(0.4)
 
 
 def test_laws_of_the_longest_formulas_are_blended():
     formula = "1 - a*u" + " + 0*u" * 65
     law = law_of("mine", 0.1, {"formula": formula})
     np.testing.assert_allclose(blend(law, law, 0.5)(SPEEDS), law(SPEEDS), rtol=1e-14)
-    np.testing.assert_allclose(mirrored(law, 0.2).slope(SPEEDS), -law.slope(SPEEDS), rtol=1e-12)
+    np.testing.assert_allclose(mirror_law(law, 0.2).slope(SPEEDS), -law.slope(SPEEDS), rtol=1e-12)
     with pytest.raises(ValueError, match="at most 400 characters"):
         law_of("mine", 0.1, {"formula": formula + " + 0*u"})
 
@@ -46,16 +46,16 @@ def test_laws_of_the_longest_formulas_are_blended():
 @pytest.mark.parametrize("name", ["linearized", "nonlinear", "exponential"])
 def test_the_mirror_image_of_a_law_grows_where_it_falls(name):
     law = law_of(name, 0.3)
-    image = mirrored(law, 0.2)
+    image = mirror_law(law, 0.2)
     assert float(image(0.2)) == pytest.approx(float(law(0.2)), rel=1e-15)
     np.testing.assert_allclose(image.slope(SPEEDS), -law.slope(SPEEDS), rtol=1e-12)
 
 
 def test_a_mirror_image_that_is_no_friction_is_refused():
-    with pytest.raises(ValueError, match="at u = 0 it is 1.2"):
-        mirrored(law_of("mine", 0.5, {"formula": "0.8 + 0.4*a*u"}), 1.0)
+    with pytest.raises(ValueError, match="its value at u = 0 is 1.2"):
+        mirror_law(law_of("mine", 0.5, {"formula": "0.8 + 0.4*a*u"}), 1.0)
 
 
 def test_laws_at_different_a_are_not_blended():
-    with pytest.raises(ValueError, match=r"a: got 0\.3, expected that of the first law, 0\.2"):
+    with pytest.raises(ValueError, match=r"a: got 0\.3, expected 0\.2, as in the first law"):
         blend(law_of("linearized", 0.2), law_of("nonlinear", 0.3), 0.5)

@@ -16,16 +16,16 @@ REFUSED = {
         *("1 if u else 1", "(x := 1)", "'1'", "True", "1j", "f'{u}'"),
     ],
     "b: unknown name": ["1 - b*u"],
-    "at u = 0 it is 2": ["2 - u"],
-    "at u = 0 it is 0": ["tanh(u)"],
-    "at u = 0 it is -1": ["-1"],
+    "its value at u = 0 is 2": ["2 - u"],
+    "its value at u = 0 is 0": ["tanh(u)"],
+    "its value at u = 0 is -1": ["-1"],
     "not analytic": [
         *("1/(1 - u/3)", "1/(1 - u/9.9)", "1/(1 + u*(1 - u))", "1 - sqrt(u)", "1 - u**1.5", "1 - log(u)"),
         *("1 - log(1 - u/5)", "exp(u**9)"),
     ],
     "not finite": ["1/0"],
     "not": ["10**400"],
-    "a root of a negative number": ["(-1)**0.5"],
+    "a fractional power of a negative number": ["(-1)**0.5"],
     "the logarithm of -1": ["log(-1)"],
     "at most": ["1" + " + 0" * 200],
 }
@@ -42,17 +42,17 @@ def test_a_pole_beyond_all_speeds_is_allowed():
 
 
 @pytest.mark.parametrize("number", ["a", "u"])
-def test_names_with_a_meaning_are_no_numbers(number):
-    with pytest.raises(ValueError, match=rf"^mine\.{number}: got a name that is taken"):
+def test_reserved_names_are_not_parameters(number):
+    with pytest.raises(ValueError, match=rf"^mine\.{number}: got a reserved name"):
         law_of("mine", 0.1, {"formula": "1 - a*u", number: 1.0})
 
 
-def test_numbers_of_a_law_that_is_built_in():
+def test_parameters_of_a_built_in_law():
     assert law_of("carlson_langer", 0.1, {"sigma": 0.2})(0.0) == pytest.approx(0.8)
     assert law_of("weak", 0.1, {"law": "carlson_langer", "sigma": 0.2}).name == "weak"
     for description, words in (
-        ({"tau": 0.2}, "carlson_langer.tau: not a number of this law"),
-        ({"sigma": 1.0}, "that does not depend on u is not finite"),
+        ({"tau": 0.2}, "carlson_langer.tau: not a parameter of this law"),
+        ({"sigma": 1.0}, "a constant term is not finite"),
         ({"sigma": "x"}, "sigma: got 'x', expected"),
         ({"law": "none"}, "law: got 'none', expected"),
     ):
@@ -95,7 +95,7 @@ def test_a_formula_is_the_law_that_it_spells():
     ],
 )
 def test_a_formula_is_what_python_makes_of_it(formula):
-    """Its slope against a step into the complex plane, which rounds nothing."""
+    """The slope is compared with a complex step, which has no cancellation."""
     names = {"a": 0.02, "c": 0.03, **{name: getattr(np, name) for name in ("exp", "sqrt", "tanh", "log")}}
     law = FormulaLaw(0.02, formula, **({"c": 0.03} if "c" in formula.replace("exp", "") else {}))
     speed = np.linspace(0.0, 3.0, 31)

@@ -1,4 +1,4 @@
-"""What every law has to do, held against mpmath, SciPy and differences: the laws that are built in, and formulas."""
+"""Every law is compared with mpmath, SciPy and differences: the built-in laws, and formulas."""
 
 import copy
 import pickle
@@ -42,7 +42,7 @@ each_law = pytest.mark.parametrize("law", list(laws()))
 
 def exactly(law):
     """The friction as a function of mpmath numbers, from the text of its formula, which here may run as code."""
-    names = {"a": mpmath.mpf(law.a), **{key: mpmath.mpf(value) for key, value in law.numbers.items()}}
+    names = {"a": mpmath.mpf(law.a), **{key: mpmath.mpf(value) for key, value in law.parameters.items()}}
     functions = {name: getattr(mpmath, name) for name in ("exp", "log", "sqrt", "tanh")}
     return lambda u: eval(law.formula, {"__builtins__": {}}, {**names, **functions, "u": u}) + mpmath.mpf(0)
 
@@ -61,7 +61,7 @@ def test_value_and_slope(law):
 def test_least_friction(law):
     for fastest in (0.3, 2.0, 9.0):
         sampled = law(np.linspace(0.0, fastest, 20001)).min()
-        assert sampled - 1e-6 <= law.least(fastest) <= sampled + 1e-15
+        assert sampled - 1e-6 <= law.least_friction(fastest) <= sampled + 1e-15
 
 
 @pytest.mark.parametrize("law", [case for case in laws() if not case.values[0].is_linear])
@@ -85,7 +85,7 @@ def test_series_along_a_motion(law):
 
 @each_law
 def test_event_times(law):
-    """Against SciPy, from both states of the paper; near-coincidences, whose order is nobody's, end the comparison."""
+    """Against SciPy, from both states of the paper, up to near-coincidences, whose order is undetermined."""
     compared = 0
     model = Model(Chain(3), law)
     for state in PAPER_STATES.values():
@@ -101,7 +101,7 @@ def test_event_times(law):
 
 @each_law
 def test_tangent_map_through_stops_and_starts(law):
-    """Against differences of the flow; where friction drops at the start, a start is no identity."""
+    """Against differences of the flow; where friction drops at the start, the map of a start is not the identity."""
     model = Model(Chain(3), law)
     start = model.begin(PAPER_STATES["plus"])
     checked, starts = 0, 0
@@ -150,11 +150,11 @@ def test_every_kind_of_number(a):
 def test_a_law_does_not_change(law):
     for same in (law, copy.copy(law), copy.deepcopy(law), pickle.loads(pickle.dumps(law)), law.at(0.2)):
         assert same == law
-        for name in ("a", "formula", "numbers"):
+        for name in ("a", "formula", "parameters"):
             with pytest.raises(AttributeError, match=f"{name}: a law cannot be changed"):
                 setattr(same, name, 0.3)
         with pytest.raises(TypeError):
-            same.numbers["c"] = 0.1
+            same.parameters["c"] = 0.1
         for array in same.tape.table:
             assert not array.flags.writeable
 
@@ -173,16 +173,16 @@ def test_equal_laws(name):
 def test_a_law_may_be_above_1_at_rest_by_rounding():
     law = FormulaLaw(0.1, "3*1.1 - 2.3 - a*u")
     assert 1.0 < float(law(0.0)) < 1.0 + 1e-15
-    with pytest.raises(ValueError, match="at u = 0 it is 1, not above 0 and at most 1"):
+    with pytest.raises(ValueError, match="its value at u = 0 is 1, not above 0 and at most 1"):
         FormulaLaw(0.1, "1.0000001 - a*u")
 
 
 def test_minus_0_is_0():
     """The same number must not make two different files."""
     law = FormulaLaw(-0.0, "1 - a*u - c*u", c=-0.0)
-    assert repr((law.a, law.numbers["c"])) == "(0.0, 0.0)"
+    assert repr((law.a, law.parameters["c"])) == "(0.0, 0.0)"
 
 
 def test_the_least_friction_is_that_where_a_law_is_defined():
-    """Beyond u = 20, where the root of a negative number is none, it says nothing."""
-    assert 0.0 <= FormulaLaw(0.0, "sqrt(1 - 0.05*u)").least(30.0) < 0.08
+    """Beyond u = 20, where the root is not real, no warning is issued."""
+    assert 0.0 <= FormulaLaw(0.0, "sqrt(1 - 0.05*u)").least_friction(30.0) < 0.08

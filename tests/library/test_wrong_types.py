@@ -105,7 +105,7 @@ def correct_calls():
             "v": 0.1,
             **QUICK,
         },
-        "in_words": {"flags": xarray.DataArray([0], attrs={"flag_values": [0], "flag_meanings": "stop"})},
+        "decode_flags": {"flags": xarray.DataArray([0], attrs={"flag_values": [0], "flag_meanings": "stop"})},
         "sweep": {
             "law": "linearized",
             "a": [0.08],

@@ -93,7 +93,7 @@ def test_the_chain_of_the_paper():
         ({"coupling": -1.0}, "chain.coupling: got -1.0, expected"),
         ({"pulling": [1.0, float("nan"), 1.0]}, "chain.pulling[1]: got nan, expected"),
         ({"coupling": True}, "chain.coupling: got True, expected"),
-        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for one block or more"),
+        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for at least one block"),
         ({"pulling": [0, 0, 0]}, "chain.pulling: got (0.0, 0.0, 0.0), expected"),
         ({"pulling": 1e-7}, "chain.pulling: got 1e-07, expected neighbours or 0 or a number between 1e-06"),
         ({"blocks": 1, "ends": "ring"}, "chain.ends: got ring, expected open for one block"),
@@ -106,7 +106,7 @@ def test_refused(options, message):
 
 def test_what_is_computed_once_is_not_written_to():
     chain = Chain(3, coupling=np.array(0.5), pulling=2.0)
-    arrays = [chain.thresholds, chain.before, chain.after, chain.driving, Chain(3).driving]
+    arrays = [chain.thresholds, chain.coupling_to_previous, chain.coupling_to_next, chain.driving, Chain(3).driving]
     for array in (*arrays, Model(chain, law_of("linearized", 0.1)).sliding_offset):
         with pytest.raises(ValueError, match="read-only"):
             array[0] = 2.0

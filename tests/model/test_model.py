@@ -9,7 +9,7 @@ def test_a_law_has_to_be_analytic_up_to_the_velocity_of_the_driver():
     law = FormulaLaw(0.1, "1/(1 + a*u) + 0.0001*log(1 - u/16)")
     assert Model(Chain(3), law, 1.5).v == 1.5
     with pytest.raises(
-        ValueError, match="^v: got 2.0, expected one up to ten times which the law formula is analytic$"
+        ValueError, match="^v: got 2.0, expected a velocity up to ten times which the law formula is analytic$"
     ):
         Model(Chain(3), law, 2.0)
 

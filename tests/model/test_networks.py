@@ -158,7 +158,7 @@ def solved(matrix, load):
 
 @given(st.integers(2, 4), st.integers(2, 3), strength, st.integers(0, 2**32 - 1))
 def test_a_network_slides_where_the_exact_solution_rounds_to(columns, rows, coupling, seed):
-    """Also where the driver hardly holds it, so that a double solution has few digits."""
+    """Also if the driver is weakly coupled, so that a solution in double precision has few correct digits."""
     blocks = columns * rows
     drawn = {"random": "uniform", "low": 0.5, "high": 2.0, "seed": seed}
     chain = Chain(grid=(columns, rows), coupling=coupling, pulling=[1e-6, *(blocks - 1) * [0.0]], threshold=drawn)
@@ -185,8 +185,8 @@ def test_masses_break_the_mirror():
     assert Chain(3, mass=2.0).is_mirror_symmetric
     assert not Chain(3, mass=(1.0, 1.0, 2.0)).is_mirror_symmetric
     assert not Model(Chain(3, mass=2.0), law_of("linearized", 0.1)).has_closed_form
-    assert not Chain(3, mass=2.0).is_like(Chain(3))
-    assert Chain(3, mass=(1.0, 1.0, 1.0)).is_like(Chain(3))
+    assert not Chain(3, mass=2.0).is_equivalent_to(Chain(3))
+    assert Chain(3, mass=(1.0, 1.0, 1.0)).is_equivalent_to(Chain(3))
 
 
 def test_drawn_numbers_are_those_of_their_seed():
@@ -205,14 +205,14 @@ def test_drawn_numbers_are_those_of_their_seed():
 def test_initial_states_of_any_number_of_blocks():
     rough = InitialState("rough", UNIFORM, 0.25)
     assert rough.blocks is None
-    position, velocity = rough.numbers(60)
-    assert (position == rough.numbers(70)[0][:60]).all()
+    position, velocity = rough.coordinates(60)
+    assert (position == rough.coordinates(70)[0][:60]).all()
     assert velocity.tolist() == 60 * [0.25]
     at = Model(Chain(60), law_of("linearized", 0.1)).begin(rough)
     assert at.velocity.tolist() == 60 * [0.25]
     assert (InitialState("own", 0.5, 0.0).blocks, InitialState("own", UNIFORM, (0.0, 0.1)).blocks) == (1, 2)
     with refused("blocks: got 3, expected 2, the number of velocities of the initial state 'own'"):
-        InitialState("own", UNIFORM, (0.0, 0.1)).numbers(3)
+        InitialState("own", UNIFORM, (0.0, 0.1)).coordinates(3)
 
 
 @pytest.mark.parametrize(
@@ -245,13 +245,13 @@ def test_refused_networks(tmp_path):
     path = written(tmp_path, {(1, 2): 1.0, (3, 4): 2.0})
     assert Chain(springs=path).blocks == 4
     for options, message in (
-        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for one block or more"),
+        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for at least one block"),
         ({"pulling": [1, 0, 0, 0]}, "chain.pulling: got 0 for all of the 2 blocks connected to block 3, expected"),
         ({"blocks": 5}, "chain.pulling: got 0 for all of the 1 blocks connected to block 5, expected"),
         ({"blocks": 3, "pulling": 1}, "chain.springs: got block 4, expected at most chain.blocks (3)"),
-        ({"coupling": 2.0}, "chain.coupling: got 2.0, expected none beside chain.springs"),
-        ({"ends": "ring"}, "chain.ends: got ring, expected open beside chain.springs"),
-        ({"grid": (2, 2)}, "chain.grid: got [2, 2], expected none beside chain.springs"),
+        ({"coupling": 2.0}, "chain.coupling: got 2.0, expected none together with chain.springs"),
+        ({"ends": "ring"}, "chain.ends: got ring, expected open together with chain.springs"),
+        ({"grid": (2, 2)}, "chain.grid: got [2, 2], expected none together with chain.springs"),
         ({"mass": [1, 2]}, "chain.mass: got 2 numbers, expected 1, or 4"),
     ):
         with refused(message):
@@ -260,7 +260,7 @@ def test_refused_networks(tmp_path):
         ({"blocks": 5}, "chain.blocks: got 5, expected 4 for chain.grid [2, 2]"),
         ({"grid": (2,)}, "chain.grid: got (2,), expected a list (of 2;"),
         ({"grid": (2000, 2000)}, "chain.grid: got [2000, 2000], expected at most 1000000 blocks"),
-        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for one block or more"),
+        ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for at least one block"),
         ({"threshold": {**UNIFORM, "high": 0.25}}, "chain.threshold.high: got 0.25, expected at least low (0.5)"),
         ({"threshold": "random=uniform,low=1"}, "chain.threshold.high: missing"),
         ({"threshold": {}}, "chain.threshold.random: missing"),

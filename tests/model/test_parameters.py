@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Model, law_of
-from burridge_knopoff.model.parameters import at, names_of, value_of
+from burridge_knopoff.model.parameters import parameter_names, parameter_value, set_parameters
 from tests.refused import refused
 
 MODEL = Model(Chain(3, pulling=1.5), law_of("stribeck", 0.3), v=0.2)
@@ -12,8 +12,8 @@ MODEL = Model(Chain(3, pulling=1.5), law_of("stribeck", 0.3), v=0.2)
 
 def test_the_names_are_those_of_the_law_the_driver_and_the_chain():
     names = "a", "sigma", "eta", "v", "coupling", "damping", "pulling", "threshold", "mass", "pulling_damping"
-    assert names_of(MODEL) == names
-    assert [value_of(MODEL, name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 0.0, 1.5, 1.0, 1.0, 0.0]
+    assert parameter_names(MODEL) == names
+    assert [parameter_value(MODEL, name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 0.0, 1.5, 1.0, 1.0, 0.0]
 
 
 def test_a_model_at_other_parameters_is_one_made_of_them():
@@ -23,9 +23,9 @@ def test_a_model_at_other_parameters_is_one_made_of_them():
         law_of("stribeck", 0.4, {"sigma": 0.1, "eta": 0.3}),
         v=0.1,
     )
-    assert MODEL.at(**numbers) == at(MODEL, numbers) == made
-    assert all(value_of(made, name) == value for name, value in numbers.items())
-    assert at(MODEL, {}) == MODEL
+    assert MODEL.at(**numbers) == set_parameters(MODEL, numbers) == made
+    assert all(parameter_value(made, name) == value for name, value in numbers.items())
+    assert set_parameters(MODEL, {}) == MODEL
     assert MODEL.at(0.4) == MODEL.at(a=0.4) == Model(MODEL.chain, MODEL.law.at(0.4), 0.2)
     # What is computed of the chain once is kept.
     assert MODEL.at(v=0.3).chain is MODEL.chain
@@ -57,11 +57,11 @@ DRAWN = Model(Chain(3, threshold="random=uniform,low=0.9,high=1.1,seed=1"), MODE
     ],
 )
 def test_the_number_of_one_block_or_spring(model, parameters, chain):
-    made = at(model, parameters)
+    made = set_parameters(model, parameters)
     assert made == Model(chain, model.law, model.v)
     for name, value in parameters.items():
         if name.endswith("]"):
-            assert value_of(made, name) == value
+            assert parameter_value(made, name) == value
 
 
 def test_the_last_spring_of_a_ring_joins_the_last_block_to_the_first():
@@ -73,7 +73,7 @@ def test_the_last_spring_of_a_ring_joins_the_last_block_to_the_first():
 def test_the_drawn_numbers_of_the_other_blocks_stay():
     one = DRAWN.at(**{"threshold[2]": 1.5}).chain
     assert one.thresholds.tolist() == [DRAWN.chain.thresholds[0], 1.5, DRAWN.chain.thresholds[2]]
-    assert DRAWN.at(**{"threshold[2]": value_of(DRAWN, "threshold[2]")}).chain.is_like(DRAWN.chain)
+    assert DRAWN.at(**{"threshold[2]": parameter_value(DRAWN, "threshold[2]")}).chain.is_equivalent_to(DRAWN.chain)
 
 
 def test_other_contact_and_the_shape_of_the_chain_stay():
@@ -110,15 +110,15 @@ def test_other_contact_and_the_shape_of_the_chain_stay():
         (
             Model(Chain(2), FormulaLaw(0.1, "1/(1 + a*u*mass)", mass=2.0)),
             {"mass": 1.0},
-            "mass: got a number of the law",
+            "mass: got a parameter of both the law",
         ),
     ],
 )
 def test_what_is_no_number_of_the_model_is_refused(model, parameters, words):
     with refused(words, match="expected"):
-        at(model, parameters)
+        set_parameters(model, parameters)
 
 
 def test_a_word_is_no_value():
     with refused("pulling: 'neighbours'", match="expected one number"):
-        value_of(Model(Chain(3), MODEL.law), "pulling")
+        parameter_value(Model(Chain(3), MODEL.law), "pulling")

@@ -78,19 +78,19 @@ def test_two_blocks_synchronize_below_the_critical_a_only():
     beyond = fate(model(2, critical + 0.005), state, watch)
     assert beyond.outcome == Outcome.NOT_SYNCHRONIZED
     assert 1e-3 < beyond.distance < 0.1
-    # So near that neither the distance nor its rate can tell within the time limit.
+    # So close that neither the distance nor its rate is conclusive within the time limit.
     assert fate(model(2, critical - 1e-4), state, watch).outcome == Outcome.UNDETERMINED
 
 
 @pytest.mark.parametrize("blocks", [4, 7, 8, 10])
 def test_transverse_exponent_against_two_trajectories(blocks, law):
-    """A second trajectory is kept 1e-7 beside the symmetric one: the rate of growth of their distance is the same.
+    """A second trajectory is kept at 1e-7 from the symmetric one: their distance grows at the same rate.
 
     Antisymmetric parts only, so that errors of second order, which are symmetric, do not count.
     """
     chain = model(blocks, 0.2, law)
     runner = Runner(chain)
-    state = chain.begin(SAMPLE.initial(blocks)[0])
+    state = chain.begin(SAMPLE.initial_states(blocks)[0])
     exponent, _ = transverse_exponent(chain, state, 100.0, 200.0)
 
     state = symmetrized(state)
@@ -100,8 +100,8 @@ def test_transverse_exponent_against_two_trajectories(blocks, law):
         apart = apart - apart[:, ::-1]
         apart[1, state.stuck] = 0.0
         apart *= 1e-7 / np.linalg.norm(apart)
-        other = runner.after(ChainState(state.position + apart[0], state.velocity + apart[1], state.stuck), 10.0)
-        state = symmetrized(runner.after(state, 10.0))
+        other = runner.state_after(ChainState(state.position + apart[0], state.velocity + apart[1], state.stuck), 10.0)
+        state = symmetrized(runner.state_after(state, 10.0))
         apart = (other.vector() - state.vector()).reshape(2, -1)
         logarithms.append(math.log(np.linalg.norm(0.5 * (apart - apart[:, ::-1])) / 1e-7))
     assert sum(logarithms[10:]) / 200.0 == pytest.approx(exponent, abs=1e-5)
@@ -111,7 +111,7 @@ def test_transverse_exponent_against_two_trajectories(blocks, law):
 def test_the_mirrored_sample_has_the_mirrored_fate(blocks, a):
     chain = model(blocks, a)
     watch = Watch(time_limit=2000.0)
-    for state in SAMPLE.initial(blocks)[:3]:
+    for state in SAMPLE.initial_states(blocks)[:3]:
         mirror = InitialState("mirror", state.position[::-1], state.velocity[::-1])
         one, two = fate(chain, state, watch), fate(chain, mirror, watch)
         assert one.outcome == two.outcome
@@ -127,7 +127,7 @@ def test_three_blocks_against_whole_runs(law):
     watch = Watch(time_limit=3000.0)
     outcomes = set()
     for a in (0.06, 0.2):
-        for state in SAMPLE.initial(3)[:4]:
+        for state in SAMPLE.initial_states(3)[:4]:
             mine = fate(model(3, a, law), state, watch)
             run = simulate(law, a, state, transient=2250.0, window=750.0, sampling=INTERVAL, events="none")
             outcomes.add(mine.outcome)
@@ -180,7 +180,7 @@ class Scripted:
         return ChainState(np.array([outer, 0.0, 0.0, 0.0]), np.array([0.0, inner, 0.0, 0.0]), np.zeros(4, bool))
 
 
-FAR, NEAR = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
+FAR, NEAR_SYMMETRY = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
 
 
 @pytest.mark.parametrize(
@@ -194,10 +194,10 @@ FAR, NEAR = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
         # Still falling: the largest is below half of that of the quarter before.
         ([*FAR[:8], (0.2, 0.24), (0.2, 0.1)], None, Fate(Outcome.UNDETERMINED, distance=0.24, mean_distance=0.22)),
         ([*FAR[:6], (0.3, 0), (0.3, 0), *[(0.2, 0.2)] * 2], None, Fate(APART, distance=0.2, mean_distance=0.2)),
-        # Near symmetric motion it is undetermined but for an exponent beyond three errors.
-        (NEAR, (0.31, 0.1), Fate(APART, math.nan, 0.008, 0.008, 0, 0.31)),
-        (NEAR, (0.29, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0, 0.29)),
-        (NEAR, (math.nan, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0)),
+        # Near symmetric motion the outcome is undetermined unless the exponent exceeds three errors.
+        (NEAR_SYMMETRY, (0.31, 0.1), Fate(APART, math.nan, 0.008, 0.008, 0, 0.31)),
+        (NEAR_SYMMETRY, (0.29, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0, 0.29)),
+        (NEAR_SYMMETRY, (math.nan, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0)),
         ([(0.0, 0.011)] * 10, None, Fate(APART, distance=0.011, mean_distance=0.011, pairs=1)),
         # Synchronized, if the exponent says so.
         ([*FAR[:2], (1e-12, 1e-13)], (-0.01, 1.0), Fate(Outcome.SYNCHRONIZED, 60.0, 1e-12, 1e-12, 2, -0.01)),
@@ -234,7 +234,7 @@ def test_a_watched_chain_begins_as_it_is_told_to(tell, start):
     perturbed = tell(chains, "transverse_exponent", [(0.0, 0.0)] * SAMPLE.symmetric_samples)
     runs = tell(chains, "run", [SimpleNamespace(lyapunov_exponent=[0.1], lyapunov_error=[0.2])])
     chains.watch_chain([model(3, 0.0)], [0.05], replace(SAMPLE, start=start))
-    position = np.array([state.position for state in SAMPLE.initial(3, 0.05)])
+    position = np.array([state.position for state in SAMPLE.initial_states(3, 0.05)])
     stuck = position @ np.array([[-2.0, 1.0, 0.0], [1.0, -4.0, 1.0], [0.0, 1.0, -2.0]]) <= 1.0
     assert stuck.any(axis=1).all()
     expected = (stuck & (start == "tested")).tolist()
@@ -246,7 +246,7 @@ def test_a_watched_chain_begins_as_it_is_told_to(tell, start):
 def test_a_window_of_several_parts_is_their_mean():
     """Whole windows of any length, each begun where the one before ends."""
     chain = model(5, 0.2)
-    state = chain.begin(SAMPLE.initial(5)[0])
+    state = chain.begin(SAMPLE.initial_states(5)[0])
     whole, _ = transverse_exponent(chain, state, 100.0, 173.0)
     windows = [(100.0, 50.0), (150.0, 61.5), (211.5, 61.5)]
     parts = [transverse_exponent(chain, state, *times)[0] for times in windows]
@@ -258,7 +258,7 @@ def test_a_window_of_several_parts_is_their_mean():
 def test_a_window_that_is_too_short_for_an_error_is_refused(window):
     chain = model(3, 0.05)
     with pytest.raises(ValueError, match=rf"^window: got {window}, expected"):
-        transverse_exponent(chain, chain.begin(SAMPLE.initial(3)[0]), 200.0, window)
+        transverse_exponent(chain, chain.begin(SAMPLE.initial_states(3)[0]), 200.0, window)
 
 
 @pytest.mark.parametrize("window", [500.0, 2500.0])
@@ -281,7 +281,7 @@ def test_deviations_from_the_multiplier_are_within_the_error(law, window):
 def test_in_chaos_the_error_is_the_scatter_of_whole_windows():
     """Windows one after another scatter by what each of them says of itself."""
     chain = model(6, 0.25)
-    state = chain.begin(SAMPLE.initial(6)[0])
+    state = chain.begin(SAMPLE.initial_states(6)[0])
     found = np.array([transverse_exponent(chain, state, 200.0 + 500.0 * k, 500.0) for k in range(40)])
     ratio = math.sqrt((found[:, 1] ** 2).mean()) / found[:, 0].std(ddof=1)
     assert 0.75 < ratio < 1.5
@@ -292,7 +292,7 @@ def test_a_state_is_watched_up_to_the_time_limit_at_most(monkeypatch):
     asked, run = [], Runner.run
     monkeypatch.setattr(Runner, "run", lambda runner, time: asked.append(time) or run(runner, time))
     chain = model(3, 0.2)
-    assert fate(chain, SAMPLE.initial(3)[0], Watch(time_limit=219.0)).outcome != Outcome.SYNCHRONIZED
+    assert fate(chain, SAMPLE.initial_states(3)[0], Watch(time_limit=219.0)).outcome != Outcome.SYNCHRONIZED
     assert asked == [20.0 * check for check in range(1, 11)]
 
 
@@ -301,14 +301,16 @@ def test_a_watched_chain_is_its_states_one_by_one():
     results = chains.watch_chain([model(3, 0.0), model(3, 0.0, "nonlinear")], [0.05, 0.2], SAMPLE, watch)
     for (i, law), (j, a) in product(enumerate(("linearized", "nonlinear")), enumerate((0.05, 0.2))):
         chain = model(3, a, law)
-        fates = [astuple(fate(chain, state, watch)) for state in SAMPLE.initial(3, a)]
+        fates = [astuple(fate(chain, state, watch)) for state in SAMPLE.initial_states(3, a)]
         for name, values in zip((item.name for item in fields(Fate)), zip(*fates, strict=True), strict=True):
             np.testing.assert_array_equal(results[name][i, j], values, name)
-        starts = [chain.begin(state) for state in SAMPLE.initial(3, a)[:2]]
+        starts = [chain.begin(state) for state in SAMPLE.initial_states(3, a)[:2]]
         exponents = [transverse_exponent(chain, start, 150.0, 150.0) for start in starts]
         told = np.stack([results[f"symmetric_{name}"][i, j] for name in ("exponent", "error")], axis=1)
         assert told.tolist() == [list(item) for item in exponents]
-        run = simulate(law, a, SAMPLE.initial(3, a)[0], transient=300.0, window=300.0, batches=5, lyapunov_exponents=1)
+        run = simulate(
+            law, a, SAMPLE.initial_states(3, a)[0], transient=300.0, window=300.0, batches=5, lyapunov_exponents=1
+        )
         assert results["lyapunov_exponent"][i, j] == pytest.approx(run.lyapunov_exponent[0], rel=1e-9)
         assert results["lyapunov_error"][i, j] == pytest.approx(run.lyapunov_error[0], rel=1e-9)
     assert (results["symmetric_exponent"][0, 0] < 0.0).all()
@@ -317,11 +319,16 @@ def test_a_watched_chain_is_its_states_one_by_one():
 
 def test_each_a_has_states_of_its_own():
     """A larger sample begins with the smaller one, other numbers of blocks and other seeds have others."""
-    samples = [SAMPLE.initial(3, 0.05), SAMPLE.initial(3, 0.06), SAMPLE.initial(3), SAMPLE.initial(2, 0.05)]
-    samples.append(replace(SAMPLE, seed=2).initial(3, 0.05))
+    samples = [
+        SAMPLE.initial_states(3, 0.05),
+        SAMPLE.initial_states(3, 0.06),
+        SAMPLE.initial_states(3),
+        SAMPLE.initial_states(2, 0.05),
+    ]
+    samples.append(replace(SAMPLE, seed=2).initial_states(3, 0.05))
     first = [number for states in samples for state in states for number in state.position]
     assert len(set(first)) == len(first)
-    assert replace(SAMPLE, samples=9).initial(3, 0.05)[:6] == samples[0]
+    assert replace(SAMPLE, samples=9).initial_states(3, 0.05)[:6] == samples[0]
 
 
 def test_a_chain_without_mirror_blocks_is_refused():
@@ -342,15 +349,15 @@ def test_a_ring_synchronizes_by_its_transverse_exponent():
     start = symmetrized(ring.begin(InitialState("state", (-1.0, -0.9, -0.9, -1.0), (0.1, 0.1, 0.1, 0.1))))
     exponent, error = transverse_exponent(ring, start, 500.0, 1000.0)
     assert exponent < -10.0 * error
-    fates = [fate(ring, state, Watch(time_limit=4000.0)) for state in SAMPLE.initial(4)[:4]]
+    fates = [fate(ring, state, Watch(time_limit=4000.0)) for state in SAMPLE.initial_states(4)[:4]]
     found = [one.transverse_exponent for one in fates if one.outcome == Outcome.SYNCHRONIZED]
     assert found == pytest.approx([exponent] * 2, abs=3.0 * error)
 
 
 def test_a_perturbation_is_renewed_after_ten_time_units_at_most(monkeypatch):
     """And so that all batches have as many pieces of one length: 173 time units have five times four."""
-    times, after = [], Runner.after
-    monkeypatch.setattr(Runner, "after", lambda runner, at, time: times.append(time) or after(runner, at, time))
+    times, after = [], Runner.state_after
+    monkeypatch.setattr(Runner, "state_after", lambda runner, at, time: times.append(time) or after(runner, at, time))
     chain = model(4, 0.05)
-    transverse_exponent(chain, chain.begin(SAMPLE.initial(4)[0]), 95.0, 173.0)
+    transverse_exponent(chain, chain.begin(SAMPLE.initial_states(4)[0]), 95.0, 173.0)
     assert times == [9.5] * 10 + [173.0 / 20] * 20

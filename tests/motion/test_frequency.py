@@ -1,4 +1,4 @@
-"""Frequencies of blocks, against normal modes, turns of a periodic orbit, and the motion by SciPy."""
+"""Frequencies of blocks, compared with normal modes, cycles of a periodic orbit, and motion by SciPy."""
 
 import numpy as np
 import pytest

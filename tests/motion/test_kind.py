@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, ChainState, Model, MotionKind, law_of, simulate
-from burridge_knopoff.motion.kind import Motion, motion_of, motion_of_run, words_of
-from burridge_knopoff.motion.period import period_of, repetition, section_period
+from burridge_knopoff.motion.kind import Motion, format_motion, motion_of_completed_run, motion_of_run
+from burridge_knopoff.motion.period import period_of, repetition_length, section_period
 from burridge_knopoff.motion.settings import MOTION
 from tests.flows import weakly_repelling
 
@@ -18,17 +18,17 @@ QUASIPERIODIC = np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(2000))
 def test_period_of_a_repeating_sequence(period):
     random = np.random.default_rng(period)
     section = np.tile(random.normal(size=period), 400 // period)
-    assert repetition(section, 1e-6, 60) == period
-    assert repetition(section + 1e-9 * random.normal(size=len(section)), 1e-6, 60) == period
-    assert repetition(section + 1e-3 * random.normal(size=len(section)), 1e-6, 60) == 0
+    assert repetition_length(section, 1e-6, 60) == period
+    assert repetition_length(section + 1e-9 * random.normal(size=len(section)), 1e-6, 60) == period
+    assert repetition_length(section + 1e-3 * random.normal(size=len(section)), 1e-6, 60) == 0
     # As long as it may be, and seen just often enough.
-    assert repetition(section[: 3 * period], 1e-6, period) == period
+    assert repetition_length(section[: 3 * period], 1e-6, period) == period
 
 
 def test_quasiperiodic_and_short_sequences_have_no_period():
     drift = 1.0 + 1e-7 * np.arange(400)
     for section in (QUASIPERIODIC, np.array([]), np.array([1.0, 1.0]), np.tile(np.arange(70.0), 20), drift):
-        assert repetition(section, 1e-6, 60) == 0
+        assert repetition_length(section, 1e-6, 60) == 0
 
 
 def run_of(velocity, states, first_event=0.0, falling=False):
@@ -49,13 +49,13 @@ def run_of(velocity, states, first_event=0.0, falling=False):
 
 
 def test_a_state_that_comes_back_as_its_mirror_image_has_not_come_back():
-    """W' repeats after three points, the state of all blocks after six: every other turn it is the mirror image."""
+    """W' repeats after three points, the state of all blocks after six: three points lead to the mirror image."""
     velocity = np.tile([1.0, 2.0, 3.0], 60)
     turn = np.array([[0.1, 0.0, 0.4], [0.2, 0.0, 0.5], [0.3, 0.0, 0.6]])
     states = np.tile(np.concatenate([turn, turn[:, ::-1]]), (30, 1))
     assert section_period(run_of(velocity, states), MOTION) == 6
     assert section_period(run_of(velocity, np.tile(turn, (60, 1))), MOTION) == 3
-    # Positions alone tell it, velocities alone too.
+    # Positions alone show the period, and so do velocities alone.
     run = run_of(velocity, np.tile(turn, (60, 1)))
     for name in ("event_position", "event_velocity"):
         assert section_period({**run, name: states}, MOTION) == 6
@@ -66,10 +66,10 @@ def test_a_state_that_comes_back_as_its_mirror_image_has_not_come_back():
     assert section_period(run_of(velocity, drifting), MOTION) == 0
     assert section_period(run_of(velocity, states, first_event=150.0), MOTION) == 6
     assert section_period(run_of(velocity, states, first_event=1e9), MOTION) == 3
-    # Too few states to show three turns say nothing; enough of them that do not repeat in three say that it is none.
+    # Fewer than three cycles of states are inconclusive; three cycles that do not repeat exclude the period.
     assert section_period(run_of(velocity, states, first_event=172.0), MOTION) == 3
     assert section_period(run_of(velocity, states, first_event=165.0), MOTION) == 0
-    # Nor is one that is longer than what is looked for.
+    # Nor is a period longer than the longest one searched for.
     assert section_period(run_of(velocity, states), replace(MOTION, longest_period=5)) == 0
 
 
@@ -89,7 +89,7 @@ def test_the_words_of_a_kind():
         (0.1, 0, (1e-4, -0.01), 1e-5, MotionKind.QUASIPERIODIC),
         (1e-9, 0, (1e-4, -0.01), 1e-5, MotionKind.SYNCHRONIZED),
         (0.1, 0, (1e-4, -1e-4), 1e-5, MotionKind.QUASIPERIODIC),
-        # With errors larger than the exponents of chaos only a repetition tells something.
+        # With errors larger than the exponents of chaos, only a repetition is conclusive.
         (0.1, 0, (1e-4, -0.01), 1e-2, MotionKind.UNDETERMINED),
         (0.1, 3, (1e-4, -0.01), 1e-2, MotionKind.PERIODIC),
         (0.1, 0, (1e-4, -0.01), 0.9e-3, MotionKind.QUASIPERIODIC),
@@ -114,7 +114,7 @@ def test_the_words_of_a_kind():
         (1e-9, 0, (0.0, -1.1e-3), 1e-3, MotionKind.UNDETERMINED),
         (0.1, 0, (0.0, -1.1e-3), 1e-3, MotionKind.QUASIPERIODIC),
         (0.1, 0, (-0.01, -0.02), 1e-5, MotionKind.UNDETERMINED),
-        # Without exponents only a repetition of the section points says something.
+        # Without exponents, only a repetition of the section points is conclusive.
         (0.1, 5, (), 1e-5, MotionKind.PERIODIC),
         (0.1, 0, (), 1e-5, MotionKind.UNDETERMINED),
         (0.1, 0, (np.nan, np.nan), np.nan, MotionKind.UNDETERMINED),
@@ -124,7 +124,7 @@ def test_the_words_of_a_kind():
         (0.1, 0, (0.0079, -0.0009), np.nan, MotionKind.UNDETERMINED),
         (0.1, 0, (-0.0079, -0.009), np.nan, MotionKind.UNDETERMINED),
         (0.1, 3, (-0.0079, -0.009), np.nan, MotionKind.PERIODIC),
-        # Of the first two exponents, whose values decide, both errors have to be small; that of a third tells nothing.
+        # The errors of the first two exponents, whose values decide, must be small; that of a third has no effect.
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-5, 1e-2), MotionKind.QUASIPERIODIC),
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-2, 1e-5), MotionKind.UNDETERMINED),
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-2, 1e-5, 1e-5), MotionKind.UNDETERMINED),
@@ -146,7 +146,7 @@ def told(mean_distance, period, exponents, error, settings=MOTION, points=2000):
     run = run_of(np.resize(random, points), np.zeros((points, 3)), first_event=np.inf)
     exponents = np.array(exponents, dtype=float)
     run |= {"lyapunov_exponent": exponents, "lyapunov_error": np.broadcast_to(error, len(exponents))}
-    return motion_of(run, mean_distance, settings)
+    return motion_of_completed_run(run, mean_distance, settings)
 
 
 REGULAR = (0.1, (0.0, -1e-5), 1e-5)
@@ -162,13 +162,13 @@ def test_the_longest_period_decides_and_no_window(period, kind, points):
 
 
 def test_a_longer_period_is_known_from_the_stops():
-    """The motion is locked: it has not left its closed orbit, but shows no period that a run would show."""
+    """The motion is locked: it has not left its periodic orbit, but no period is observed within a run."""
     states = np.tile(np.random.default_rng(5).random((50, 3)), (12, 1))
     run = run_of(states[:, 0], states) | {"lyapunov_exponent": np.zeros(2), "lyapunov_error": np.full(2, 1e-5)}
-    found = motion_of(run, 0.1, replace(MOTION, longest_period=40.0))
+    found = motion_of_completed_run(run, 0.1, replace(MOTION, longest_period=40.0))
     assert found == Motion(MotionKind.QUASIPERIODIC, 0, 50.0)
-    assert not found.is_open
-    assert motion_of(run, 0.1, MOTION) == Motion(MotionKind.PERIODIC, 50, 50.0)
+    assert not found.can_be_periodic
+    assert motion_of_completed_run(run, 0.1, MOTION) == Motion(MotionKind.PERIODIC, 50, 50.0)
     # The states of the last events alone do not show it for long enough.
     late = run_of(states[:, 0], states, first_event=400.0)
     assert np.isnan(period_of(late, replace(MOTION, longest_period=40.0))[1])
@@ -178,8 +178,8 @@ def test_an_approach_that_turns_round_the_limit_has_no_period():
     """A multiplier next to a root of 1 brings it back to where it was, but nearer: that is no period."""
     k = np.arange(600.0)
     approach = 1.0 + 1e-6 * np.exp(-1e-3 * k) * np.cos(2.0 * np.pi * k / 88.0)
-    assert repetition(approach, 1e-6, 200) == 0
-    assert repetition(1.0 + 0.1 * (approach - 1.0), 1e-6, 200) == 1
+    assert repetition_length(approach, 1e-6, 200) == 0
+    assert repetition_length(1.0 + 0.1 * (approach - 1.0), 1e-6, 200) == 1
 
 
 @pytest.mark.parametrize(
@@ -199,7 +199,7 @@ def test_an_approach_that_turns_round_the_limit_has_no_period():
     ],
 )
 def test_a_motion_in_words(motion, words):
-    assert words_of(motion, MOTION) == words
+    assert format_motion(motion, MOTION) == words
 
 
 @pytest.mark.parametrize(("points", "kind"), [(2, MotionKind.PERIODIC), (3, MotionKind.PERIODIC)])
@@ -220,9 +220,13 @@ def test_stops_tell_a_period_that_section_points_do_not(points, kind):
 @pytest.mark.parametrize("name", ["period_tolerance", "zero_exponent", "chaotic_exponent"])
 def test_motion_under_a_slow_driver_is_smaller_and_slower(name):
     default = getattr(MOTION, name)
-    assert [getattr(MOTION.at_speed(v), name) / default for v in (0.1, 10.0, 0.01)] == [1.0, 1.0, pytest.approx(0.1)]
-    assert MOTION.at_speed(0.01).longest_period == pytest.approx(10.0 * MOTION.longest_period)
-    assert MOTION.at_speed(0.01).synchronization_threshold == MOTION.synchronization_threshold
+    assert [getattr(MOTION.scaled_to_velocity(v), name) / default for v in (0.1, 10.0, 0.01)] == [
+        1.0,
+        1.0,
+        pytest.approx(0.1),
+    ]
+    assert MOTION.scaled_to_velocity(0.01).longest_period == pytest.approx(10.0 * MOTION.longest_period)
+    assert MOTION.scaled_to_velocity(0.01).synchronization_threshold == MOTION.synchronization_threshold
 
 
 @pytest.mark.parametrize(
@@ -243,7 +247,7 @@ def test_an_orbit_that_repels(period, exponents, error, unstable):
 @pytest.mark.parametrize(
     ("growth", "kind"),
     [
-        # Turn by turn: an orbit that repels, one that attracts, and a distance that is only rounding.
+        # Cycle by cycle: a repelling orbit, an attracting orbit, and a distance of rounding errors.
         (1.01, MotionKind.UNDETERMINED),
         (-1.01, MotionKind.UNDETERMINED),
         (0.99, MotionKind.PERIODIC),
@@ -252,15 +256,15 @@ def test_an_orbit_that_repels(period, exponents, error, unstable):
     ],
 )
 def test_what_leaves_an_orbit_is_not_periodic(growth, kind):
-    """However near it passes: of a run whose turns diverge one does not know where it goes."""
+    """However close it passes, the fate of a run whose cycles diverge is undetermined."""
     size = 1e-12 if growth == 1.001 else 1e-7
     away = size * float(growth) ** (np.arange(700.0) - (700.0 if abs(growth) > 1.0 else 0.0))
     run = run_of(0.2 + np.repeat(away, 3) + np.tile([0.0, 0.3, 0.1], 700), np.zeros((2100, 3)), first_event=np.inf)
     exponents = {"lyapunov_exponent": np.array([4e-4, 1e-4]), "lyapunov_error": np.full(2, 3e-4)}
-    assert motion_of(run | exponents, 0.1, MOTION).kind == kind
+    assert motion_of_completed_run(run | exponents, 0.1, MOTION).kind == kind
     strong = {"lyapunov_exponent": np.array([0.02, 1e-4]), "lyapunov_error": np.full(2, 3e-4)}
     expected = kind if kind == MotionKind.PERIODIC else MotionKind.CHAOTIC
-    assert motion_of(run | strong, 0.1, MOTION).kind == expected
+    assert motion_of_completed_run(run | strong, 0.1, MOTION).kind == expected
 
 
 @pytest.mark.parametrize("away", [1e-11, 1e-10])

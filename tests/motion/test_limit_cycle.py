@@ -7,7 +7,7 @@ from burridge_knopoff import Chain, Model, OrbitError, law_of, multipliers
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.motion import limit_cycle as module
-from burridge_knopoff.motion.limit_cycle import _returns, limit_cycle
+from burridge_knopoff.motion.limit_cycle import _close_returns, limit_cycle
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
 from burridge_knopoff.periodic_orbits.periodic import find_periodic_orbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
@@ -22,11 +22,11 @@ def test_a_state_returns_after_the_time_that_is_told(initial, a, symmetry):
     runner = Runner(model, keep_events=True, events_from=5000.0)
     runner.begin(model.begin(PAPER_STATES[initial]))
     runner.run(5500.0)
-    found = list(_returns(model, runner.log.events.times(), runner.log.events.values()))
+    found = list(_close_returns(model, runner.log.events.times(), runner.log.events.values()))
     assert {told for _, _, told, _ in found} == {symmetry}
     for start, time, _, size in found:
         assert time > 1.0
-        end = Runner(model).after(start, time)
+        end = Runner(model).state_after(start, time)
         image = end.mirrored() if symmetry == Symmetry.SYMMETRIC else end
         assert np.abs(image.vector() - start.vector()).max() <= 2.0 * size
 
@@ -40,7 +40,7 @@ def test_of_states_as_near_as_each_other_the_first_is_the_return(v, mirrored):
     stops += [(1.1, 3, image + 1.5e-7), (2.0, 1, state), (3.0, 1, state)]
     values = np.array([[block, 0, *at] for _, block, at in stops])
     found = list(
-        _returns(Model(Chain(3), law_of("linearized", 0.08), v), np.array([time for time, *_ in stops]), values)
+        _close_returns(Model(Chain(3), law_of("linearized", 0.08), v), np.array([time for time, *_ in stops]), values)
     )
     assert [time for _, time, *_ in found] == [2.0, *mirrored]
     kinds = {2.0: Symmetry.ASYMMETRIC, 1.1: Symmetry.SYMMETRIC}
@@ -62,7 +62,7 @@ def test_an_orbit_elsewhere_is_not_that_of_a_motion(monkeypatch):
     [(3, "nonlinear", 0.19, [0.0, -0.04, -0.9]), (2, "linearized", 0.08, [0.0, -0.5])],
 )
 def test_chaos_lies_on_none_of_the_orbits_that_it_passes_by(blocks, law, a, position, monkeypatch):
-    """Of three blocks, and a thin one of two: Newton's method finds unstable ones beside the motion."""
+    """Of three blocks, and a thin one of two blocks: Newton's method finds unstable orbits near the motion."""
     passed = []
 
     def find(*arguments):

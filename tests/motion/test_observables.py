@@ -16,9 +16,9 @@ from burridge_knopoff import (
     simulate,
 )
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.model.sampling import sampled_states
+from burridge_knopoff.model.sampling import sample_initial_states
 from burridge_knopoff.motion.classification import Classifier
-from burridge_knopoff.motion.observables import lies_on
+from burridge_knopoff.motion.observables import is_on_attractor
 from burridge_knopoff.motion.section_returns import visit
 from burridge_knopoff.motion.settings import MOTION
 from tests.motion.stand_in import ROWS, nearest, shown, stand_in
@@ -71,7 +71,7 @@ def test_attractors_whose_ends_never_stop_are_known():
     assert (labels >= 0).all()
     assert {item.motion.block for item in attractors} == {1, 2}
     box = settings.position, settings.velocity
-    drawn = sampled_states(4, settings.samples, *box, settings.seed)
+    drawn = sample_initial_states(4, settings.samples, *box, settings.seed)
     for index in set(labels.tolist()):
         motion, state = attractors[index].motion, drawn[labels.tolist().index(index)]
         run = simulate(chain, initial=state, transient=60_000, window=6000, lyapunov_exponents=0)
@@ -101,7 +101,7 @@ def test_mirror_images_of_a_motion():
         (ROWS + 1.1e-3, MotionKind.PERIODIC, 0.0, 0.0, False),
         (ROWS + 0.029, MotionKind.CHAOTIC, 0.01, 0.1, True),  # three spacings of the attractor
         (ROWS + 0.031, MotionKind.CHAOTIC, 0.01, 0.1, False),
-        (ROUND, MotionKind.CHAOTIC, 0.01, 0.0, False),  # a closed orbit is no part of chaos
+        (ROUND, MotionKind.CHAOTIC, 0.01, 0.0, False),  # a periodic orbit is not part of chaos
         (ROUND, MotionKind.CHAOTIC, 1e-7, 0.0, True),  # but of chaos so thin that it looks like one
         (ROWS, MotionKind.CHAOTIC, 0.01, 0.0, True),  # chaos seen for so long that it looks like one
         (ROUND, MotionKind.QUASIPERIODIC, 0.01, 0.0, True),
@@ -109,7 +109,7 @@ def test_mirror_images_of_a_motion():
 )
 def test_what_lies_on_an_attractor(found, kind, spacing, own_spacing, expected):
     attractor = stand_in(returns=ROWS, kind=kind, spacing=spacing).motion
-    assert lies_on(shown(found, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
+    assert is_on_attractor(shown(found, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
 
 
 def test_a_motion_seen_from_the_other_end_stops_at_the_other_block():
@@ -120,5 +120,5 @@ def test_a_motion_seen_from_the_other_end_stops_at_the_other_block():
 def test_motions_seen_at_other_blocks_are_others():
     attractor = stand_in(returns=ROWS).motion
     found = shown(ROWS, ROWS, 0.0, 0.0)
-    assert lies_on(found, attractor, 1e-3, 1e-6)
-    assert not lies_on(replace(found, block=2), attractor, 1e-3, 1e-6)
+    assert is_on_attractor(found, attractor, 1e-3, 1e-6)
+    assert not is_on_attractor(replace(found, block=2), attractor, 1e-3, 1e-6)

@@ -17,7 +17,7 @@ from burridge_knopoff.running.simulation import run
 from tests.flows import weakly_repelling
 
 LOCKED = Model(Chain(3), law_of("linearized", 0.0275))
-#: A state on a torus there, which comes nearer to its closed orbit by the factor e in 30 000 time units.
+#: A state on a torus there, which approaches its periodic orbit by the factor e in 30 000 time units.
 ON_IT = state_of(np.array([0.027653, 0.008746, -0.031365, 0.0, 0.201334, 0.12468]))
 
 
@@ -97,7 +97,7 @@ def test_an_orbit_has_to_be_there_to_attract_and_to_be_approached():
     coming, period = (3e-6, 2e-6, 1e-6), stable.period
     assert found(stable, coming, period, period).period == pytest.approx(period, abs=1e-9)
     assert found(stable, coming[::-1], period, period) is None
-    # Gone round three times: a single turn has too few returns.
+    # Three cycles: a single cycle has too few returns.
     assert found(unstable, coming, 3.0 * unstable.period, 3.0 * unstable.period) is None
     # No orbit has such a period.
     for time in (0.0, 0.4 * period):
@@ -111,10 +111,10 @@ def test_an_orbit_has_to_be_there_to_attract_and_to_be_approached():
         (0.1, (0.031, 0.032, 0.033), False),  # too far off
         (0.1, (0.058, 0.059, 0.06), False),
         (0.2, (0.058, 0.059, 0.06), True),  # distances grow with the velocity
-        (0.1, (0.02, 0.01, 0.03), False),  # farther in the last turn than before
+        (0.1, (0.02, 0.01, 0.03), False),  # farther in the last cycle than before
         (0.1, (0.02, 0.02, 0.03), False),
         (0.1, (0.01, 0.02, 0.015), False),
-        (0.1, (0.02, 0.03, 0.04, 0.05, 0.01), True),  # four turns tell
+        (0.1, (0.02, 0.03, 0.04, 0.05, 0.01), True),  # four cycles decide
         (0.1, (0.02, 0.03, 0.04, 0.03), False),
         (0.1, (0.02,), False),  # a single one does not
     ],
@@ -123,13 +123,13 @@ def test_each_turn_has_to_be_nearer(tell, v, away, expected):
     on_orbit = np.random.default_rng(5).uniform(-1.0, 1.0, (40, 6))
     asked = tell(locking, "visit", [SimpleNamespace(returns=on_orbit)])
     orbit = SimpleNamespace(model=replace(LOCKED, v=v), reference="reference", period=100.0)
-    # The oldest turn is not whole, and is not compared.
+    # The oldest cycle is incomplete and is not compared.
     returns = np.concatenate([on_orbit[20:], *(on_orbit + distance for distance in away[::-1])])
-    assert locking._approaches(returns, orbit) == expected
+    assert locking._is_approaching(returns, orbit) == expected
     assert asked[0][:4] == (orbit.model, "reference", 0.0, 100.0)
 
 
 def test_what_an_orbit_that_does_not_complete_shows_is_not_approached(tell):
     tell(locking, "visit", [None])
     orbit = SimpleNamespace(model=LOCKED, reference="reference", period=100.0)
-    assert not locking._approaches(np.zeros((5, 6)), orbit)
+    assert not locking._is_approaching(np.zeros((5, 6)), orbit)

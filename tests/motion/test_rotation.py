@@ -1,4 +1,4 @@
-"""Rotation numbers: of tori, of closed orbits, and of motion that has none; plateaux of them."""
+"""Rotation numbers of tori and periodic orbits, motion without a rotation number, and plateaux."""
 
 from fractions import Fraction
 
@@ -16,11 +16,11 @@ from burridge_knopoff.summaries.plateaux import Plateau, locked_share, plateaux
 
 def of_plus(a, duration):
     model = Model(Chain(3), law_of("linearized", a))
-    return rotation_number(model, Runner(model).after(model.begin(PAPER_STATES["plus"]), 3000.0), duration)
+    return rotation_number(model, Runner(model).state_after(model.begin(PAPER_STATES["plus"]), 3000.0), duration)
 
 
 def test_a_tongue_has_one_rotation_number_and_a_torus_another_at_each_a():
-    """`plus` at a = 0.08 lies in a tongue of width 0.002, with 35 turns of the end blocks for 54 of the middle one."""
+    """`plus` at a = 0.08 lies in a tongue of width 0.002, with 35 cycles of the end blocks per 54 of the middle."""
     inside = [of_plus(a, 2000.0) for a in (0.0795, 0.08, 0.0805)]
     for number, error in inside:
         assert error < 1e-6
@@ -37,7 +37,7 @@ def test_half_of_the_time_is_less_exact_than_the_whole():
 def test_motion_that_passes_through_its_centre_has_no_phase():
     """In synchrony the end blocks are not apart, on the antiphase the middle block rests."""
     model = Model(Chain(3), law_of("linearized", 0.08))
-    together = Runner(model).after(model.begin(PAPER_STATES["minus"]), 9000.0)
+    together = Runner(model).state_after(model.begin(PAPER_STATES["minus"]), 9000.0)
     assert np.isnan(rotation_number(model, together, 100.0)).all()
 
 
@@ -57,7 +57,7 @@ def test_plateaux_are_runs_of_one_rotation_number():
         # Over what was not looked at.
         Plateau(a[3], a[7], Fraction(7, 11)),
     ]
-    # Where the errors are larger than what tells two ratios apart nothing is seen to be the same.
+    # If the errors exceed the difference between two ratios, the ratios are not found to be equal.
     assert [one.first for one in plateaux(rotation(number, [1] * 8, [1] * 8, 1e-5).sel(law="linearized"))] == [
         *a[:6],
         a[7],

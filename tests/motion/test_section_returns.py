@@ -6,7 +6,7 @@ import pytest
 from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.motion import period
 from burridge_knopoff.motion.period import orbit_length
-from burridge_knopoff.motion.section_returns import returns_of, state_of, stops_alike
+from burridge_knopoff.motion.section_returns import has_same_stop_shares, returns_of, state_of
 from tests.motion.stand_in import ROWS, shown
 
 
@@ -55,7 +55,11 @@ def test_eight_returns_show_a_set_and_its_mirror_image(first, last, symmetric, s
     ],
 )
 def test_motions_are_alike_by_how_often_mirror_blocks_stop(first, second, alike):
-    assert stops_alike(np.array(first), np.array(second)) == stops_alike(np.array(second), np.array(first)) == alike
+    assert (
+        has_same_stop_shares(np.array(first), np.array(second))
+        == has_same_stop_shares(np.array(second), np.array(first))
+        == alike
+    )
 
 
 @pytest.mark.parametrize(
@@ -72,8 +76,8 @@ def test_motions_are_alike_by_how_often_mirror_blocks_stop(first, second, alike)
 )
 def test_a_block_that_hardly_ever_stops_shows_no_returns(stops, expected):
     """In a window four times as long as well; the mirror image is seen at the mirror block."""
-    assert period.sections(np.array(stops)) == expected
-    assert period.sections(np.array(stops[::-1])) == expected[::-1]
+    assert period.section_blocks(np.array(stops)) == expected
+    assert period.section_blocks(np.array(stops[::-1])) == expected[::-1]
 
 
 def test_a_block_without_velocity_sticks():
@@ -96,8 +100,8 @@ def test_a_block_without_velocity_sticks():
 )
 def test_what_has_settled(spacing, drift, closed, settled):
     found = shown(ROWS, ROWS, spacing, drift)
-    assert found.closed(1e-6) == closed
-    assert found.settled(1e-6, 1e-3) == settled
+    assert found.has_periodic_spacing(1e-6) == closed
+    assert found.is_settled(1e-6, 1e-3) == settled
 
 
 @pytest.mark.parametrize(
@@ -106,13 +110,13 @@ def test_what_has_settled(spacing, drift, closed, settled):
         (np.tile(ROWS[:5], (8, 1)), 1e-6, True),
         (np.tile(ROWS[:5], (8, 1)), 1.1e-6, False),
         (ROWS, 1e-6, False),
-        # Bands of chaos that are visited in turn and are wider than the tolerance.
+        # Bands of chaos that are visited in order and are wider than the tolerance.
         (np.tile(ROWS[:5], (8, 1)) + 5e-6 * ROWS, 1e-6, False),
         (np.tile(ROWS[:20], (2, 1)), 1e-6, False),  # not seen twice in two thirds of the window
     ],
 )
 def test_a_closed_orbit_comes_round(rows, spacing, expected):
-    assert shown(rows, rows, spacing, 0.0).repeats(1e-6) == expected
+    assert shown(rows, rows, spacing, 0.0).is_periodic(1e-6) == expected
 
 
 @pytest.mark.parametrize(

@@ -25,7 +25,7 @@ PERIOD_DOUBLING = 0.272317183794
 def settled(a, position=MINUS, law="linearized", velocity=(0.099, 0.1012, 0.1023)):
     """Return the periodic orbit on which a long run of the paper's chain ends."""
     model = Model(Chain(3), law_of(law, a))
-    end = Runner(model).after(model.begin(InitialState("one", position, velocity)), 10_000.0)
+    end = Runner(model).state_after(model.begin(InitialState("one", position, velocity)), 10_000.0)
     return limit_cycle(model, end)
 
 
@@ -51,7 +51,7 @@ def ends_on(orbit, a):
     """Return the stops of the periodic orbit that a run from an orbit reaches at another a; None if it reaches none."""
     model = orbit.model.at(a)
     try:
-        return limit_cycle(model, Runner(model).after(orbit.reference, 3000.0)).stop_counts
+        return limit_cycle(model, Runner(model).state_after(orbit.reference, 3000.0)).stop_counts
     except OrbitError:
         return ()
 
@@ -179,7 +179,7 @@ def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
     assert doubling.at.multipliers.whole[0] == pytest.approx(-1.0, abs=1e-7)
     # The squared distance of the doubled orbit from its start after half its period falls to 0 there.
     near = [point.orbit for point in found.stable_orbits if 0.0 < doubling.a - point.orbit.a < 6e-4]
-    ends = [Runner(orbit.model).after(orbit.reference, 0.5 * orbit.period) for orbit in near]
+    ends = [Runner(orbit.model).state_after(orbit.reference, 0.5 * orbit.period) for orbit in near]
     missed = [np.abs(end.vector() - orbit.reference.vector()).max() for end, orbit in zip(ends, near, strict=True)]
     slope, offset = np.polyfit([orbit.a for orbit in near], np.square(missed), 1)
     assert len(near) > 2
@@ -219,7 +219,7 @@ def test_a_torus_branches_off_where_perturbations_stop_decaying():
         beside = at(bifurcation.at.orbit, bifurcation.a + offset)
         here = beside.reference
         start = ChainState(here.position + np.array([1e-6, 0.0, 0.0]), here.velocity, here.stuck)
-        end = Runner(beside.model).after(start, 3000.0 * beside.period)
+        end = Runner(beside.model).state_after(start, 3000.0 * beside.period)
         assert (np.abs(end.vector() - here.vector()).max() > 1e-6) == grows
 
 

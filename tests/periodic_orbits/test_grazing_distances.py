@@ -132,7 +132,7 @@ def test_friction_pulls_a_block_forward_that_slips_backward(law):
     step = 1e-4
     later, runner = [], Runner(model)
     for count in range(3):
-        later.append(runner.after(BACKWARD, count * step).vector())
+        later.append(runner.state_after(BACKWARD, count * step).vector())
     first = (-3.0 * later[0] + 4.0 * later[1] - later[2]) / (2.0 * step)
     assert rate(model, BACKWARD) == pytest.approx(first, abs=1e-6)
     derivatives = [_derivatives(model, state[None, :3], state[None, 3:], BACKWARD.stuck[None]) for state in later[:2]]
@@ -169,7 +169,7 @@ def test_where_friction_drops_slips_end_with_a_deceleration(dropping, contact):
     least, runner = np.full(orbit.model.blocks, np.inf), Runner(orbit.model)
     for time, block, kind in orbit.events:
         if kind == 0:
-            before = [runner.after(orbit.reference, time - step).velocity[block] for step in (1e-4, 2e-4)]
+            before = [runner.state_after(orbit.reference, time - step).velocity[block] for step in (1e-4, 2e-4)]
             along = np.sign(before[0])
             least[block] = min(least[block], along * (before[1] - before[0]) / 1e-4)
     found = grazing_distances(orbit).deceleration

@@ -35,7 +35,7 @@ def orbits():
     for name, (chain, law, a, position, *_) in ORBITS.items():
         model = Model(chain, law_of(law, a))
         velocity = VELOCITY.get(name, tuple(0.1 + 0.001 * k for k in range(chain.blocks)))
-        end = Runner(model).after(model.begin(InitialState("one", position, velocity)), 20_000.0)
+        end = Runner(model).state_after(model.begin(InitialState("one", position, velocity)), 20_000.0)
         found[name] = limit_cycle(model, end)
     return found
 
@@ -51,7 +51,7 @@ def moved(orbit, direction, size):
 @pytest.mark.parametrize("name", ORBITS)
 def test_a_settled_motion_returns_and_attracts(orbits, name):
     orbit = orbits[name]
-    end = Runner(orbit.model).after(orbit.reference, orbit.period)
+    end = Runner(orbit.model).state_after(orbit.reference, orbit.period)
     assert np.abs(end.vector() - orbit.reference.vector()).max() < 1e-11
     assert orbit.residual < 1e-12
     assert (orbit.symmetry, orbit.stop_counts) == ORBITS[name][4:]
@@ -72,7 +72,7 @@ def test_the_reference_is_in_the_middle_of_the_longest_time_without_events(orbit
     times = np.array([time for time, _, _ in orbit.events])
     gaps = np.diff(times, append=times[0] + orbit.period)
     ends = [times[gaps.argmax()] + since + late for since in (0.0, gaps.max()) for late in (0.0, 1e-9)]
-    guesses = [Runner(orbit.model).after(orbit.reference, time) for time in ends]
+    guesses = [Runner(orbit.model).state_after(orbit.reference, time) for time in ends]
     for guess in (*guesses, *(orbit.start(block) for block in np.flatnonzero(orbit.stop_counts))):
         found = find_periodic_orbit(orbit.model, guess, orbit.return_time, orbit.symmetry)
         around = [found.events[0][0], found.period - found.events[-1][0]]
@@ -94,7 +94,7 @@ def test_how_long_blocks_stick(orbits):
     orbit = orbits["asymmetric"]
     times = np.linspace(0.0, orbit.period, 4001)
     runner = Runner(orbit.model)
-    sticks = np.mean([runner.after(orbit.reference, float(time)).stuck for time in times[1:]], axis=0)
+    sticks = np.mean([runner.state_after(orbit.reference, float(time)).stuck for time in times[1:]], axis=0)
     assert [orbit.stick_time(block) for block in range(3)] == pytest.approx(sticks * orbit.period, abs=0.02)
     assert [orbits["symmetric"].stick_time(block) > 0.0 for block in range(3)] == [True, False, True]
 

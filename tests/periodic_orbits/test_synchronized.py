@@ -155,7 +155,7 @@ def test_chains_of_any_length_have_the_orbit(law, blocks):
     start = ChainState(*np.split(orbit.reference.vector() + shift, 2), orbit.reference.stuck)
     parted = []
     for turns_made in (40, 80):
-        end = Runner(orbit.model).after(start, turns_made * orbit.period).vector()
+        end = Runner(orbit.model).state_after(start, turns_made * orbit.period).vector()
         parted.append(np.abs(end - end[[*range(blocks)[::-1], *range(blocks, 2 * blocks)[::-1]]]).max())
     assert (parted[1] > parted[0]) == (abs(found.transverse) > 1.0)
 

@@ -9,8 +9,8 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff import simulate
-from burridge_knopoff.dataset.about import point_about
 from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.provenance.seal import BadFile, check_seal, read_seal, seal_path, write_sealed, write_sealed_text
 from tests.optional import needs, setting
 
@@ -25,10 +25,10 @@ def path(tmp_path_factory):
 def test_the_seal_of_a_point(path):
     with xr.open_dataset(path) as dataset:
         command = dataset.attrs["history"]
-    assert read_seal(path) == (point_about(command), "completed")
-    assert check_seal(path, point_about(command)) == "completed"
+    assert read_seal(path) == (point_identity(command), "completed")
+    assert check_seal(path, point_identity(command)) == "completed"
     with pytest.raises(BadFile, match=r"is another run: --a 0.08 instead of --a 0.09"):
-        check_seal(path, point_about(command.replace("0.08", "0.09", 1)))
+        check_seal(path, point_identity(command.replace("0.08", "0.09", 1)))
 
 
 def test_the_netcdf_library_reads_a_sealed_file(path, tmp_path):

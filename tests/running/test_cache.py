@@ -12,9 +12,9 @@ import pytest
 from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.running import cache as module
-from burridge_knopoff.running.cache import kept
+from burridge_knopoff.running.cache import cached_call
 from burridge_knopoff.running.packing import pack, unpack
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 
 
 @dataclasses.dataclass
@@ -56,8 +56,8 @@ CALLS = [
 
 def test_each_call_is_made_once_and_has_a_file_of_its_own(tmp_path):
     for call in CALLS:
-        result, path, was_read = kept(tmp_path, *call)
-        again, same, was_read_again = kept(tmp_path, *call)
+        result, path, was_read = cached_call(tmp_path, *call)
+        again, same, was_read_again = cached_call(tmp_path, *call)
         assert (path, was_read, was_read_again) == (same, False, True)
         assert repr(again) == repr(result)
     assert len(list(tmp_path.iterdir())) == len(CALLS)
@@ -66,32 +66,32 @@ def test_each_call_is_made_once_and_has_a_file_of_its_own(tmp_path):
 def test_what_is_known_of_a_value_besides_does_not_count(tmp_path):
     """What has been looked up before, or is one object with another, makes no other call."""
     asked = MODEL.at(0.05)
-    path = kept(tmp_path, first, [asked, asked])[1]
+    path = cached_call(tmp_path, first, [asked, asked])[1]
     assert asked.sliding_offset.shape == (3,)
-    assert kept(tmp_path, first, [asked, MODEL.at(0.05)])[1:] == (path, True)
+    assert cached_call(tmp_path, first, [asked, MODEL.at(0.05)])[1:] == (path, True)
 
 
 @pytest.mark.parametrize(
     ("place", "name", "other"), [(module, "source_fingerprint", lambda name: "another"), (np, "__version__", "0.1")]
 )
 def test_other_code_is_another_call(tmp_path, monkeypatch, place, name, other):
-    kept(tmp_path, first, 1)
+    cached_call(tmp_path, first, 1)
     monkeypatch.setattr(place, name, other)
-    assert not kept(tmp_path, first, 1)[2]
+    assert not cached_call(tmp_path, first, 1)[2]
 
 
 @pytest.mark.parametrize("damage", [b"", b"no line", b"0" * 64 + b"\nother"])
 def test_a_damaged_file_counts_as_none(tmp_path, damage):
-    path = kept(tmp_path, first, 7)[1]
+    path = cached_call(tmp_path, first, 7)[1]
     path.write_bytes(damage)
-    assert kept(tmp_path, first, 7) == (7, path, False)
-    assert kept(tmp_path, first, 7) == (7, path, True)
+    assert cached_call(tmp_path, first, 7) == (7, path, False)
+    assert cached_call(tmp_path, first, 7) == (7, path, True)
 
 
 def test_a_file_of_another_call_counts_as_none(tmp_path):
-    one, other = (kept(tmp_path, first, number)[1] for number in (7, 8))
+    one, other = (cached_call(tmp_path, first, number)[1] for number in (7, 8))
     os.replace(one, other)
-    assert kept(tmp_path, first, 8) == (8, other, False)
+    assert cached_call(tmp_path, first, 8) == (8, other, False)
 
 
 def test_what_is_read_is_what_was_written():
@@ -119,10 +119,10 @@ def test_what_cannot_be_kept_is_refused(value):
 
 
 def test_nothing_is_a_pickle(tmp_path):
-    content = kept(tmp_path, first, MODEL)[1].read_bytes()
+    content = cached_call(tmp_path, first, MODEL)[1].read_bytes()
     with pytest.raises(pickle.UnpicklingError):
         pickle.loads(content)
-    # A class that nobody has imported is not looked for.
+    # A class whose module has not been imported is not searched for.
     with pytest.raises(LookupError):
         unpack(b'[["object",0],[["attributes","antigravity:x",{}]]]\n')
 
@@ -133,19 +133,19 @@ def told(number):
 
 @pytest.mark.parametrize("processes", [1, 2])
 def test_what_nothing_asks_for_is_deleted_at_the_end(tmp_path, processes):
-    """Also what other settings have left beside it; but nothing if a call has failed, and never anything else."""
+    """Caches of other settings in neighbouring folders too, but nothing if a call failed, and no other files."""
     before, now = tmp_path / (16 * "0"), tmp_path / (16 * "1")
     others = [tmp_path / "mine", now / "mine", now / "told" / "mine", tmp_path / "kept/told" / (32 * "a")]
     for path in others:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text("mine")
     for folder, numbers in ((before, [1]), (now, [1, 2])):
-        with shared_out(processes, folder) as each:
+        with parallel_map(processes, folder) as each:
             each("told", told, numbers)
     assert not any(path.is_file() for path in before.rglob("*"))
-    with pytest.raises(ZeroDivisionError), shared_out(processes, now) as each:
+    with pytest.raises(ZeroDivisionError), parallel_map(processes, now) as each:
         each("fails", divmod, [1], [0])
-    with shared_out(processes, now) as each:
+    with parallel_map(processes, now) as each:
         assert [pid != os.getpid() for _, pid in each("told", told, [2])] == [processes == 2]
     left = {path for path in tmp_path.rglob("*") if path.is_file()}
     assert set(others) <= left

@@ -1,4 +1,4 @@
-"""What bounds a run while it goes on: Ctrl-C, and how much it keeps."""
+"""Limits during a run: Ctrl-C, and the amount of data that it stores."""
 
 import signal
 import subprocess
@@ -66,6 +66,6 @@ def test_a_run_that_keeps_too_much_ends_with_one_line(key, numbers, options, mon
     monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * kept)
     assert simulate("linearized", 0.08, "plus", **options).event_count == run.event_count
     monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * (kept - 1))
-    told = rf"^{key}: got more than \S+ numbers to keep by τ = [\d.]+, expected [\w, ]+$"
+    told = rf"^{key}: got more than \S+ numbers to store by τ = [\d.]+, expected [\w, ]+$"
     with pytest.raises(ValueError, match=told):
         simulate("linearized", 0.08, "plus", **options)

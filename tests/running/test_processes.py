@@ -9,7 +9,7 @@ import sys
 import psutil
 import pytest
 
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 
 
 def told(first, second):
@@ -22,7 +22,7 @@ def refused(number):
 
 @pytest.mark.parametrize("processes", [1, 3])
 def test_results_come_in_order(processes, caplog):
-    with shared_out(processes) as each, caplog.at_level(logging.INFO):
+    with parallel_map(processes) as each, caplog.at_level(logging.INFO):
         found = each("sums", told, range(30), range(100, 130))
         assert each("nothing", told, [], []) == []
     assert [total for total, _ in found] == list(range(100, 160, 2))
@@ -43,8 +43,8 @@ def test_what_results_lead_to_is_carried_out_as_well(processes, caplog):
         found.append((name, width, half, process))
         return [(name + side, half) for side in "lr" if half > 1.0]
 
-    with shared_out(processes) as each, caplog.at_level(logging.INFO):
-        each.and_on("halved", halves, [("a", 8.0), ("b", 2.0)], more)
+    with parallel_map(processes) as each, caplog.at_level(logging.INFO):
+        each.work_through("halved", halves, [("a", 8.0), ("b", 2.0)], more)
         each.log()
     assert sorted(name for name, *_ in found) == ["a", "al", "all", "alr", "ar", "arl", "arr", "b"]
     assert all(half == width / 2 for _, width, half, _ in found)
@@ -54,31 +54,31 @@ def test_what_results_lead_to_is_carried_out_as_well(processes, caplog):
 
 @pytest.mark.parametrize("processes", [1, 3])
 def test_an_error_on_the_way_ends_all(processes):
-    with shared_out(processes) as each, pytest.raises(ValueError, match="1: not allowed"):
-        each.and_on("refused", refused, [("a", 1)], lambda *_: [])
+    with parallel_map(processes) as each, pytest.raises(ValueError, match="1: not allowed"):
+        each.work_through("refused", refused, [("a", 1)], lambda *_: [])
 
 
 def test_where_the_system_forbids_fork_this_process_does_all_the_work(monkeypatch):
     monkeypatch.setattr("sys.platform", "darwin")
-    with shared_out(3) as each:
+    with parallel_map(3) as each:
         assert each("sums", told, [1, 2], [10, 20]) == [(11, os.getpid()), (22, os.getpid())]
 
 
 @pytest.mark.parametrize("processes", [1, 3])
 def test_an_error_is_that_of_the_call(processes):
-    with shared_out(processes) as each, pytest.raises(ValueError, match="7: not allowed"):
+    with parallel_map(processes) as each, pytest.raises(ValueError, match="7: not allowed"):
         each("refused", refused, [7])
 
 
 KILLED = """
 import os, time
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 
 def slow(number):
     os.write(1, b"%d\\n" % os.getpid())
     time.sleep(600)
 
-with shared_out(3) as each:
+with parallel_map(3) as each:
     each("slow", slow, range(3))
 """
 

@@ -143,7 +143,7 @@ def test_the_status_is_the_kernels():
 
 @pytest.mark.parametrize("arguments", [{"until": 5.0}, {"halting_block": 0}])
 def test_the_solver_of_fixed_steps_takes_no_end_but_the_windows(arguments):
-    """It would go on for ever: without an observer there is no window."""
+    """The run would never end: without an observer there is no window."""
     runner = Runner(Model(Chain(3), law_of("linearized", 0.08)), "rk4")
     runner.begin(runner.model.begin(PAPER_STATES["minus"]))
     with refused("solver: got 'rk4', expected", "series | map"):
@@ -153,10 +153,10 @@ def test_the_solver_of_fixed_steps_takes_no_end_but_the_windows(arguments):
 def test_events_that_were_read_outlive_another_beginning():
     model = Model(Chain(3), law_of("linearized", 0.08))
     runner = Runner(model, keep_events=True)
-    runner.after(model.begin(PAPER_STATES["plus"]), 40.0)
+    runner.state_after(model.begin(PAPER_STATES["plus"]), 40.0)
     time, block, _ = runner.events()
     kept = time.copy()
-    runner.after(model.begin(PAPER_STATES["minus"]), 10.0)
+    runner.state_after(model.begin(PAPER_STATES["minus"]), 10.0)
     assert len(block) == len(kept) > 10
     assert (time == kept).all()
     # The log has those of the second run alone.

@@ -46,7 +46,7 @@ def test_time_shift(count, which):
     law, solver = which
     options = {"solver": solver, "events": "all", "transient": 0.0}
     run = simulate(law, 0.1, "plus", window=60.0, **options)
-    # A stop with all other blocks in motion or clearly stuck: `tested` then tells stuck from slipping by the force.
+    # A stop with all other blocks in motion or clearly stuck: `tested` then decides by the force which blocks stick.
     k = count + int(np.argmax(run.event_kind[count:] == 0))
     time, position, velocity = run.event_time[k], run.event_position[k], run.event_velocity[k]
     later = InitialState("later", tuple(position), tuple(velocity))
@@ -128,7 +128,7 @@ def test_a_limit_ends_the_run(monkeypatch, limit, value):
 
 @pytest.mark.parametrize("solver", ["map", "series", "rk4"])
 def test_motion_without_bound_ends_the_run(solver):
-    """Backward slip under the linearized law is fed without limit: friction 1 − a|U'| turns negative."""
+    """Backward slip under the linearized law grows without limit: friction 1 − a|U'| becomes negative."""
     run = simulate("linearized", 1.9, "minus", solver=solver, contact="symmetric", transient=0.0, window=1e4)
     assert run.status == "diverged"
     assert run.end_time < 1000.0
@@ -173,7 +173,7 @@ def test_exponents_are_in_descending_order_with_their_errors_and_batches(law, a,
 @pytest.mark.parametrize(("law", "solver"), [("linearized", "series"), ("linearized", "map"), ("nonlinear", "series")])
 @pytest.mark.parametrize("time", [37.0, 50.0, 61.3])
 def test_a_run_that_continues_is_the_whole_run(law, solver, time):
-    """Split between events, in the midst of a piece, every event and crossing is that of the whole, to the bit."""
+    """Split between events, within a piece, a run has the events and crossings of the whole run, to the bit."""
     settings = {"solver": solver, "transient": 0, "events": "all", "batches": 2}
     whole = simulate(law, 0.08, "plus", window=120.0, **settings)
     first = simulate(law, 0.08, "plus", window=time, **settings)
@@ -216,6 +216,6 @@ def test_slips_are_those_that_have_begun_at_first_and_those_that_start(start):
         kinds = run.event_kind[run.event_block == block]
         slips = run.initially_slipping[block - 1] + (kinds == 1).sum()
         assert slips - (kinds == 0).sum() in (0, 1)
-        # Stops and starts take turns, and the first is a stop exactly if the block slips at the beginning.
+        # Stops and starts alternate, and the first is a stop if and only if the block slips at the beginning.
         assert not len(kinds) or kinds[0] == 1 - run.initially_slipping[block - 1]
         assert (kinds[1:] != kinds[:-1]).all()

@@ -48,7 +48,7 @@ BEGUN = {
     [
         (ChainState(ZEROS, ZEROS, SLIPPING, math.nan), "state.time: got nan, expected a finite number"),
         (ChainState(ZEROS, -ONES, SLIPPING), "state.velocity: got -1.0, expected at least 0 under contact one_sided"),
-        (ChainState(ZEROS, [0.0, 1.0, 1.0], STUCK), "state.velocity[1]: got 1.0, expected 0, as this block sticks"),
+        (ChainState(ZEROS, [0.0, 1.0, 1.0], STUCK), "state.velocity[1]: got 1.0, expected 0 because this block sticks"),
         (ChainState(ZEROS, [0.0, np.nan, 0.0], SLIPPING), ": got nan, expected"),
     ],
 )
@@ -76,7 +76,7 @@ def test_blocks_slip_backward_under_symmetric_contact():
 
 
 def test_rounding_may_leave_a_stop_a_velocity_of_either_sign():
-    """The block stops at once; `Runner.after` takes more, as Newton's method passes by what no motion has."""
+    """The block stops at once; `Runner.state_after` accepts it, as Newton's method passes through such states."""
     runner = Runner(MODEL, keep_events=True)
     position = np.array([0.1, 0.2, 0.0])
     for rounding in (-0.5 * ROUNDING, -1e-17):
@@ -85,7 +85,7 @@ def test_rounding_may_leave_a_stop_a_velocity_of_either_sign():
         time, block, kind = (values[0] for values in runner.events())
         assert (block, kind) == (1, 0)
         assert time < 1e-11
-    assert runner.after(ChainState(position, np.array([0.1, -0.01, 0.2]), SLIPPING), 1.0) is not None
+    assert runner.state_after(ChainState(position, np.array([0.1, -0.01, 0.2]), SLIPPING), 1.0) is not None
 
 
 @pytest.mark.parametrize("solver", ["series", "map"])

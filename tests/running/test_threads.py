@@ -6,12 +6,12 @@ import time
 import pytest
 
 from burridge_knopoff import simulate
-from burridge_knopoff.running.threads import in_threads
+from burridge_knopoff.running.threads import map_in_threads
 
 
 @pytest.mark.parametrize("threads", [1, 3])
 def test_results_come_in_order(threads):
-    found = in_threads(threads, lambda one, other: (one + other, threading.get_ident()), range(30), range(100, 130))
+    found = map_in_threads(threads, lambda one, other: (one + other, threading.get_ident()), range(30), range(100, 130))
     assert [total for total, _ in found] == list(range(100, 160, 2))
     assert ({thread for _, thread in found} == {threading.get_ident()}) == (threads == 1)
 
@@ -27,6 +27,6 @@ def test_an_error_ends_the_other_calls():
 
     begin = time.monotonic()
     with pytest.raises(ValueError, match="0: not allowed"):
-        in_threads(2, call, range(3))
+        map_in_threads(2, call, range(3))
     assert time.monotonic() - begin < 10
     assert simulate("linearized", 0.16, transient=0.0, window=10.0).status == "completed"

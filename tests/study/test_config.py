@@ -117,7 +117,7 @@ def test_laws_in_the_order_of_the_config():
     assert list(study.config["basins"]["a"]) == list(study.laws)
     assert study.config["chains"]["laws"] == ["nonlinear"]
     assert study.model("cl", 0.5)
-    assert study.model("soft", 3.0).law.numbers == {"sigma": 0.05, "eta": 0.1}
+    assert study.model("soft", 3.0).law.parameters == {"sigma": 0.05, "eta": 0.1}
     assert study.model("soft", 3.0).law.name == "soft"
     assert float(study.model("cl", 0.3).law(0.0)) == 0.99
 

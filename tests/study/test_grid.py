@@ -64,7 +64,7 @@ def test_a_grid_of_a_alone_is_a():
 
 def test_a_number_of_a_law_is_a_parameter():
     study = load(laws={"drop": {"law": "carlson_langer"}}, grid={"a": [2], "sigma": [0.01, 0.05]})
-    assert [study.run_of(**point)[0].law.numbers["sigma"] for point in all_points(study)] == [0.01, 0.05]
+    assert [study.run_of(**point)[0].law.parameters["sigma"] for point in all_points(study)] == [0.01, 0.05]
 
 
 @pytest.mark.parametrize(

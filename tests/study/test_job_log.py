@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.study.job_log import SILENT, failure_line, logged_error, remedies
 
 TRACEBACK = """Traceback (most recent call last):
@@ -47,7 +47,7 @@ def test_the_command_that_remakes_a_bad_file_is_no_part_of_the_reason(tmp_path):
 
 def test_what_a_long_job_has_done_is_not_why_it_failed(tmp_path, caplog):
     caplog.set_level("INFO")
-    with shared_out(1, tmp_path / "kept") as each:
+    with parallel_map(1, tmp_path / "kept") as each:
         each("doubled", abs, [1, 2])
     (tmp_path / "log").write_text(f"{caplog.messages[0]}\n")
     assert logged_error(tmp_path / "log") == ""

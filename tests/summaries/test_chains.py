@@ -41,7 +41,7 @@ def files(tmp_path_factory):
 SETTINGS = two_blocks.run_settings(transient=1500.0, window=400.0)
 SEARCH = SearchSettings(lifetime=20_000.0)
 LAWS, GRID = ("linearized", "nonlinear", "exponential"), (0.03, 0.15, 0.3)
-STATES = Sample(samples=2, symmetric_samples=0).initial(2)
+STATES = Sample(samples=2, symmetric_samples=0).initial_states(2)
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,7 @@ from burridge_knopoff.summaries.detuning import DetunedMotion, detuned_motion
 
 def of_branch_1(law: str, a: float, detuning: float) -> DetunedMotion:
     model = Model(Chain(3), law_of(law, a))
-    return detuned_motion(model, Runner(model).after(model.begin(PAPER_STATES["plus"]), 3000.0), detuning, 3)
+    return detuned_motion(model, Runner(model).state_after(model.begin(PAPER_STATES["plus"]), 3000.0), detuning, 3)
 
 
 def attracts(found: DetunedMotion) -> bool:

@@ -111,7 +111,7 @@ def test_velocities_go_together_or_against_each_other(difference, least, most):
     model = MODELS[0]
     position, velocity, _ = oscillating_states(model, *(np.array([x]) for x in (0.03, difference, 100.0)))
     start = ChainState(position[0] - model.sliding_offset, velocity[0], np.zeros(3, dtype=bool))
-    end = Runner(model).after(start, 3000.0)
+    end = Runner(model).state_after(start, 3000.0)
     assert least <= follow_attractor(model, end).velocity_correlation <= most
 
 
@@ -129,7 +129,7 @@ def test_inner_blocks_that_oscillate_break_the_rule_of_close_phases(share, least
     assert not standing.any()
     runner, together = Runner(MODELS[0]), 0
     for x, speed in zip(position - MODELS[0].sliding_offset, velocity, strict=True):
-        end = runner.after(ChainState(x, speed, np.zeros(3, dtype=bool)), 3000.0)
+        end = runner.state_after(ChainState(x, speed, np.zeros(3, dtype=bool)), 3000.0)
         together += abs(end.position[0] - end.position[2]) < 1e-3
     assert least <= together / count <= most
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from burridge_knopoff import Chain, Model, MotionKind, in_words, law_of, multipliers, simulate
+from burridge_knopoff import Chain, Model, MotionKind, decode_flags, law_of, multipliers, simulate
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
 from tests.pages import outputs
 from tests.test_tutorial import FROM_FILES
@@ -99,7 +99,7 @@ def test_unequal_blocks_are_periodic_or_chaotic(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("unequal_blocks", tmp_path))
     check_page("studies.md", "Two unequal blocks")
     kind = opened(tmp_path, "agreement")["kind"]
-    assert in_words(kind).sel(law="coulomb").values.tolist() == 2 * [["periodic", "periodic", "chaotic"]]
+    assert decode_flags(kind).sel(law="coulomb").values.tolist() == 2 * [["periodic", "periodic", "chaotic"]]
 
 
 def test_small_and_large_slip_events_of_a_fault(tmp_path, monkeypatch):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import yaml
 
-from burridge_knopoff import in_words
+from burridge_knopoff import decode_flags
 from burridge_knopoff.figures.mean_distance import draw
 from tests.small_study import run_study
 from tests.workflow.conftest import LIMITS
@@ -32,13 +32,13 @@ def test_the_study_ends_and_its_last_lines_count_them(limited):
 
 def test_summaries_carry_the_status_and_have_no_value(summaries):
     found, agreement = summaries["mean_distance"], summaries["agreement"]
-    failed = in_words(found["status"]) == "diverged"
+    failed = decode_flags(found["status"]) == "diverged"
     assert failed.sel(law="linearized").values.tolist() == [[False, True], [False, True]]
     assert not failed.sel(law="nonlinear").any()
     for name in ("mean_distance", "mean_distance_error"):
         assert (np.isnan(found[name]) == failed).all()
     assert (found["synchronized"].where(failed, 0) == 0).all()
-    assert (in_words(agreement["kind"]).values[failed.values] == "undetermined").all()
+    assert (decode_flags(agreement["kind"]).values[failed.values] == "undetermined").all()
     assert (agreement["agrees"].sel(a=2.5) == -1).all()
     assert np.isnan(agreement["difference"].sel(a=2.5)).all()
 

@@ -57,7 +57,7 @@ class Attractor:
 
 def required_returns(found: Returns, tolerance: float) -> int:
     """Return the number of successive returns that capture requires: at least two periods of a periodic orbit."""
-    if not found.closed(tolerance):
+    if not found.has_periodic_spacing(tolerance):
         return CLOSE_RETURNS
     return max(CLOSE_RETURNS, 2 * orbit_length(found.returns, 10.0 * tolerance, LONGEST_ORBIT))
 

@@ -19,7 +19,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import CHAOS
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.section_returns import state_of
-from burridge_knopoff.motion.set_distance import SPACINGS, least_distance
+from burridge_knopoff.motion.set_distance import SPACINGS, minimum_distance
 
 #: Smallest radius of an attractor, for v = 0.1: 1 % of the default resolution. A motion to which only smaller
 #: perturbations return belongs to a set that attracts as a whole, or does not attract.
@@ -53,7 +53,7 @@ def embedded_orbits(attractors: Sequence[Attractor], index: int, tolerance: floa
         for k, other in enumerate(attractors)
         if k != index
         and other.motion.spacing <= tolerance
-        and least_distance(motion.returns, other.motion.returns, reach) <= reach
+        and minimum_distance(motion.returns, other.motion.returns, reach) <= reach
     ]
 
 
@@ -88,7 +88,7 @@ class Capture:
             radius = min(attractor.radius, max(self.largest * model.scale, attractor.motion.spacing))
             for k, other in enumerate(attractors):
                 if k != index and k not in within[index] and index not in within[k]:
-                    apart = least_distance(attractor.motion.returns, other.motion.returns, radius / SEPARATION_SHARE)
+                    apart = minimum_distance(attractor.motion.returns, other.motion.returns, radius / SEPARATION_SHARE)
                     radius = min(radius, SEPARATION_SHARE * apart)
             result.append(replace(attractor, radius=radius, patience=LONGEST_PATIENCE if within[index] else 0.0))
         return result

@@ -12,10 +12,10 @@ from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.slow_set import SLOW_PUSH, SLOW_TIME
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.classification import Classifier
-from burridge_knopoff.motion.kind import CHAOS, closed_kind, judged_distance
+from burridge_knopoff.motion.kind import CHAOS, periodic_orbit_kind, synchronization_distance
 from burridge_knopoff.motion.observables import SteadyMotion
-from burridge_knopoff.motion.section_returns import Returns, stops_alike, visit
-from burridge_knopoff.motion.set_distance import SPACINGS, is_near, least_distance
+from burridge_knopoff.motion.section_returns import Returns, has_same_stop_shares, visit
+from burridge_knopoff.motion.set_distance import SPACINGS, is_near, minimum_distance
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 
 # Drift, in resolutions, up to which a motion that has not converged is followed for longer. It is undetermined if it
@@ -67,7 +67,7 @@ class Convergence:
     @property
     def tolerance(self) -> float:
         """Distance within which the returns of a periodic orbit repeat."""
-        return self.motion_settings.at_speed(self.model.v).period_tolerance
+        return self.motion_settings.scaled_to_velocity(self.model.v).period_tolerance
 
     def settle(self, start: ChainState) -> Returns | None:
         """Integrate to convergence and return the section returns; None if the state does not converge."""
@@ -80,7 +80,7 @@ class Convergence:
             if found is None:
                 return None
             start = found.state()
-            closed, settled = found.closed(tolerance), found.settled(tolerance, resolution)
+            closed, settled = found.has_periodic_spacing(tolerance), found.is_settled(tolerance, resolution)
             # A set that is not a periodic orbit takes longer to fill, above all near a resonance, where half of a torus
             # looks like a complete set. A chaotic transient may still end.
             whole = self.is_symmetric(found) or not self.model.chain.is_mirror_symmetric
@@ -105,13 +105,13 @@ class Convergence:
         still = self.tolerance * STEADY_DRIFT
         wait = self.settings.time_limit
         while wait <= self.longest_extension * self.settings.time_limit:
-            closed = found.closed(self.tolerance)
-            if found.drift <= still or (not closed and found.settled(self.tolerance, self.resolution)):
+            closed = found.has_periodic_spacing(self.tolerance)
+            if found.drift <= still or (not closed and found.is_settled(self.tolerance, self.resolution)):
                 return found
             later = visit(self.model, found.state(), wait, found.window)
             if later is None:
                 return None
-            if closed and later.closed(self.tolerance):
+            if closed and later.has_periodic_spacing(self.tolerance):
                 if _remaining_distance(found, later, wait) <= REACHED_DISTANCE * self.resolution:
                     return later
             elif not closed and is_near(later.returns, found.returns, self._reach(found)):
@@ -122,7 +122,7 @@ class Convergence:
     def measure(self, found: Returns, again: int = 0) -> tuple[Returns, SteadyMotion] | None:
         """Measure a settled motion. If it turns out to be a transient, return the motion that follows it instead."""
         settings = self.settings
-        closed, window = found.closed(self.tolerance), self.measuring_window(found)
+        closed, window = found.has_periodic_spacing(self.tolerance), self.measuring_window(found)
         motion = self.classifier(settings.transient, window).measure(found.state())
         if motion is None:
             return None
@@ -133,10 +133,10 @@ class Convergence:
         chaotic = motion.kind in CHAOS
         if closed and not chaotic:
             # The motion repeats. A window gives no better exponents of a long orbit that hardly attracts.
-            mean = judged_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
-            own = self.motion_settings.at_speed(self.model.v)
+            mean = synchronization_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
+            own = self.motion_settings.scaled_to_velocity(self.model.v)
             period = motion.period if math.isfinite(motion.period) else math.inf
-            return found, replace(motion, kind=closed_kind(mean, period, own), period=period)
+            return found, replace(motion, kind=periodic_orbit_kind(mean, period, own), period=period)
         if not chaotic and motion.mean_distance_error <= UNSTEADY_ERROR * motion.mean_distance:
             return found, motion
         # Chaos that still holds a state at the time limit is listed, however long it lasts.
@@ -144,13 +144,13 @@ class Convergence:
         if later is None:
             return None
         # Thin chaos may look periodic in one window, but hardly in a second one.
-        ended = later.closed(self.tolerance) and later.settled(self.tolerance, self.resolution)
-        stays = not ended and (chaotic or stops_alike(later.stop_count, found.stop_count))
+        ended = later.has_periodic_spacing(self.tolerance) and later.is_settled(self.tolerance, self.resolution)
+        stays = not ended and (chaotic or has_same_stop_shares(later.stop_count, found.stop_count))
         return (found, motion) if stays or again == self.trials else self.measure(later, again + 1)
 
     def measuring_window(self, found: Returns) -> float:
         """Return the window in which a motion is measured; for a long orbit, the window in which it has repeated."""
-        return found.window if found.closed(self.tolerance) else FILLING_WINDOWS * self.settings.window
+        return found.window if found.has_periodic_spacing(self.tolerance) else FILLING_WINDOWS * self.settings.window
 
     def is_symmetric(self, found: Returns) -> bool:
         """Return whether a motion cannot be distinguished from its mirror image in its window."""
@@ -160,11 +160,11 @@ class Convergence:
         """Return whether a motion comes within the resolution of its mirror image."""
         if not _has_comparable_image(found):
             return False
-        return least_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
+        return minimum_distance(found.returns, found.mirror_returns, self.resolution) < self.resolution
 
     def is_eventually_symmetric(self, found: Returns) -> bool:
         """Return whether a motion close to its mirror image covers it in a longer time."""
-        if found.closed(self.tolerance) or not self.is_close_to_mirror_image(found):
+        if found.has_periodic_spacing(self.tolerance) or not self.is_close_to_mirror_image(found):
             return False
         longer = visit(self.model, found.state(), 0.0, SYMMETRY_WINDOW * self.settings.transient)
         if longer is None or longer.block != found.block:
@@ -180,7 +180,7 @@ class Convergence:
         if around is None or around.kind not in CHAOS:
             return False
         later = visit(self.model, start, settings.time_limit, settings.window)
-        return later is not None and not later.closed(self.tolerance)
+        return later is not None and not later.has_periodic_spacing(self.tolerance)
 
     def classifier(self, transient: float, window: float) -> Classifier:
         """Return a classifier of converged motion with this transient and window."""
@@ -188,7 +188,7 @@ class Convergence:
 
     def _reach(self, found: Returns) -> float:
         """Return the largest distance from a motion of a return that belongs to it."""
-        return max(self.resolution, 0.0 if found.closed(self.tolerance) else SPACINGS * found.spacing)
+        return max(self.resolution, 0.0 if found.has_periodic_spacing(self.tolerance) else SPACINGS * found.spacing)
 
 
 def _remaining_distance(found: Returns, later: Returns, wait: float) -> float:

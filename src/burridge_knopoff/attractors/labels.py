@@ -15,7 +15,7 @@ from burridge_knopoff.model.ranges import Number, OneOf, Whole
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.settings import LONGEST
-from burridge_knopoff.running.threads import in_threads
+from burridge_knopoff.running.threads import map_in_threads
 from burridge_knopoff.values import each_instance_of, instance_of, real_array
 
 #: Label of a state that reaches no known attractor.
@@ -138,7 +138,7 @@ def label_states(
     OneOf(STARTS).form(start, "start")
     time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
     threads = Whole(1, 1024).form(threads, "threads")
-    stuck = model.starts_stuck(position, velocity, start)
+    stuck = model.stuck_blocks(position, velocity, start)
     labels = np.full(len(position), UNDETERMINED, dtype=np.intc)
     times = np.zeros(len(position))
     if not attractors:
@@ -152,5 +152,5 @@ def label_states(
             model, attractors, offset[part], velocity[part], stuck[part], time_limit
         )
 
-    in_threads(threads, work, edges[:-1], edges[1:])
+    map_in_threads(threads, work, edges[:-1], edges[1:])
     return labels, times

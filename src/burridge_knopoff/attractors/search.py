@@ -18,9 +18,9 @@ from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.slow_set import SLOW_TIME, sample_slow_set
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.sampling import sampled_states
+from burridge_knopoff.model.sampling import sample_initial_states
 from burridge_knopoff.motion.kind import CHAOS
-from burridge_knopoff.motion.observables import SteadyMotion, lies_on
+from burridge_knopoff.motion.observables import SteadyMotion, is_on_attractor
 from burridge_knopoff.motion.section_returns import Returns
 from burridge_knopoff.motion.set_distance import is_near
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
@@ -140,7 +140,7 @@ class Search(Convergence):
         """Return the states at τ = 0 of the drawn initial states, followed by the given ones."""
         settings = self.settings
         box = settings.position, settings.velocity
-        drawn = sampled_states(self.model.blocks, settings.samples, *box, settings.seed)
+        drawn = sample_initial_states(self.model.blocks, settings.samples, *box, settings.seed)
         return [self.model.begin(state, start) for state in (*drawn, *given)]
 
     def labels(self, starts: Sequence[ChainState], check: bool = True) -> np.ndarray:
@@ -228,7 +228,7 @@ class Search(Convergence):
             if found is None:
                 return UNDETERMINED
             for index, attractor in enumerate(self.attractors):
-                if attractor.slow or not lies_on(found, attractor.motion, resolution, self.tolerance):
+                if attractor.slow or not is_on_attractor(found, attractor.motion, resolution, self.tolerance):
                     continue
                 return index
             # Periodic orbits on a slow set are part of it.
@@ -256,7 +256,7 @@ class Search(Convergence):
 
     def candidates(self, found: Returns, motion: SteadyMotion) -> Iterator[Candidate]:
         """Yield the attractors to which a converged motion may belong, the first to be accepted being the one."""
-        closed = found.closed(self.tolerance)
+        closed = found.has_periodic_spacing(self.tolerance)
         mirror = self.model.chain.is_mirror_symmetric
         synchronized = mirror and motion.mean_distance < self.motion_settings.synchronization_threshold
         if mirror and not synchronized and motion.mean_distance < self.resolution:

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
-from burridge_knopoff.model.drawn import SEED
 from burridge_knopoff.model.fields import check_fields, settings
+from burridge_knopoff.model.random_numbers import SEED
 from burridge_knopoff.model.ranges import Number, Whole
 from burridge_knopoff.model.sampling import POSITION, POSITIONS, VELOCITIES, VELOCITY
 from burridge_knopoff.running.settings import TIME

@@ -8,7 +8,7 @@ from burridge_knopoff.attractors.attractor import perturb
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.observables import SteadyMotion
-from burridge_knopoff.motion.section_returns import Returns, state_of, stops_alike, visit
+from burridge_knopoff.motion.section_returns import Returns, has_same_stop_shares, state_of, visit
 
 #: Number of states that sample a slow set; their perturbation, in resolutions, large enough to leave a locked orbit on
 #: it; and the time, in transients, in which they fall back on the set, too short to reach that orbit again.
@@ -34,10 +34,10 @@ def sample_slow_set(model: Model, motion: SteadyMotion, settings: SearchSettings
         if (
             found is not None
             and (found.block, found.mirror_block) == blocks
-            and stops_alike(found.stop_count, motion.stop_rate)
+            and has_same_stop_shares(found.stop_count, motion.stop_rate)
         ):
             clouds.append(found)
     # The motion is continued from the last return, which has to be its own.
     returns = np.concatenate([*(cloud.returns for cloud in clouds), motion.returns])
     mirror_returns = np.concatenate([*(cloud.mirror_returns for cloud in clouds), motion.mirror_returns])
-    return motion.with_returns(returns, mirror_returns)
+    return motion.replace_returns(returns, mirror_returns)

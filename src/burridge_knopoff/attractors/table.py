@@ -11,7 +11,7 @@ import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.lifetime import Lifetime
-from burridge_knopoff.dataset.columns import Column, filled
+from burridge_knopoff.dataset.columns import Column, column_values
 from burridge_knopoff.dataset.variables import PERIOD, Variable, flag
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
@@ -144,7 +144,7 @@ def slot_values(
         for k, (model, here) in enumerate(zip(models, rows, strict=True))
         for slot, row in enumerate(here)
     }
-    return filled(slot_variables(dimension), slots, shape)
+    return column_values(slot_variables(dimension), slots, shape)
 
 
 def name_branches(branch: np.ndarray, symmetry: np.ndarray, stop_rate: np.ndarray) -> dict[str, np.ndarray]:

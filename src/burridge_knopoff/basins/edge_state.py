@@ -27,7 +27,7 @@ from burridge_knopoff.basins.edge_tracking import SEPARATED_DISTANCE, EdgeTrack,
 from burridge_knopoff.basins.settings import EDGES, EdgeSettings
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
-from burridge_knopoff.motion.kind import MotionKind, motion_with
+from burridge_knopoff.motion.kind import MotionKind, motion_from_period
 from burridge_knopoff.motion.limit_cycle import orbit_of_events
 from burridge_knopoff.motion.section_returns import Returns, returns_of
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near
@@ -286,7 +286,7 @@ def _kind(orbit: PeriodicOrbit | None, exponent: np.ndarray, error: np.ndarray, 
         return MotionKind.SYNCHRONIZED if orbit.symmetry == Symmetry.SYNCHRONIZED else MotionKind.PERIODIC
     if (reached > 0).all(axis=0).any():
         return MotionKind.CHAOTIC
-    return motion_with(0, math.nan, math.inf, exponent[1:], error[1:], MOTION).kind
+    return motion_from_period(0, math.nan, math.inf, exponent[1:], error[1:], MOTION).kind
 
 
 def _symmetry(model: Model, found: Returns | None) -> Symmetry:

@@ -16,8 +16,8 @@ from burridge_knopoff.attractors.capture_radius import embedded_orbits
 from burridge_knopoff.attractors.labels import UNDETERMINED, label_arrays
 from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.model.model import ChainState
-from burridge_knopoff.model.sampling import half_width, most_states, sample_states, seed_at
-from burridge_knopoff.running.processes import Shared
+from burridge_knopoff.model.sampling import half_width, required_samples, sample_states, seed_at
+from burridge_knopoff.running.processes import ParallelMap
 
 #: Number of states that one process labels at a time; the labels do not depend on it.
 LABELLED_AT_ONCE = 250
@@ -30,10 +30,10 @@ PATIENCE_MARGIN = 3.0
 STEP = 50
 
 
-def fraction_labels(searches: Sequence[Search], start: str, each: Shared) -> tuple[list[Search], list[np.ndarray]]:
+def fraction_labels(searches: Sequence[Search], start: str, each: ParallelMap) -> tuple[list[Search], list[np.ndarray]]:
     """Return the searches, and for each the index of the attractor that each drawn state reaches.
 
-    start : see `Model.begin`; each : from `running.processes.shared_out`
+    start : see `Model.begin`; each : from `running.processes.parallel_map`
 
     The states are independent of those from which the search started. If one reaches no known attractor, the search
     continues from it. All states are labelled again if that finds a new attractor.
@@ -45,7 +45,7 @@ def fraction_labels(searches: Sequence[Search], start: str, each: Shared) -> tup
     while waiting:
         for k in waiting:
             labels[k] = labels[k][:0]
-        wide = [k for k in waiting if most_states(searches[k].settings.fraction_width)]
+        wide = [k for k in waiting if required_samples(searches[k].settings.fraction_width)]
         while wide:
             those, firsts = [searches[k] for k in wide], [len(labels[k]) for k in wide]
             found = each("labelled for basin fractions", partial(_label_next, start=start), those, firsts)
@@ -73,7 +73,7 @@ def required_states(labels: np.ndarray, width: float) -> int | None:
 
     labels : of the states in their order, shape (n,); −1 (undetermined) is a fraction as well
     """
-    most = most_states(width)
+    most = required_samples(width)
     for count in (*range(STEP, most, STEP), most):
         if count > len(labels):
             return None
@@ -90,7 +90,7 @@ def _draw_states(search: Search, start: str, first: int, count: int) -> tuple[np
     seed = seed_at(settings.seed, model.a)
     box = settings.position, settings.velocity
     position, velocity = (part[first:] for part in sample_states(model.blocks, first + count, *box, seed))
-    stuck = model.starts_stuck(position, velocity, start)
+    stuck = model.stuck_blocks(position, velocity, start)
     return position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck
 
 
@@ -102,7 +102,9 @@ def _reduce_patience(search: Search, start: str) -> Search | None:
     """
     attractors = search.attractors
     inner = [embedded_orbits(attractors, index, search.tolerance) for index in range(len(attractors))]
-    sample = _draw_states(search, start, 0, min(search.settings.samples, most_states(search.settings.fraction_width)))
+    sample = _draw_states(
+        search, start, 0, min(search.settings.samples, required_samples(search.settings.fraction_width))
+    )
     if not any(inner) or not len(sample[0]):
         return None
     labels, times, _ = label_arrays(search.model, attractors, *sample, search.settings.time_limit)
@@ -117,7 +119,7 @@ def _reduce_patience(search: Search, start: str) -> Search | None:
 def _label_next(search: Search, first: int, start: str) -> np.ndarray:
     """Return the labels of the next drawn states from number `first` on."""
     part = _draw_states(
-        search, start, first, min(LABELLED_AT_ONCE, most_states(search.settings.fraction_width) - first)
+        search, start, first, min(LABELLED_AT_ONCE, required_samples(search.settings.fraction_width) - first)
     )
     if not search.attractors:
         return np.full(len(part[0]), UNDETERMINED, dtype=np.intc)

@@ -1,4 +1,4 @@
-"""Counts of events by magnitude and by interval, and the range in which a slope is fitted if none is given."""
+"""Statistics of slip events: the default range of the fit, the blocks of events, and recurrence at each block."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-#: Width of the bins of magnitudes and of logarithms of intervals, and their edges.
+#: Width and edges of the bins of magnitudes and of logarithms of intervals.
 WIDTH = 0.5
 EDGES = WIDTH * np.arange(-200, 201)
 
@@ -18,14 +18,15 @@ def fit_range(
     low: float | None = None,
     high: float | None = None,
 ) -> tuple[float, float]:
-    """Return the range in which a slope is fitted, with the ends that are not given.
+    """Return the range of magnitudes in which the slope is fitted. Ends that are given are kept.
 
     magnitude, moment, blocks : of the events, shape (events,)
 
-    The range begins one bin above the most frequent events of several blocks. Below, the rate shows that the chain
-    consists of blocks, and at its maximum it is still bending (J. Woessner and S. Wiemer, Bull. Seismol. Soc. Am. 95
-    (2005) 684). The range ends below the rarest bin between there and the bin that releases most moment, that of the
-    largest events: in many chains this is a gap. The ends are equal, or NaN, if there is no such range.
+    The range begins one bin above the most frequent magnitude of events with more than one block. Below, the rate is
+    affected by the size of a block, and at its maximum it is not yet exponential (J. Woessner and S. Wiemer, Bull.
+    Seismol. Soc. Am. 95 (2005) 684). The range ends below the bin with the fewest events between there and the bin that
+    releases most moment, that of the largest events; in many chains this bin lies in a gap. The ends are equal, or NaN,
+    if there is no such range.
     """
     several = magnitude[blocks > 1]
     if not len(several):
@@ -36,15 +37,16 @@ def fit_range(
         count, released = (np.histogram(magnitude, EDGES, weights=weights)[0] for weights in (None, moment))
         between = np.flatnonzero(EDGES[: released.argmax() + 1] >= low)
         high = float(EDGES[between[count[between].argmin()]]) if len(between) else low
-        # A range of one bin is no range of magnitudes.
+        # A single bin is not a range of magnitudes.
         high = high if high - low > WIDTH else low
     return low, high
 
 
 def covered_blocks(first_block: np.ndarray, last_block: np.ndarray, blocks: int) -> list[np.ndarray]:
-    """Return the blocks (1 …) of each event in a row or a ring: all from its first to its last.
+    """Return the blocks (1 …) of each event in a row or a ring: all blocks from its first to its last.
 
-    first_block, last_block : of the events, shape (events,); over the joint of a ring the first is above the last
+    first_block, last_block : of the events, shape (events,). In a ring, `first_block` exceeds `last_block` if the event
+        spans the seam
     """
     length = (last_block - first_block) % blocks + 1
     return [(first - 1 + np.arange(count)) % blocks + 1 for first, count in zip(first_block, length, strict=True)]
@@ -53,12 +55,13 @@ def covered_blocks(first_block: np.ndarray, last_block: np.ndarray, blocks: int)
 def recurrence(
     time: np.ndarray, members: Sequence[np.ndarray], blocks: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return for each block how many events contain it, and mean and standard deviation of the intervals between them.
+    """Return for each block the number of events, and the mean and standard deviation of the intervals between them.
 
-    time : of the events in their order, shape (events,); members : the blocks (1 …) of each event
+    time : times of the events in ascending order, shape (events,)
+    members : the blocks (1 …) of each event
 
-    Returns three arrays of shape (blocks,); NaN for blocks of too few events. Mean and variance are updated by each
-    interval: B. P. Welford, Technometrics 4 (1962) 419.
+    Returns three arrays of shape (blocks,), with NaN for blocks with too few events. Mean and variance are updated with
+    each interval: B. P. Welford, Technometrics 4 (1962) 419.
     """
     count, before = np.zeros(blocks, dtype=int), np.full(blocks, np.nan)
     mean, squares = np.zeros(blocks), np.zeros(blocks)

@@ -10,40 +10,42 @@ import numpy as np
 from burridge_knopoff.kernel._core import Catalogue
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number, OneOf, TrueOrFalse
-from burridge_knopoff.running.runner import STEPPING, Runner, new_observer
+from burridge_knopoff.running.runner import FIXED_STEP_SOLVERS, Runner, new_observer
 from burridge_knopoff.running.settings import SOLVERS, check_step
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_number, refusal
 
-#: Most events, and most slips in profiles, that a run keeps.
+#: Largest number of events, and of slips in profiles, that a run stores.
 MOST_EVENTS = MOST_NUMBERS / 10
 TIMES = Number(-1e15, 1e15)
 
-#: Limit on a fixed step times the highest frequency: a tenth of the shortest period. It is longer than that of a run,
-#: as what a step does to a catalogue is worth a look.
+#: Limit on a fixed step times the highest frequency: a tenth of the shortest period. It is higher than the limit of
+#: other runs, so that the effect of the step on a catalogue can be studied.
 LONGEST_STEP = 0.2 * math.pi
 
 
 @dataclass(frozen=True, eq=False)
 class SlipEvents:
-    """Slip events in the order of their beginnings; arrays of shape (events,).
+    """Slip events in the order of their start times; arrays of shape (events,).
 
-    A slip of a block lasts from its start to its stop. An event is a set of slips that are connected: of neighbours, at
-    the same time. Blocks count from 1; all quantities are in the units of `Model`.
+    A slip of a block lasts from its start to its stop. Slips of neighbouring blocks that overlap in time are connected,
+    and an event is a connected set of slips. Blocks are numbered from 1; all quantities are in the units of `Model`.
 
-    time : τ of the first start; slip_time : the same on the slip clock, which is another one under quasi-static loading
+    time : τ of the first start; slip_time : the same on the slip clock, which differs under quasi-static loading
     duration : slip time from the first start to the last stop
-    epicentre : block that starts first; first_block, last_block : ends of the event along the chain; over
-        the joint of a ring the first is above the last
-    blocks : how many blocks slip; moment : sum of their slips; largest_slip : largest slip of a block
+    epicentre : block that starts first
+    first_block, last_block : ends of the event along the chain. In a ring, `first_block` exceeds `last_block` if the
+        event spans the seam
+    blocks : number of blocks that slip; moment : sum of their slips; largest_slip : largest slip of a block
     peak_velocity : highest slip speed of a block
-    stress_drop : by how much the slips lower the spring force, mean over the blocks
+    stress_drop : decrease of the spring force by the slips, mean over the blocks
     energy_released : work of the springs on the blocks, which friction and dashpots dissipate
-    energy_damped : what the dashpots at slipping blocks dissipate, ∫ Σ c_ij (U_j' − U_i')² + Σ c_i (v − U_i')² dτ
-    interval : τ since the event began in which the epicentre slipped last; NaN for the first
-    slip_block, slip : with profiles, the blocks of all events and how far each slipped; slip_end : where those of an
-        event end
-    status : how the run ended; final : its state, from which another run continues with the events that have not ended
+    energy_damped : energy dissipated by the dashpots at slipping blocks, ∫ Σ c_ij (U_j' − U_i')² + Σ c_i (v − U_i')² dτ
+    interval : τ since the start of the previous event in which the epicentre slipped; NaN if there is none
+    slip_block, slip : with profiles, the blocks of all events and the slip of each; slip_end : end of each event in
+        these arrays
+    status : how the run ended
+    final : the state at the end, from which another run continues, with the events that have not ended
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of, record_events
     >>> model = Model(Chain(2, pulling=1), law_of("nonlinear", 0.5), v=0.01)
@@ -77,7 +79,7 @@ class SlipEvents:
 
     @property
     def magnitude(self) -> np.ndarray:
-        """ln |moment|: blocks may slip backward under symmetric contact."""
+        """ln |moment|; the moment may be negative, since blocks may slip backward under symmetric contact."""
         with np.errstate(divide="ignore"):
             return np.log(np.abs(self.moment))
 
@@ -93,24 +95,24 @@ def record_events(
     solver: str = "series",
     step: float = 1e-3,
 ) -> SlipEvents:
-    """Return the slip events of a run that begin after a time and end before its end.
+    """Return the slip events of a run that start after `begin` and end before the end of the run.
 
     start, end : state at the start of the run, and τ of its end
-    begin : events that begin earlier are left out, by default none; the intervals know of them
-    profiles : whether the slip of every block is kept
-    loading : steady: the driver moves at the velocity v | quasistatic: it stands while any block slips, and goes on to
-        the next threshold when all stick. Then τ is the displacement of the driver over v, and the slip clock runs
-        while blocks slip.
-    solver : series, map (where the motion has a closed form), or, for comparison, one of a fixed step that has stops
-        and starts at the ends of steps: rk4, or euler (explicit)
+    begin : earlier events are omitted, by default none; they still count for the intervals
+    profiles : whether the slip of every block is stored
+    loading : steady: the driver moves at velocity v | quasistatic: the driver stops while any block slips; when all are
+        at rest it advances to the next slip. In the second case τ is the displacement of the driver divided by v, and
+        the slip clock runs while blocks slip
+    solver : series, map (where the motion has a closed form), or, for comparison, a solver with a fixed step and events
+        at step ends: rk4, or euler (explicit)
     step : step of rk4 and euler
 
     Blocks that slip at the start of the run belong to no event until they have stopped.
 
-    Raises ValueError, one line, for an end that is not after `start` and `begin`, an unknown solver, a step that is not
-    above 0, longer than a tenth of the shortest period of the chain or too short for the run to end, map for a model
-    without a closed form, more than MOST_EVENTS events, and quasi-static loading of friction that does not drop as slip
-    begins.
+    Raises ValueError, one line, for an end that is not after `start` and `begin`; for an unknown solver; for a step
+    that is not above 0, is longer than a tenth of the shortest period of the chain, or needs too many steps; for map if
+    the model has no closed form; for more than MOST_EVENTS events; and for quasi-static loading if friction does not
+    drop at the start of a slip.
     """
     instance_of(model, Model, "model")
     instance_of(start, ChainState, "start")
@@ -124,7 +126,7 @@ def record_events(
     solver = OneOf((*SOLVERS, "euler")).form(solver, "solver")
     if not real_number(step) > 0.0:
         raise refusal("step", step, "a number above 0")
-    stepping = solver in STEPPING
+    stepping = solver in FIXED_STEP_SOLVERS
     if stepping:
         check_step(step, LONGEST_STEP, end - start.time, model.chain)
     observer = new_observer(model, [end, end], section_only=True) if stepping else None

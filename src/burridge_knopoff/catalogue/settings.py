@@ -1,4 +1,4 @@
-"""What a catalogue of slip events covers; fields and defaults are those of a study's config."""
+"""Settings of a catalogue of slip events; fields and defaults are those of the config of a study."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MAGNITUDE = Number(-HUGE, HUGE)
 @settings
 @dataclass(frozen=True)
 class CatalogueSettings:
-    """Which events a catalogue has and where its slope is fitted: the config's section `catalogue`, without a.
+    """Loading, time and fit of a catalogue: the keys of `catalogue` in the config, except a.
 
     Raises ValueError, one line, for anything out of range.
     """
@@ -25,23 +25,24 @@ class CatalogueSettings:
     loading: Annotated[
         str,
         OneOf(LOADINGS),
-        "steady: the driver always moves | quasistatic: it stands while any block slips, and loads to the next slip "
-        "when all rest",
+        "steady: the driver always moves | quasistatic: the driver stops while any block slips; when all are at rest "
+        "it advances to the next slip",
     ] = "steady"
     transient: Annotated[float, DURATION, "time of the loading clock before the catalogue"] = 3000.0
     window: Annotated[float, TIME, "length of the catalogue on the loading clock"] = 7000.0
     low: Annotated[
         float | None,
         MAGNITUDE,
-        "smallest magnitude in the fit of the slope; by default a bin above the most frequent one of several blocks",
+        "smallest magnitude in the fit of b; default: one bin above the most frequent magnitude of events with more "
+        "than one block",
     ] = None
     high: Annotated[
         float | None,
         MAGNITUDE,
-        "largest magnitude in the fit; by default the rarest one between low and the magnitude that releases most "
-        "moment",
+        "largest magnitude in the fit; default: the least frequent magnitude between `low` and the one that releases "
+        "most moment",
     ] = None
-    profiles: Annotated[bool, TrueOrFalse(), "whether the slip of every block of an event is kept"] = False
+    profiles: Annotated[bool, TrueOrFalse(), "store the slip of every block of each event"] = False
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -50,5 +51,5 @@ class CatalogueSettings:
 
     @property
     def end(self) -> float:
-        """Length of the run on the loading clock."""
+        """Duration of the run on the loading clock."""
         return self.transient + self.window

@@ -1,4 +1,4 @@
-"""Catalogue files: the netCDF form of the slip events of a run, a row an event."""
+"""Catalogue files: the netCDF form of the slip events of a run, one row per event."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from burridge_knopoff.catalogue.events import SlipEvents, record_events
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.dataset.point import STATUS_FLAG, model_attributes
-from burridge_knopoff.dataset.variables import Variable, described, global_attributes
+from burridge_knopoff.dataset.variables import Variable, global_attributes, xarray_variables
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 
@@ -25,7 +25,7 @@ CATALOGUE_VARIABLES = {
         _EVENT,
         "f8",
         "time of the first start on the slip clock",
-        {"comment": "the same as time under steady loading; under quasi-static loading it stands between the events"},
+        {"comment": "equal to time under steady loading; stops between events under quasi-static loading"},
     ),
     "duration": _V(_EVENT, "f8", "slip time from the first start to the last stop"),
     "epicentre": _V(_EVENT, "i4", "block that starts first"),
@@ -38,15 +38,17 @@ CATALOGUE_VARIABLES = {
     "peak_velocity": _V(_EVENT, "f8", "highest slip speed of a block"),
     "stress_drop": _V(_EVENT, "f8", "decrease of the spring force, mean over the slipping blocks"),
     "energy_released": _V(_EVENT, "f8", "work of the springs on the blocks, which friction and dashpots dissipate"),
-    "energy_damped": _V(_EVENT, "f8", "what the dashpots at slipping blocks dissipate"),
+    "energy_damped": _V(_EVENT, "f8", "energy dissipated by the dashpots at slipping blocks"),
     "interval": _V(
-        _EVENT, "f8", "time tau since the event began in which the epicentre slipped last, NaN for the first"
+        _EVENT,
+        "f8",
+        "time tau since the start of the previous event in which the epicentre slipped, NaN if there is none",
     ),
 }
-#: With profiles, the slips of all events in the order of the events: a contiguous ragged array.
+#: With profiles, the slips of all events in the order of the events, as a contiguous ragged array.
 PROFILE_VARIABLES = {
     "slip_block": _V(("slip",), "i4", "block that slips"),
-    "slip_distance": _V(("slip",), "f8", "how far the block slips in the event"),
+    "slip_distance": _V(("slip",), "f8", "slip of the block in the event"),
 }
 
 
@@ -55,7 +57,7 @@ def catalogue_dataset(
 ) -> xarray.Dataset:
     """Return a catalogue as an xarray Dataset.
 
-    begin, end : of the catalogue on the loading clock
+    begin, end : begin and end of the catalogue on the loading clock
     attributes : further global attributes: initial state, loading, solver, history
     """
     import xarray
@@ -63,12 +65,13 @@ def catalogue_dataset(
     own = {"a": model.a, "v": model.v, "slip_block": events.slip_block, "slip_distance": events.slip}
     variables = {**CATALOGUE_VARIABLES, **(PROFILE_VARIABLES if len(events.slip) else {})}
     values = {name: own[name] if name in own else getattr(events, name) for name in variables}
-    data = described(variables, values)
+    data = xarray_variables(variables, values)
     if len(events.slip):
         data["blocks"][2]["sample_dimension"] = "slip"
     title = f"Slip events of a Burridge-Knopoff chain of {model.blocks} blocks, {model.law.name} friction law"
     contents = (
-        "One row for each event of connected slips: of neighbouring blocks at the same time. Blocks count from 1."
+        "One row for each event, a set of slips of neighbouring blocks that overlap in time. Blocks are numbered "
+        "from 1."
     )
     about = {
         **model_attributes(model),
@@ -86,7 +89,7 @@ def catalogue_dataset(
 def catalogue_of_run(
     model: Model, initial: InitialState, settings: CatalogueSettings, start: str, solver: str, step: float
 ) -> xarray.Dataset:
-    """Run a model from an initial state, and return the catalogue of its slip events as a Dataset.
+    """Run a model from an initial state and return the catalogue of its slip events as a Dataset.
 
     start, solver, step : see `Settings`
     """

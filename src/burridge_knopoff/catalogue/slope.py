@@ -10,28 +10,29 @@ from numpy.typing import ArrayLike
 
 from burridge_knopoff.values import real_array, real_number, refusal
 
-#: Fewest events to which a slope is fitted.
-FEWEST = 10
-#: Catalogues drawn to find p, whose standard error is 0.007 near 0.05.
-DRAWN = 999
-#: Most events of a drawn catalogue: the distances of larger ones have the same distribution but for a factor.
-MOST_DRAWN = 300
+#: Smallest number of events to which a slope is fitted.
+MIN_EVENTS = 10
+#: Number of random catalogues for p, which gives a standard error of 0.007 near p = 0.05.
+BOOTSTRAP_SIZE = 999
+#: Largest number of events in a random catalogue: in larger ones the distances have the same distribution except for a
+#: factor.
+MAX_BOOTSTRAP_EVENTS = 300
 #: Smaller values of p are not distinguished.
 SMALLEST_P = 0.005
-# An end of the range this many times as far from the other one as all events is none.
-FAR = 1000.0
-# Larger magnitudes and ends are divided by the other number: their sums and differences would overflow.
-LARGE, SHRINKING = 1e300, 2.0**-64
+# If the range is wider than this many times the distance of all events from one end, the other end counts as infinite.
+INFINITE_RATIO = 1000.0
+# Magnitudes and ends above SCALING_LIMIT are multiplied by SCALING, since their sums and differences would overflow.
+SCALING_LIMIT, SCALING = 1e300, 2.0**-64
 
 
 @dataclass(frozen=True)
 class Slope:
-    """The rate of events falls as exp(−b·magnitude) between two magnitudes; events of moment M then as M^(−1−b).
+    """The slope b: between two magnitudes the rate of events falls as exp(−b·magnitude), with the moment as M^(−1−b).
 
     b : the slope; error : its standard error, from the Fisher information
-    low, high : range of the fit; count : events in it
-    p_value : probability that a catalogue of this distribution differs from its own fit by as much
-        (Kolmogorov-Smirnov), from 1/1000 up; `format_p_value` writes it
+    low, high : range of the fit; count : number of events in this range
+    p_value : probability that a catalogue of this distribution differs at least as much from its own fit
+        (Kolmogorov-Smirnov distance), at least 1/1000; `format_p_value` formats it
 
     >>> from burridge_knopoff import fit_slope
     >>> fit = fit_slope([0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 0.9, 1.2, 1.7, 3.0], 0.0)
@@ -48,22 +49,21 @@ class Slope:
 
 
 def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope:
-    """Return the slope of the magnitudes in a range: that of an exponential distribution truncated at both ends.
+    """Fit an exponential distribution, truncated at both ends, to the magnitudes in a range.
 
     magnitude : of the events, shape (events,); low, high : ends of the range
 
-    p is found by a parametric bootstrap: catalogues are drawn from the fitted distribution, and each is compared with
-    its own fit. With the slope fitted to the same events, tables of the Kolmogorov-Smirnov distribution would be far
-    too lenient (Lilliefors). The range counts as given: p does not allow for one that was chosen by the same events.
+    p comes from a parametric bootstrap: random catalogues of the fitted distribution are each compared with their own
+    fit. Since the slope is fitted to the same events, the tables of the Kolmogorov-Smirnov distribution would be far
+    too lenient (Lilliefors). If the range was chosen from the same events, p does not allow for this choice.
 
-    Magnitudes are real numbers. If they were rounded to bins, begin and end the range half a bin outside the first and
-    the last centre (Utsu). b is then too low by a fraction of about w²/(12 s²), with w the width of the bins and s² the
-    variance of the magnitudes in the range; if the range ends on the centres, b is too high, by the fraction bw/2 and
-    more. p tests the rounding, too.
+    Magnitudes are real numbers. If they were rounded to bins, the range should begin and end half a bin outside the
+    first and the last centre (Utsu). b is then too low by a fraction of about w²/(12 s²), with w the width of the bins
+    and s² the variance of the magnitudes in the range. If the range ends on the centres, b is too high by the fraction
+    bw/2 or more. p is sensitive to the rounding as well.
 
-    Raises ValueError for fewer than FEWEST events in the range, if they are all of one magnitude or differ too
-    little for b to be a number, if one is infinite or any is NaN, and for a range that does not begin at a finite
-    magnitude.
+    Raises ValueError for fewer than MIN_EVENTS events in the range, if all magnitudes are equal or too close to each
+    other for b to be finite, if a magnitude in the range is infinite or any is NaN, and if `low` is not finite.
 
     References: K. Aki, Bull. Earthq. Res. Inst. 43 (1965) 237; for two ends, R. Page, Bull. Seismol. Soc. Am. 58 (1968)
     1131; H. W. Lilliefors, J. Am. Stat. Assoc. 62 (1967) 399 and 64 (1969) 387; for bins, T. Utsu, Geophys. Bull.
@@ -87,14 +87,14 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
     low, high = float(low), float(high)
     inside = np.sort(magnitude[(magnitude >= low) & (magnitude <= high)])
     where = f"between {low:g} and {high:g}"
-    if len(inside) < FEWEST:
-        raise ValueError(f"magnitude: got {len(inside)} events {where}, expected {FEWEST} or more")
+    if len(inside) < MIN_EVENTS:
+        raise ValueError(f"magnitude: got {len(inside)} events {where}, expected {MIN_EVENTS} or more")
     if math.isinf(inside[-1]):
         raise ValueError(f"magnitude: got {inside[-1]:g} {where}, expected finite magnitudes")
     if inside[0] == inside[-1]:
         raise ValueError(f"magnitude: got only {inside[0]:g} {where}, expected a spread")
     distance, width, factor, rises = _distances(inside, low, high)
-    # The slope is not negative from there.
+    # Measured from the end with more events, the slope is not negative.
     share = distance / width
     decay = _decay(share.mean(keepdims=True))
     b = factor * (float(decay[0]) / width)
@@ -106,28 +106,28 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
 
 
 def _distances(inside: np.ndarray, low: float, high: float) -> tuple[np.ndarray, float, float, bool]:
-    """Return how far magnitudes are from the end of their range near which there are more of them.
+    """Return the distances of magnitudes from the end of their range near which most of them lie.
 
     inside : the magnitudes, in ascending order; low, high : ends of the range
 
     Returns the distances in ascending order and the width of the range, both in a unit of about the largest distance;
-    1 over this unit, a power of 2, by which nothing is rounded; and whether that end is `high`.
+    the inverse of this unit, a power of 2, so that nothing is rounded; and whether the end is `high`.
     """
-    width = high / FAR - low / FAR
+    width = high / INFINITE_RATIO - low / INFINITE_RATIO
     if width > float(inside[-1]) - low:
         high = math.inf
     elif width > high - float(inside[0]):
         low = -math.inf
     factor = 1.0
-    if max(abs(value) for value in (low, high, *inside[[0, -1]].tolist()) if math.isfinite(value)) > LARGE:
-        factor = SHRINKING
+    if max(abs(value) for value in (low, high, *inside[[0, -1]].tolist()) if math.isfinite(value)) > SCALING_LIMIT:
+        factor = SCALING
         inside, low, high = factor * inside, factor * low, factor * high
     mean = float(inside.mean())
     rises = math.isinf(low) or (math.isfinite(high) and mean - low > high - mean)
     distance = (high - inside)[::-1] if rises else inside - low
     largest = float(distance[-1])
     unit = math.ldexp(1.0, math.frexp(largest)[1] - 1)
-    width = (high - low) / unit if math.isfinite(high - low) else FAR * (largest / unit)
+    width = (high - low) / unit if math.isfinite(high - low) else INFINITE_RATIO * (largest / unit)
     return distance / unit, width, factor / unit, rises
 
 
@@ -141,18 +141,18 @@ def format_p_value(p: float) -> str:
 
 
 def _p_value(difference: float, decay: float, count: int) -> float:
-    """Return the probability of a largest difference as large in catalogues of the fitted distribution."""
-    size = min(count, MOST_DRAWN)
-    # Sums of exponential numbers over their total are uniform numbers in order.
-    sums = np.random.default_rng(count).standard_exponential((DRAWN, size + 1)).cumsum(axis=1)
+    """Return the probability of at least this Kolmogorov-Smirnov distance in catalogues of the fitted distribution."""
+    size = min(count, MAX_BOOTSTRAP_EVENTS)
+    # Cumulative sums of exponential numbers, divided by their total, are uniform numbers in ascending order.
+    sums = np.random.default_rng(count).standard_exponential((BOOTSTRAP_SIZE, size + 1)).cumsum(axis=1)
     uniform = sums[:, :-1] / sums[:, -1:]
-    # A flat distribution is the limit of a slight decay.
+    # A uniform distribution is the limit of a small decay.
     decay = max(decay, 1e-6)
     share = np.log1p(uniform * math.expm1(-decay)) / -decay
     drawn = _largest_difference(share, _decay(share.mean(axis=1)))
-    # The factor for other numbers of events: M. A. Stephens, J. Am. Stat. Assoc. 69 (1974) 730.
+    # Dependence on the number of events: M. A. Stephens, J. Am. Stat. Assoc. 69 (1974) 730.
     difference *= (math.sqrt(count) + 0.26) / (math.sqrt(size) + 0.26)
-    return (1 + int((drawn >= difference).sum())) / (DRAWN + 1)
+    return (1 + int((drawn >= difference).sum())) / (BOOTSTRAP_SIZE + 1)
 
 
 def _largest_difference(share: np.ndarray, decay: np.ndarray) -> np.ndarray:
@@ -169,10 +169,10 @@ def _largest_difference(share: np.ndarray, decay: np.ndarray) -> np.ndarray:
 
 
 def _decay(mean: np.ndarray) -> np.ndarray:
-    """Return the decay with which exp(−decay·x) on [0, 1] has given means, shape (catalogues,).
+    """Return the decay for which exp(−decay·x) on [0, 1] has a given mean, shape (catalogues,).
 
-    Newton's method from an approximant of the inverse of Langevin's function, good to 5 %: A. Cohen, Rheol. Acta 30
-    (1991) 270.
+    Newton's method starts from an approximation of the inverse Langevin function that is accurate to 5 %: A. Cohen,
+    Rheol. Acta 30 (1991) 270.
     """
     small = np.minimum(mean, 1.0 - mean)
     y = 1.0 - 2.0 * small

@@ -1,4 +1,4 @@
-"""How slip events let perturbations grow: Lyapunov exponents and multipliers per event."""
+"""Growth of perturbations by slip events: Lyapunov exponents and multipliers per event."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ from burridge_knopoff.running.runner import Runner, check_state
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of, refusal
 
-# A block at its threshold, at the start of an event, sticks: forces are known to this share.
-LENIENT = 1e-9
+# A block at its threshold, at the start of an event, counts as stuck: relative rounding error of forces.
+THRESHOLD_TOLERANCE = 1e-9
 
-#: Batches for the errors of exponents.
+#: Number of batches for the errors of exponents.
 BATCHES = 16
 
 
@@ -26,8 +26,8 @@ class EventExponents:
     """Lyapunov exponents of the map from one slip event to the next, in descending order.
 
     exponent, error : growth of the logarithm of perturbations per event, and its standard error from batches, shape
-        (count,); −∞ for perturbations that events take away
-    events : number of events over which it was taken
+        (count,); −∞ for perturbations that events remove
+    events : number of events in the average
     status : how the run ended
 
     >>> from burridge_knopoff import Chain, InitialState, Model, event_exponents, law_of
@@ -55,16 +55,16 @@ def event_exponents(
 ) -> EventExponents:
     """Return the largest Lyapunov exponents per slip event, between two times of the loading clock.
 
-    model, start, end, begin, loading : see `record_events`; perturbations start halfway between start and begin, by
-        default the same time, and turn into the growing directions first
-    count : how many exponents
+    model, start, end, begin, loading : see `record_events`. `begin` is by default the time of `start`; perturbations
+        start halfway between the two times and first align with the directions of fastest growth
+    count : number of exponents
 
-    Under a steady driver the events are those between the first and the last time at which all blocks stick. What
-    perturbations grow by between two such times depends on no unit, as all velocities are 0. In a chain that never
-    rests the batches are cut while blocks slip.
+    Under a steady driver the events are those between the first and the last time at which all blocks stick. The growth
+    of perturbations between two such times does not depend on units, since all velocities are 0. In a chain that never
+    rests the boundaries of batches lie within slips.
 
     Under quasi-static loading N blocks have N − 1 finite exponents: the state at the start of an event has N positions,
-    of which the threshold fixes one.
+    one of which is fixed by the threshold.
 
     Raises ValueError, one line, as `record_events` does, and for more exponents than perturbations.
 
@@ -88,7 +88,7 @@ def event_exponents(
     if end <= begin:
         raise refusal("end", end, f"a time after begin ({begin:g})")
     edges = np.linspace(begin, end, BATCHES + 1)
-    if loading == "steady" and len(rests := _rests(model, start, edges)) > 1:
+    if loading == "steady" and len(rests := _rest_times(model, start, edges)) > 1:
         edges = rests
     catalogue = Catalogue(model.blocks, edges[0], False, MOST_EVENTS)
     exponents = Exponents(model.blocks, count, 0.5 * (start.time + begin), edges, at_rest=True)
@@ -105,10 +105,10 @@ def event_exponents(
     return EventExponents(mean[order], np.where(np.isfinite(mean), error, 0.0)[order], events, status)
 
 
-def _rests(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:
-    """Return the middle of the time of rest nearest to each edge, all between the first and the last of them.
+def _rest_times(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:
+    """Return the middle of the time of rest nearest to each edge, between the first and the last edge.
 
-    At rest all blocks stick. None is returned if they never do, or if the run fails.
+    At rest all blocks stick. The result is empty if this never happens, or if the run fails.
     """
     catalogue = Catalogue(model.blocks, start.time, False, MOST_EVENTS)
     runner = Runner(model, catalogue=catalogue, groups=False)
@@ -119,7 +119,7 @@ def _rests(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:
     order = np.argsort(table["time"], kind="stable")
     begins = np.append(table["time"][order], edges[-1])
     ends = np.append(start.time, (table["time"] + table["duration"])[order])
-    # Slips in several places overlap.
+    # Events in different parts of the chain overlap.
     ends = np.maximum(np.maximum.accumulate(ends), edges[0])
     middle = (0.5 * (begins + ends))[begins > ends]
     if len(middle):
@@ -132,17 +132,17 @@ def _rests(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:
 
 
 def event_multipliers(model: Model, start: ChainState, end: float, *, loading: str = "quasistatic") -> np.ndarray:
-    """Return the multipliers of the events between two moments of rest, in descending order of size, shape (blocks,).
+    """Return the multipliers of the events between two times of rest, in descending order of modulus, shape (blocks,).
 
-    model, start, end : a state in which all blocks stick, none beyond its threshold, and τ of another such moment; for
-        the multipliers of a periodic motion, a period later
+    model, start, end : a state in which all blocks stick, none beyond its threshold, and τ of another such state; for
+        the multipliers of periodic motion, one period later
     loading : see `record_events`
 
-    They are eigenvalues of what the events make of displacements of the blocks. Under quasi-static loading one of them
-    is 0, as the threshold fixes one displacement.
+    The multipliers are the eigenvalues of the linear map of displacements of the blocks by the events. Under
+    quasi-static loading one of them is 0, since the threshold fixes one displacement.
 
     Raises ValueError, one line, as `record_events` does, if a block slips at the start or at the end, and if
-    perturbations overflow on the way.
+    perturbations overflow.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, event_multipliers, law_of
     >>> model = Model(Chain(1, pulling=1), law_of("carlson_langer", 0.0, {"sigma": 0.2}), v=1.0)
@@ -159,7 +159,7 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     runner.begin(start)
     force = model.chain.force(start.position + model.sliding_offset)
     pulled = np.abs(force) if model.contact == "symmetric" else force
-    if not start.stuck.all() or (pulled > model.chain.thresholds * (1.0 + LENIENT)).any():
+    if not start.stuck.all() or (pulled > model.chain.thresholds * (1.0 + THRESHOLD_TOLERANCE)).any():
         raise refusal("start", start, "a state in which all blocks stick, none beyond its threshold")
     status = runner.run(end)
     if status != Status.COMPLETED or not runner.state().stuck.all():

@@ -15,7 +15,7 @@ from burridge_knopoff.jobs.checked import check_file
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import NAME, remake_command
 from burridge_knopoff.provenance.seal import BadFile
-from burridge_knopoff.running.status import ENDS
+from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.job_log import logged_error
@@ -159,9 +159,9 @@ def _file_finding(jobs: Jobs, results: Path, name: str, log: Path) -> Finding | 
     except BadFile as error:
         return _error_finding(path, error, log)
     # A catalogue is the result of a single run, which has a status.
-    if ended is None or ended.dims or ENDS[ended.item()] == "completed":
+    if ended is None or ended.dims or STATUS_WORDS[ended.item()] == "completed":
         return None
-    return Finding("failed", path, f"ended with status {ENDS[ended.item()]}")
+    return Finding("failed", path, f"ended with status {STATUS_WORDS[ended.item()]}")
 
 
 def _error_finding(path: Path, error: BadFile, log: Path) -> Finding:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.motion.kind import MotionKind, motion_with
+from burridge_knopoff.motion.kind import MotionKind, motion_from_period
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.summaries.judgement import compare
 
@@ -74,13 +74,13 @@ def _with_kinds(other: Evidence, evidence: Evidence, agreement: Mapping[str, Any
 def _kinds(lyapunov: xarray.Dataset, config: Mapping[str, Any], about: Mapping[str, Any]) -> np.ndarray:
     """Return the kind of motion of each run for the tolerances of a config and a threshold of synchrony."""
     threshold = {THRESHOLD: about[THRESHOLD]} if THRESHOLD in about else {}
-    settings = MotionSettings(**{**config["motion"], **threshold}).at_speed(config["v"])
+    settings = MotionSettings(**{**config["motion"], **threshold}).scaled_to_velocity(config["v"])
     names = "section_period", "period", "mean_distance", "lyapunov_exponent", "lyapunov_error"
     points, period, mean, exponent, error = (lyapunov[name].values for name in names)
     kinds = np.full(mean.shape, int(MotionKind.UNDETERMINED))
     for at in np.argwhere(np.isfinite(mean)):
         run = tuple(at)
-        kinds[run] = motion_with(points[run], period[run], mean[run], exponent[run], error[run], settings).kind
+        kinds[run] = motion_from_period(points[run], period[run], mean[run], exponent[run], error[run], settings).kind
     return kinds
 
 

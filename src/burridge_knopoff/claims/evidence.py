@@ -69,7 +69,7 @@ class Evidence:
         """Raise NotTestableError if the driver velocity, springs, masses or thresholds are not the paper's."""
         if self.config["v"] != PAPER_V:
             raise NotTestableError(f"the paper's driver has v = {PAPER_V}, that of the study v = {self.config['v']:g}")
-        if not Chain(**self.config["chain"]).is_like(Chain(self._blocks)):
+        if not Chain(**self.config["chain"]).is_equivalent_to(Chain(self._blocks)):
             raise NotTestableError("the study's chain has other springs, masses or static friction than the paper's")
 
     def check_laws(self, laws: Iterable[str]) -> None:

@@ -29,7 +29,7 @@ from burridge_knopoff.claims.verdict import (
     verdict_of,
     worst,
 )
-from burridge_knopoff.motion.kind import MotionKind, with_one_chaos
+from burridge_knopoff.motion.kind import MotionKind, merge_chaos
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ def _coexisting(found: xarray.Dataset, samples: int) -> tuple[np.ndarray, np.nda
     seen = [set(row[row >= 0].tolist()) for row in np.concatenate([reached, started], axis=1)]
     count = np.array([len(branches) for branches in seen])
     kinds = []
-    for branches, branch, kind in zip(seen, found["branch"].values, with_one_chaos(found["kind"].values), strict=True):
+    for branches, branch, kind in zip(seen, found["branch"].values, merge_chaos(found["kind"].values), strict=True):
         of_branch = dict(zip(branch.tolist(), kind.tolist(), strict=True))
         kinds.append(len({of_branch.get(one, MotionKind.UNDETERMINED) for one in branches} - {MotionKind.UNDETERMINED}))
     if ((count < 2) & (found["basin_count"].values.sum(axis=1) < samples)).any():

@@ -31,8 +31,8 @@ from burridge_knopoff.motion.kind import (
     CHAOS,
     REGULAR,
     MotionKind,
-    with_one_chaos,
-    zero_exponents,
+    is_zero_exponent,
+    merge_chaos,
 )
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -69,7 +69,7 @@ def all_of_kind(
         attractors = evidence.choose(evidence.summary("attractors"), a).sel(law=list(laws))
         known = (attractors["branch"] >= 0).values & (attractors["kind"].values != MotionKind.UNDETERMINED)
         if known.any():
-            share = float(np.isin(with_one_chaos(attractors["kind"].values), allowed)[known].mean())
+            share = float(np.isin(merge_chaos(attractors["kind"].values), allowed)[known].mean())
             measured.append(Measured(f"share of all attractors with {what} motion", share))
     reason = f"The motion is {what} at {found} of the values of a with {a}."
     # Periodic and quasiperiodic together are regular motion, however the two are divided.
@@ -204,9 +204,9 @@ def largest_exponent_is_zero(evidence: Evidence, initial: str, law: str, a: Rang
     grid = runs["a"].values
     exponent, error = (runs[name].values[:, 0] for name in ("lyapunov_exponent", "lyapunov_error"))
     known = np.isfinite(exponent) & np.isfinite(error)
-    settings = MotionSettings(**evidence.config["motion"]).at_speed(evidence.config["v"])
+    settings = MotionSettings(**evidence.config["motion"]).scaled_to_velocity(evidence.config["v"])
     unknown = f"the Lyapunov exponents of the run from {initial} are unknown {at_values(grid, ~known)}"
-    case = Case(law, grid, zero_exponents(exponent, error, settings), known, unknown)
+    case = Case(law, grid, is_zero_exponent(exponent, error, settings), known, unknown)
     found = for_all(loose_share, [case])
     largest = int(np.nanargmax(np.where(known, np.abs(exponent), np.nan)))
     measured = [

@@ -27,7 +27,7 @@ from burridge_knopoff.claims.verdict import (
     told_where,
 )
 from burridge_knopoff.dataset.variables import Answer
-from burridge_knopoff.motion.kind import with_one_chaos
+from burridge_knopoff.motion.kind import merge_chaos
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.judgement import same_mean
 
@@ -69,7 +69,7 @@ def laws_agree_in_kind(evidence: Evidence, initial: Sequence[str], a: Range, loo
     loosely, strictly = {}, {}
     for state in initial:
         one = _compared(evidence, state, a)
-        same, (kind, other) = one["same_kind"].values, with_one_chaos(one["kind"].sel(law=list(PAPER_LAWS)).values)
+        same, (kind, other) = one["same_kind"].values, merge_chaos(one["kind"].sel(law=list(PAPER_LAWS)).values)
         loosely[state] = one["a"].values, same
         strictly[state] = one["a"].values, np.where((same == Answer.YES) & (kind != other), Answer.NO, same)
     readings, texts, measured, apart = {}, [], [], []

@@ -103,7 +103,7 @@ def near_equilibrium(
     amplitude = run["position_amplitude"].values[0]
     if not np.isfinite(amplitude):
         raise NotTestableError(f"the run from {initial[0]} at a = {at:g} under the {law} law did not complete")
-    distances = [abs(PAPER_STATES[name].numbers(3)[0][0] - position[0]) for name in initial]
+    distances = [abs(PAPER_STATES[name].coordinates(3)[0][0] - position[0]) for name in initial]
     close, far = (distance / amplitude for distance in distances)
     verdict = FAILS if close > loose or far <= near else HOLDS if close <= near else LOOSELY
     measured = [

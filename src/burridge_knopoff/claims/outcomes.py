@@ -9,7 +9,7 @@ import numpy as np
 from burridge_knopoff.attractors.lookup import reached_values
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import Range
-from burridge_knopoff.motion.kind import MotionKind, with_one_chaos
+from burridge_knopoff.motion.kind import MotionKind, merge_chaos
 
 if TYPE_CHECKING:
     import xarray
@@ -37,7 +37,7 @@ def kinds_of(
     """
     if inside is None:
         runs = evidence.choose(evidence.of_state("agreement", initial), a).sel(law=law)
-        return runs["a"].values, with_one_chaos(runs["kind"].values)
+        return runs["a"].values, merge_chaos(runs["kind"].values)
     return inside["a"].values, kinds_reached(inside, initial, law)
 
 
@@ -47,7 +47,7 @@ def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> np.ndar
     attractors : under one convention
     """
     known, kind = reached_values(attractors, initial, law, "kind")
-    return np.where(known, with_one_chaos(kind), MotionKind.UNDETERMINED)
+    return np.where(known, merge_chaos(kind), MotionKind.UNDETERMINED)
 
 
 def reached_at(attractors: xarray.Dataset, at: float, initial: str, law: str, *names: str) -> tuple[Any, ...] | None:

@@ -25,7 +25,7 @@ from burridge_knopoff.claims.verdict import (
     shares_text,
     verdict_of,
 )
-from burridge_knopoff.motion.kind import MotionKind, same_result
+from burridge_knopoff.motion.kind import MotionKind, is_same_result
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.paper import PAPER_LAWS
 
@@ -56,7 +56,7 @@ def solutions_agree(
             kinds = runs["kind"].sel(law=list(PAPER_LAWS)).values
             known = ~(np.isnan(kinds) | (kinds == MotionKind.UNDETERMINED)).any(axis=0)
             unknown = f"the kind of motion from {state} is unknown"
-            yield Case(f"laws, {state}", runs["a"].values, same_result(*kinds), known, unknown)
+            yield Case(f"laws, {state}", runs["a"].values, is_same_result(*kinds), known, unknown)
 
     def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
         """Judge as if the solvers agreed at the same points under every convention."""
@@ -64,7 +64,7 @@ def solutions_agree(
         for state in initial:
             one, other = (kinds_reached(inside, state, law) for law in PAPER_LAWS)
             known = (one != MotionKind.UNDETERMINED) & (other != MotionKind.UNDETERMINED)
-            cases.append(Case(f"laws, {state}", inside["a"].values, same_result(one, other), known))
+            cases.append(Case(f"laws, {state}", inside["a"].values, is_same_result(one, other), known))
         if not all(case.is_decided(loose_share) for case in cases):
             return "", ""
         return judge_shares({**solvers, **{case.name: case.share for case in cases}}, loose_share)

@@ -34,7 +34,7 @@ def run(options: argparse.Namespace) -> int:
     """Run the simulation, and print the exponents."""
     from burridge_knopoff.dataset.point import write_point
     from burridge_knopoff.motion.chain_synchronization import ALIGNMENT, transverse_exponent, window_range
-    from burridge_knopoff.motion.kind import motion_of_run, words_of
+    from burridge_knopoff.motion.kind import format_motion, motion_of_run
     from burridge_knopoff.running import simulation
     from burridge_knopoff.show.formatting import table
 
@@ -50,9 +50,9 @@ def run(options: argparse.Namespace) -> int:
     print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
     if trajectory.lyapunov_infinite_count > 0:
         print(f"at least {trajectory.lyapunov_infinite_count} of all {2 * model.blocks} are -infinity: blocks stick")
-    motion = motion.at_speed(model.v)
+    motion = motion.scaled_to_velocity(model.v)
     found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
-    print(f"\nmotion: {words_of(found, motion)}")
+    print(f"\nmotion: {format_motion(found, motion)}")
     print(f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)

@@ -247,6 +247,6 @@ def command_of(options: argparse.Namespace) -> str:
 
 def model_line(model: Model) -> str:
     """Return a line that describes a model."""
-    numbers: Mapping[str, float] = model.law.numbers
+    numbers: Mapping[str, float] = model.law.parameters
     parameters = "".join(f", {name} = {value:g}" for name, value in numbers.items())
     return f"{model.law.name} law{parameters}, a = {model.a:g}, v = {model.v:g}, {model.blocks} blocks"

@@ -32,7 +32,7 @@ from burridge_knopoff.continuation.settings import REFINEMENT, RefinementSetting
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.running.processes import Shared, shared_out
+from burridge_knopoff.running.processes import ParallelMap, parallel_map
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,13 +81,13 @@ def continue_attractors(
 
     settings, motion, starts, start : see `find_attractors`
     refine : how closely changes are located in a
-    processes, folder : number of processes, and the cache of their results; see `shared_out`. The results do not depend
-        on them
+    processes, folder : number of processes, and the cache of their results; see `parallel_map`. The results do not
+        depend on them
 
     Raises ValueError if an initial state does not fit the models.
     """
     matcher = Matcher(models[0].scale, refine.longest_period)
-    with shared_out(processes, folder) as each:
+    with parallel_map(processes, folder) as each:
         searches = [Search(model, settings, motion) for model in models]
         searches = each("searched from initial states", partial(_search, starts=starts, start=start), searches)
         searches = _seed_neighbours(searches, each, matcher, [True] * len(searches))
@@ -143,7 +143,9 @@ def _has_more_attractors(search: Search, before: Search) -> bool:
     return len(search.attractors) > len(before.attractors)
 
 
-def _seed_neighbours(searches: Sequence[Search], each: Shared, matcher: Matcher, new: Sequence[bool]) -> list[Search]:
+def _seed_neighbours(
+    searches: Sequence[Search], each: ParallelMap, matcher: Matcher, new: Sequence[bool]
+) -> list[Search]:
     """Start each attractor, downward and upward, at the neighbouring a where it has no unchanged counterpart.
 
     new : whether each search may have attractors with which its neighbours have not been seeded

@@ -24,7 +24,7 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.periodic_orbits.return_map import mirror_order
 
 # Difference of ⟨J⟩, for v = 0.1, up to which two edge states of one kind between the same branches count as one.
-SAME_MEAN = 1e-3
+MEAN_TOLERANCE = 1e-3
 
 # Time for which chaos near a crisis is followed to measure how close it comes to a saddle.
 APPROACH = 100_000.0
@@ -58,7 +58,7 @@ class Edge:
             mine is its
             and self.state.kind == other.state.kind
             and sorted(self.branch) == sorted(other.branch)
-            and abs(means) <= SAME_MEAN * self.state.model.scale
+            and abs(means) <= MEAN_TOLERANCE * self.state.model.scale
         )
 
 

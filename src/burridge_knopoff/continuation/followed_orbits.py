@@ -21,7 +21,7 @@ from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.following import ContinuationSettings
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 
 #: How periodic orbits are followed, and the number of unstable ones beyond a bifurcation, for the figure.
 FOLLOWING = ContinuationSettings(first_step=1e-4, largest_step=2.5e-3, smallest_step=1e-7, max_orbits=120)
@@ -81,15 +81,15 @@ def follow_orbits(
     """Follow every attractor of one law that is a periodic orbit.
 
     one : the attractors at all values of a; between values of the grid only changing branches are followed
-    processes, folder : number of processes, and the cache of their results; see `shared_out`. The results do not depend
-        on them
+    processes, folder : number of processes, and the cache of their results; see `parallel_map`. The results do not
+        depend on them
     """
     largest = float(np.nanmax(one["a"].values))
     places = _places(one, changes)
     models = [model.at(float(one["a"].values[k])) for k, _ in places]
     states = ([one[name].values[place] for place in places] for name in ("position", "velocity"))
     found = FollowedOrbits()
-    with shared_out(processes, folder) as each:
+    with parallel_map(processes, folder) as each:
         orbits = each("periodic orbits", _periodic_orbit, models, *states)
         closed = [pair for pair in zip(places, orbits, strict=True) if not _is_lost(model, pair[1])]
         for following in _rounds(_sort(closed), found, ORBITS_PER_PROCESS * processes):

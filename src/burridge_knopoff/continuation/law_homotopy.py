@@ -15,7 +15,7 @@ from burridge_knopoff.laws.blend import blend
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.section_returns import Returns, visit
 from burridge_knopoff.motion.set_distance import is_near
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 
 #: Number of steps in which one friction law is deformed into another, and of values of a at which each branch is
 #: followed in this way.
@@ -77,7 +77,7 @@ def match_branches(
         tried += [(row, places[i], first[number][places[i]], len(places) / len(chosen)) for i in chosen]
     models = ([law[k] for _, k, *_ in tried] for law in (firsts, seconds))
     starts = [start for *_, start, _ in tried]
-    with shared_out(processes) as each:
+    with parallel_map(processes) as each:
         follow = partial(follow_law, settings=settings)
         followed = each("continued to the other law", follow, *models, starts)
     arrivals = np.zeros((len(numbers[0]), len(numbers[1])))

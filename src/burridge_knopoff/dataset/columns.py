@@ -1,4 +1,4 @@
-"""Columns of a table, as of all attractors: how a column is described, and what it holds of each thing in the table."""
+"""Columns of a table of objects, such as attractors: the netCDF variable of a column and its value for each object."""
 
 from __future__ import annotations
 
@@ -13,15 +13,17 @@ from burridge_knopoff.dataset.variables import Variable
 
 @dataclass(frozen=True)
 class Column(Variable):
-    """A variable over the places of a table; `value` returns what it holds of a thing, None where it has nothing."""
+    """A variable over the places of a table. `value` returns the value for an object, None if it is missing."""
 
-    value: Callable[[Any], Any] = lambda thing: None
+    value: Callable[[Any], Any] = lambda item: None
 
 
-def empty(variables: Mapping[str, Variable], sizes: Mapping[str, int], *beginnings: str) -> dict[str, np.ndarray]:
-    """Return an array of missing values for each variable whose dimensions have a size.
+def empty_columns(
+    variables: Mapping[str, Variable], sizes: Mapping[str, int], *beginnings: str
+) -> dict[str, np.ndarray]:
+    """Return an array of missing values for each variable whose dimensions all have a size.
 
-    beginnings : of the names that are wanted; none for all
+    beginnings : beginnings of the names of the variables; none for all variables
     """
     return {
         name: np.full([sizes[key] for key in item.dimensions], item.missing, dtype=item.dtype)
@@ -30,17 +32,20 @@ def empty(variables: Mapping[str, Variable], sizes: Mapping[str, int], *beginnin
     }
 
 
-def filled(columns: Mapping[str, Column], things: Mapping[Any, Any], sizes: Mapping[str, int]) -> dict[str, np.ndarray]:
-    """Return {column: its values}, of each thing at its place in the table, along the first dimensions of the column.
+def column_values(
+    columns: Mapping[str, Column], items: Mapping[Any, Any], sizes: Mapping[str, int]
+) -> dict[str, np.ndarray]:
+    """Return {column: values}, with the value for each object at its place along the first dimensions of the column.
 
-    things : by their places, each a tuple of whole numbers
+    items : {place: object}, where a place is a tuple of whole numbers
 
-    Of fewer numbers than the last dimension has the others stay missing, as exponents that were not computed.
+    If an object has fewer values than the last dimension, the others stay missing, such as exponents that were not
+    computed.
     """
-    values = empty(columns, sizes)
+    values = empty_columns(columns, sizes)
     for name, column in columns.items():
-        for place, thing in things.items():
-            found = column.value(thing)
+        for place, item in items.items():
+            found = column.value(item)
             if found is not None:
                 values[name][(*place, *map(slice, np.shape(found)))] = found
     return values

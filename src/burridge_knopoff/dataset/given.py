@@ -1,4 +1,4 @@
-"""What a job is given besides the parts of the config that decide its files."""
+"""The inputs of a job other than the parts of the config on which its files depend."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from burridge_knopoff.provenance.seal import identity
 
 @dataclass(frozen=True)
 class Given:
-    """The inputs of a job, and what does not decide its files.
+    """The inputs of a job, and values on which its files do not depend.
 
     results : folder of the study
-    inputs : {name: files that the job reads}, besides points
-    points : what `Study.points` says of the points that it reads; empty if it reads none
+    inputs : {name: files that the job reads}, except points
+    points : the result of `Study.points` for the points that the job reads; empty if it reads none
     wildcards : of the job
-    cores : for the job to use
-    arguments : of `snakemake`, that name the study
+    cores : number of cores for the job
+    arguments : arguments of `snakemake` that select the study
     """
 
     results: Path
@@ -43,18 +43,18 @@ class Given:
         return list(self.inputs.get(name, ()))
 
     def summaries(self, name: str) -> list[xarray.Dataset]:
-        """Return netCDF files among the inputs, loaded into memory; raises BadFile as `open_summary` does."""
+        """Return the input files of a name, loaded into memory. Raises BadFile as `open_summary` does."""
         return [open_summary(path) for path in self.paths(name)]
 
     def summary(self, name: str) -> xarray.Dataset:
-        """Return the one file of a name; raises as `summaries` does."""
+        """Return the only input file of a name. Raises BadFile as `summaries` does."""
         (dataset,) = self.summaries(name)
         return dataset
 
     def cache(self, what: str, *decides: Any) -> Path:
-        """Return where a long job keeps what it finds, for a run with other values of a, or after a kill.
+        """Return the folder in which a long job caches its results, for a run with other values of a or after a kill.
 
-        decides : all that decides it but the values of a
+        decides : everything on which the results depend, except the values of a
         """
         root = self.results.parents[1] / ".snakemake"
         return root / "study_cache" / self.results.name / what / identity(json.dumps(decides))

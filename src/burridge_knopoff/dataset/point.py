@@ -1,7 +1,7 @@
 """Point files: the netCDF form of a trajectory, with all names, attributes and encodings of its variables.
 
-docs/data.md is the data dictionary for readers. Writing needs netCDF4 only, so that a point job starts fast; the same
-table makes the xarray Dataset of a notebook.
+docs/data.md is the data dictionary. Writing needs netCDF4 only, so that a point job starts fast; the same table
+describes the xarray Dataset of `to_dataset`.
 """
 
 from __future__ import annotations
@@ -11,30 +11,30 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.dataset.about import point_about
+from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.dataset.variables import (
     DIRECTION,
     KIND,
     TIMES,
     YES_OR_NO,
     Variable,
-    described,
-    fill,
     flag,
     global_attributes,
+    write_variables,
+    xarray_variables,
 )
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.seal import write_sealed
 from burridge_knopoff.provenance.sources import SOFTWARE
 from burridge_knopoff.running.command import CHAIN_OPTIONS, simulate_command
-from burridge_knopoff.running.status import ENDS, Status
+from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.running.trajectory import Trajectory
 
 if TYPE_CHECKING:
     import xarray
 
-STATUS_FLAG = flag("i1", ENDS)
-SECTION = {"comment": "the attribute `section` says of what W consists: the sum of all x_i, or x_n of block n"}
+STATUS_FLAG = flag("i1", STATUS_WORDS)
+SECTION = {"comment": "the attribute `section` gives W: the sum of all x_i, or x_n of one block n"}
 RELATIVE = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
 _V = Variable
@@ -48,7 +48,7 @@ POINT_VARIABLES: dict[str, Variable] = {
         ("block",),
         "i1",
         "whether the block slips at the beginning of the run, before its first event",
-        {**YES_OR_NO, "comment": "the slips of a block are this one and those that its starts begin"},
+        {**YES_OR_NO, "comment": "a block has this slip, and one slip from each of its starts"},
     ),
     "status": _V((), "i1", "how the run ended", STATUS_FLAG),
     "end_time": _V((), "f8", "time tau at which the run ended"),
@@ -70,20 +70,20 @@ POINT_VARIABLES: dict[str, Variable] = {
     "lyapunov_exponent": _V(
         ("exponent",),
         "f8",
-        "Lyapunov exponents in the window, the largest first; -infinity where a stop takes the perturbation away",
+        "Lyapunov exponents in the window, in descending order; -infinity if a stop removes the perturbation",
         {"ancillary_variables": "lyapunov_error status"},
     ),
     "lyapunov_error": _V(
         ("exponent",),
         "f8",
-        "error of a Lyapunov exponent: scatter of the batches, and power-law growth over the window",
+        "error of a Lyapunov exponent: standard error of the batches, combined with linear growth over the window",
     ),
     "batch_lyapunov_exponent": _V(("batch", "exponent"), "f8", "Lyapunov exponents in one batch of the window"),
     "lyapunov_infinite_count": _V(
         (),
         "i4",
-        "number of Lyapunov exponents known to be -infinity: at least the most blocks stuck at once in the window",
-        {"comment": "exact if all 2 N exponents were computed; -1 if none were"},
+        "number of Lyapunov exponents known to be -infinity: at least the largest number of blocks stuck at once",
+        {"comment": "exact if all 2 N exponents were computed; -1 if none were computed"},
     ),
     "time": _V(("sample",), "f8", "time tau of a sample of J"),
     "distance": _V(("sample",), "f8", "phase-space distance J(tau) between the end blocks"),
@@ -108,7 +108,7 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
     """Return the values of all point variables."""
     settings = trajectory.settings
     width = settings.window / settings.batches
-    position, velocity = trajectory.initial.numbers(trajectory.model.blocks)
+    position, velocity = trajectory.initial.coordinates(trajectory.model.blocks)
     special = {
         "a": trajectory.model.a,
         "v": trajectory.model.v,
@@ -149,13 +149,13 @@ def model_attributes(model: Model) -> dict[str, Any]:
     return {
         "law": model.law.name,
         "law_formula": model.law.formula,
-        **{f"law_{key}": value for key, value in model.law.numbers.items()},
+        **{f"law_{key}": value for key, value in model.law.parameters.items()},
         **{f"chain_{key}": value for key in CHAIN_OPTIONS if (value := getattr(model.chain, key)) is not None},
     }
 
 
 def write_point(trajectory: Trajectory, path: str | Path) -> None:
-    """Write a trajectory as a point file, whole or not at all.
+    """Write a trajectory as a point file. After an error there is no incomplete file.
 
     Raises OSError if the file cannot be written.
     """
@@ -165,15 +165,15 @@ def write_point(trajectory: Trajectory, path: str | Path) -> None:
 
     def write(name: str) -> None:
         with netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
-            fill(dataset, POINT_VARIABLES, point_values(trajectory), attributes)
+            write_variables(dataset, POINT_VARIABLES, point_values(trajectory), attributes)
 
-    write_sealed(path, write, point_about(attributes["history"]), trajectory.status)
+    write_sealed(path, write, point_identity(attributes["history"]), trajectory.status)
 
 
 def to_dataset(trajectory: Trajectory) -> xarray.Dataset:
-    """Return a trajectory as the xarray Dataset that its point file opens as."""
+    """Return a trajectory as an xarray Dataset, equal to its point file."""
     import xarray
 
-    data = described(POINT_VARIABLES, point_values(trajectory))
+    data = xarray_variables(POINT_VARIABLES, point_values(trajectory))
     coordinates = {name for name, item in POINT_VARIABLES.items() if item.coordinate} | set(TIMES.values())
     return xarray.Dataset(data, attrs=point_attributes(trajectory)).set_coords(coordinates)

@@ -1,4 +1,4 @@
-"""Summary files: xarray Datasets with CF attributes, written whole or not at all."""
+"""Summary files: xarray Datasets with CF attributes."""
 
 from __future__ import annotations
 
@@ -14,8 +14,8 @@ from burridge_knopoff.dataset.variables import (
     COMPRESSION_LEVEL,
     TEXT,
     Variable,
-    described,
     global_attributes,
+    xarray_variables,
 )
 from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.provenance.seal import BadFile, check_seal, write_sealed
@@ -31,9 +31,9 @@ STATE = Variable(("state",), "i4", "number of the sampled initial state", coordi
 
 
 def axes(**values: Sequence[Any]) -> dict[str, Any]:
-    """Return the coordinates of a summary over some of law, initial, a and other parameters, given by these names.
+    """Return the coordinates of a summary over law, initial, a or other parameters, given by name.
 
-    That of `mass[3]` is `mass_3`: names in netCDF files have letters, digits and underscores.
+    The coordinate of `mass[3]` is `mass_3`: names in netCDF files have letters, digits and underscores only.
     """
     made = {}
     for name, each in values.items():
@@ -52,24 +52,24 @@ def summary(
     *,
     module: str,
 ) -> xarray.Dataset:
-    """Return a Dataset of the described variables with the values under the same names.
+    """Return a Dataset of variables with the values of the same names.
 
-    module : name of the module that makes the values
+    module : name of the module that computes the values
     """
     head = global_attributes(title, {"history": "snakemake, from the point files", **attributes}, module=module)
-    return xarray.Dataset(described(variables, values), dict(coordinates), head)
+    return xarray.Dataset(xarray_variables(variables, values), dict(coordinates), head)
 
 
 def write_summary(dataset: xarray.Dataset, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
     """Write a summary as netCDF; the same Dataset gives the same bytes.
 
-    about : what the file is, for its seal; if None, it is known by its sources alone
+    about : the identity of the file, for its seal; if None, it consists of the sources only
     """
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in dataset.variables.items():
         encoding[str(name)] = {"_FillValue": None}
         if variable.dtype.kind in TEXT:
-            # Letters, since HDF5 crashes where a file with texts of any length is opened again and again.
+            # Characters, since HDF5 crashes when a file with variable-length strings is opened many times.
             encoding[str(name)]["dtype"] = "S1"
         elif variable.size >= COMPRESSED_FROM:
             encoding[str(name)].update(zlib=True, complevel=COMPRESSION_LEVEL, shuffle=True)
@@ -80,8 +80,8 @@ def write_summary(dataset: xarray.Dataset, path: str | Path, about: Mapping[str,
 def open_summary(path: str | Path) -> xarray.Dataset:
     """Return a summary, loaded into memory.
 
-    Raises BadFile if it is missing, damaged, another file than its study has there, or made by other sources than those
-    of this package.
+    Raises BadFile if the file is missing or damaged, does not belong to its study, or was made by other sources than
+    those of this package.
     """
     check_seal(path)
     dataset = xarray.load_dataset(path, engine="netcdf4")

@@ -1,4 +1,4 @@
-"""How a netCDF variable is described and written, for every file of the package."""
+"""Descriptions of netCDF variables and their writing, for every file of the package."""
 
 from __future__ import annotations
 
@@ -18,12 +18,12 @@ if TYPE_CHECKING:
 
 CONVENTIONS = "CF-1.11, ACDD-1.3"
 KEYWORDS = "stick-slip, friction, Burridge-Knopoff model, spring-block chain, synchronization"
-#: What every file contains, for its `summary`.
+#: The part of the global attribute `summary` that all files share.
 SIMULATED = (
     "From simulations of the Burridge-Knopoff model: blocks with stick-slip friction, coupled by springs and pulled by "
     "a driver of constant velocity. All quantities are dimensionless."
 )
-#: Types of texts: any objects, such as names along a dimension, or a column of words, which may be empty.
+#: Types of texts: objects, such as names along a dimension, or a column of words, which may be empty.
 TEXT = ("O", "U")
 COMPRESSION_LEVEL = 5
 COMPRESSED_FROM = 64
@@ -33,7 +33,7 @@ COMPRESSED_FROM = 64
 class Variable:
     """One netCDF variable: its dimensions, type, long name (with the paper's symbol) and further attributes.
 
-    nothing : what stands where there is nothing; by default NaN among numbers, −1 among whole numbers, "" among texts
+    nothing : the missing value; by default NaN for numbers, −1 for whole numbers, "" for texts
     """
 
     dimensions: tuple[str, ...]
@@ -45,7 +45,7 @@ class Variable:
 
     @property
     def missing(self) -> Any:
-        """What stands where there is nothing."""
+        """The missing value."""
         default = {"f": np.nan, "i": -1}.get(np.dtype(self.dtype).kind, "")
         return default if self.nothing is None else self.nothing
 
@@ -62,8 +62,8 @@ class Variable:
 def global_attributes(title: str, attributes: Mapping[str, Any], *, module: str, contents: str = "") -> dict[str, Any]:
     """Return the global attributes of a file: those of CF and ACDD, further ones, and the provenance.
 
-    contents : one or several sentences on what the file has, if its title does not say it
-    module : name of the module that makes the values
+    contents : one or several sentences on the contents of the file, if the title does not suffice
+    module : name of the module that computes the values
     """
     own = {
         "Conventions": CONVENTIONS,
@@ -81,17 +81,17 @@ def flag(dtype: str, meanings: Iterable[IntEnum] | Mapping[int, str]) -> dict[st
     return {"flag_values": np.array(list(meanings), dtype=dtype), "flag_meanings": " ".join(meanings.values())}
 
 
-def in_words(flags: xarray.DataArray) -> xarray.DataArray:
-    """Return a flag variable with the meaning of each value, a string, in its place; "" where it is NaN.
+def decode_flags(flags: xarray.DataArray) -> xarray.DataArray:
+    """Return a flag variable with each value replaced by its meaning, a string; NaN becomes "".
 
     flags : a variable with the CF attributes `flag_values` and `flag_meanings`, as in every file of a study
 
     Raises ValueError if it has no such attributes.
 
     >>> import xarray
-    >>> from burridge_knopoff import in_words
+    >>> from burridge_knopoff import decode_flags
     >>> kind = xarray.DataArray([0, 1], attrs={"flag_values": [0, 1], "flag_meanings": "stop start"})
-    >>> in_words(kind).values.tolist()
+    >>> decode_flags(kind).values.tolist()
     ['stop', 'start']
     """
     if "flag_meanings" not in getattr(flags, "attrs", ()):
@@ -100,12 +100,12 @@ def in_words(flags: xarray.DataArray) -> xarray.DataArray:
     values, meanings = np.atleast_1d(flags.attrs["flag_values"]), flags.attrs["flag_meanings"].split()
     for value, meaning in zip(values, meanings, strict=True):
         words[flags.values == value] = meaning
-    told = {name: text for name, text in flags.attrs.items() if not name.startswith("flag_")}
-    return flags.copy(data=words).drop_attrs().assign_attrs(told)
+    attributes = {name: text for name, text in flags.attrs.items() if not name.startswith("flag_")}
+    return flags.copy(data=words).drop_attrs().assign_attrs(attributes)
 
 
 class Answer(IntEnum):
-    """Whether something is so, as whether two laws agree or a run has settled, numbered as in netCDF files."""
+    """The answer to a question, such as whether two laws agree or a run has settled, numbered as in netCDF files."""
 
     UNDETERMINED = -1
     NO = 0
@@ -119,23 +119,23 @@ DIRECTION = flag("i1", {-1: "downward", 1: "upward"})
 
 #: Long name and attributes of the period of a motion.
 PERIOD = (
-    "period of the closed orbit on which the motion is or to which it is locked, NaN if none is known",
-    {"comment": "inf where the motion attracts as a closed orbit does but has not repeated in the time it was seen"},
+    "period of the periodic orbit on which the motion lies or to which it is locked, NaN if none was found",
+    {"comment": "inf if the exponents are those of an attracting periodic orbit but the motion has not repeated"},
 )
 
-#: The time of each row of a dimension that has no coordinate variable of its own.
+#: The variable with the times along each dimension that has no coordinate variable of the same name.
 TIMES = {"sample": "time", "event": "event_time", "earlier_event": "earlier_event_time", "crossing": "crossing_time"}
 
 
-def described(variables: Mapping[str, Variable], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return variables with the values under the same names, as an xarray Dataset takes them."""
+def xarray_variables(variables: Mapping[str, Variable], values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return variables with the values of the same names, in the form that an xarray Dataset expects."""
     return {
         name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
         for name, item in variables.items()
     }
 
 
-def fill(
+def write_variables(
     dataset: netCDF4.Dataset,
     variables: Mapping[str, Variable],
     values: Mapping[str, Any],
@@ -161,6 +161,6 @@ def fill(
 
 
 def _coordinates(item: Variable, scalars: str) -> str:
-    """Return the CF coordinates attribute: a and v everywhere, and the times of events and crossings."""
+    """Return the CF attribute `coordinates`: a and v for every variable, and the times of events and crossings."""
     own = [TIMES[dimension] for dimension in item.dimensions if dimension in TIMES]
     return " ".join([*own, scalars]).strip()

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from burridge_knopoff.figures.style import PAGE, color, label_panels, say_nothing, styled
-from burridge_knopoff.running.status import ENDS
+from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.summaries.bifurcation_diagram import ROUNDING
 
 TITLE = "Motion from {initial}"
@@ -72,7 +72,7 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
 
 def ended_early(point: xarray.Dataset) -> str:
     """Return when and how a run ended that did not complete; empty for one that did."""
-    return ended_words(ENDS[point["status"].item()], point["end_time"].item())
+    return ended_words(STATUS_WORDS[point["status"].item()], point["end_time"].item())
 
 
 def ended_words(status: str, time: float) -> str:

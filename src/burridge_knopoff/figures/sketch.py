@@ -65,7 +65,7 @@ def draw(chain_description: Mapping[str, Any]) -> Figure:
             panel.text(0.5 * (start + end), SIDE / 2, "· · ·", ha="center", va="center", fontsize=14.0)
             continue
         _spring(panel, (start, SIDE / 2), (end, SIDE / 2), color(0))
-        panel.text(0.5 * (start + end), 0.62, f"${chain.after[one]:g}$", ha="center", color=color(0))
+        panel.text(0.5 * (start + end), 0.62, f"${chain.coupling_to_next[one]:g}$", ha="center", color=color(0))
     lines = _words(chain)
     lowest = -0.75 - 0.4 * len(lines) if lines or np.ptp(chain.thresholds) > 0.0 else -0.35
     panel.text(0.5 * (left + right), -0.75, "\n".join(lines), ha="center", va="top", color=color(0))
@@ -78,7 +78,7 @@ def _words(chain: Chain) -> list[str]:
     """Return in words what is not drawn."""
     lines = []
     if chain.ends == "ring":
-        lines.append(f"a spring of strength ${chain.after[-1]:g}$ couples block {chain.blocks} to block 1")
+        lines.append(f"a spring of strength ${chain.coupling_to_next[-1]:g}$ couples block {chain.blocks} to block 1")
     elif chain.grid:
         size = f"{chain.grid[0]} × {chain.grid[1]}"
         lines.append(f"springs of strength ${chain.coupling:g}$ couple a grid of {size} blocks")

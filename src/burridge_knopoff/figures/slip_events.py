@@ -25,7 +25,7 @@ from burridge_knopoff.figures.style import (
     say_nothing,
     styled,
 )
-from burridge_knopoff.running.status import ENDS, Status
+from burridge_knopoff.running.status import STATUS_WORDS, Status
 
 MAGNITUDE = r"magnitude $\ln M$"
 INTERVAL = r"interval $\Delta\tau$"
@@ -64,7 +64,7 @@ def no_events(runs: xarray.Dataset) -> Figure | None:
 def ending(run: xarray.Dataset) -> str:
     """Return how a run ended that did not complete; empty for one that did."""
     status = run["status"].item()
-    return "" if status == Status.COMPLETED else ENDS[status].replace("_", " ")
+    return "" if status == Status.COMPLETED else STATUS_WORDS[status].replace("_", " ")
 
 
 def say_without(panel: Axes, runs: xarray.Dataset, name: str) -> None:

@@ -9,7 +9,7 @@ from functools import cached_property
 from itertools import product
 from typing import Any
 
-from burridge_knopoff.dataset.about import point_about
+from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.jobs import shown, stages
 from burridge_knopoff.jobs.rule import Rule, Wildcards
 from burridge_knopoff.provenance.seal import digest_of
@@ -182,7 +182,7 @@ class Jobs:
         for rule in self.runs():
             found = re.fullmatch(self.pattern(rule.files[0]), name)
             if found and (job := found.groupdict()) in list(rule.each):
-                return point_about(self.study.command(**job))
+                return point_identity(self.study.command(**job))
         return None
 
     def pattern(self, form: str) -> str:

@@ -11,7 +11,7 @@ STATUS: dict = ...
 
 class StopFlag:
     """
-    Ends calls of the kernel in the threads that heed it, by KeyboardInterrupt.
+    Ends calls of the kernel in the threads that check it, by KeyboardInterrupt.
     """
 
     def __init__(self) -> None: ...
@@ -33,7 +33,9 @@ def maximum(
     length: float,
     floor: float,
 ) -> float:
-    """The larger of floor and the maximum of a polynomial over [0, length]."""
+    """
+    The maximum of a polynomial over [0, length], or floor if that is larger.
+    """
 
 def quadrature() -> tuple:
     """Nodes and weights, of sum 1, of the quadrature rule for J on [-1, 1]."""
@@ -80,7 +82,7 @@ class KernelModel:
         """
 
 class Record:
-    """A table that grows: one time and a few values a row."""
+    """A growing table with one time and a few values per row."""
 
     @property
     def count(self) -> int: ...
@@ -111,7 +113,7 @@ class EventLog:
 
 class Observer:
     """
-    What one run measures: J averaged over batches, J and states at given times, section crossings.
+    The measurements of one run: J averaged over batches, J and states at given times, section crossings.
     """
 
     def __init__(
@@ -158,7 +160,7 @@ class Exponents:
         matrix: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order="C", device="cpu", writable=False)],
     ) -> None:
         """
-        Carry the columns of a matrix (2 blocks, vectors) from now on as they are, never orthonormalised.
+        Propagate the columns of a matrix (2 blocks, vectors) from now on, without orthonormalisation.
         """
 
     def matrix(self) -> NDArray[numpy.float64]:
@@ -166,7 +168,7 @@ class Exponents:
 
     def results(self) -> dict:
         """
-        growth (batches, vectors), -inf for dropped vectors, duration (batches,), and how many exponents are lost.
+        growth (batches, vectors), -inf for dropped vectors, duration (batches,), and the number of exponents -inf.
         """
 
 class Catalogue:
@@ -181,7 +183,7 @@ class Catalogue:
         """
 
 class Mark:
-    """What repeats the last pieces of a run that ended."""
+    """State that continues a run exactly."""
 
     def __getstate__(self) -> bytes: ...
     def __setstate__(self, arg: bytes, /) -> None: ...
@@ -213,11 +215,11 @@ class Run:
     def values(self) -> tuple: ...
     def use_modes(self, solve: Callable) -> None:
         """
-        Go from event to event in closed form; solve(first, last) gives eigenvalues and modes, one a row, of K for these blocks.
+        Use the closed form between events; solve(first, last) returns eigenvalues and modes, one per row, of K for these blocks.
         """
 
     def record(self, catalogue: Catalogue) -> None:
-        """Record slip events in a catalogue from the next beginning on."""
+        """Record slip events in a catalogue from the next start on."""
 
     @property
     def halting_block(self) -> int: ...
@@ -238,11 +240,11 @@ class Run:
 
 def run_in_lockstep(runs: Sequence[Run]) -> list[int]:
     """
-    Carry out several runs, each to the bit as alone, and return their statuses; those that are alike but for the numbers of their models share the lanes of vectors.
+    Carry out several runs, with the same bits as alone, and return their statuses. Runs of models that differ only in parameters share vectors.
     """
 
 class StepMark:
-    """What repeats the last step of a run that ended."""
+    """State that continues a run with a fixed step exactly."""
 
     def __getstate__(self) -> bytes: ...
     def __setstate__(self, arg: bytes, /) -> None: ...
@@ -267,7 +269,7 @@ class TimeStepping:
     def run(self) -> int: ...
     def values(self) -> tuple: ...
     def record(self, catalogue: Catalogue) -> None:
-        """Record slip events in a catalogue from the next beginning on."""
+        """Record slip events in a catalogue from the next start on."""
 
     @property
     def steps(self) -> int: ...
@@ -299,7 +301,7 @@ class Clouds:
         """
 
 class Ensemble:
-    """Many trajectories of one model at once, a lane of a vector each."""
+    """Many trajectories of one model at once, each in a lane of vectors."""
 
     def __init__(self, model: KernelModel, rate_limit: int) -> None: ...
     @property
@@ -327,5 +329,5 @@ class Ensemble:
         end: float,
     ) -> tuple:
         """
-        Which cloud each state comes close to, when that was certain, and where the others are at the end.
+        The cloud that each state reaches, -1 for none, the end times, and the states at the end.
         """

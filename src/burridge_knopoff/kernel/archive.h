@@ -1,4 +1,4 @@
-// Values as bytes, and back: what repeats a run can leave its process.
+// Values as bytes, and back: the state that continues a run can be sent to another process.
 #pragma once
 
 #include <cstring>
@@ -10,7 +10,7 @@
 
 namespace bk {
 
-// Called with variables, writes them, or reads them in the same order. A class lists its own in `archive`.
+// Called with variables, it writes them, or reads them in the same order. A class lists its variables in `archive`.
 class Archive {
   public:
     std::string bytes;
@@ -23,7 +23,7 @@ class Archive {
         (one(values), ...);
     }
 
-    // Whether all bytes were read, and no more than there are.
+    // Whether exactly all bytes were read.
     bool complete() const { return place == bytes.size(); }
 
   private:

@@ -1,16 +1,16 @@
 // A catalogue of slip events: slips that are connected in space and time.
 //
-// A slip of a block lasts from its start to its stop. Slips of neighbours that overlap in time are connected, and so is
-// all that is connected in turn: that is one event, from the first start to the last stop. Under a finite velocity of
-// the driver there may be no moment at which all blocks rest, so connection decides, not rest.
+// A slip of a block lasts from its start to its stop. Slips of neighbours that overlap in time are connected. An event
+// is a maximal connected set of slips, from the first start to the last stop. At a finite velocity of the driver there
+// may be no time at which all blocks are at rest; events are therefore defined by connection, not by times of rest.
 //
-// The energy that an event releases is the work of all springs on its blocks, ∫ Σ s_i U_i' dτ, which friction and
-// dashpots dissipate: the blocks rest before and after. Over a piece in which the same blocks slip this is exactly,
-// with y = U − U(0),
+// The energy released by an event is the work of all springs on its blocks, ∫ Σ s_i U_i' dτ, which friction and
+// dashpots dissipate, since the blocks are at rest before and after. Over a piece in which the same blocks slip the
+// work is exactly, with y = U − U(0),
 //
 //     Σ ½ (s_i(0) + s_i(T) − D_i v T) y_i(T) + D_i v (T y_i(T) − ∫ y_i dτ).
 //
-// Dashpots dissipate ∫ Σ c_ij (U_j' − U_i')² + Σ c_i (v − U_i')² dτ, over those at the slipping blocks.
+// The dashpots at the slipping blocks dissipate ∫ Σ c_ij (U_j' − U_i')² + Σ c_i (v − U_i')² dτ.
 #pragma once
 
 #include <algorithm>
@@ -24,15 +24,15 @@ namespace bk {
 class Catalogue {
   public:
     struct Event {
-        Clock start, load;  // slip clock and loading clock of the first start: one clock under steady loading
+        Clock start, load;  // slip clock and loading clock at the first start; the same clock under steady loading
         int epicentre = 0, slipping = 0;
         double interval = 0.0, peak_velocity = 0.0, energy = 0.0, damped = 0.0;
-        std::vector<std::pair<int, double>> slips;  // block, and how far it slipped
-        // The event that goes on with this one, −1 for none; the events that this one goes on with.
+        std::vector<std::pair<int, double>> slips;  // block and slip
+        // The event into which this one was merged, −1 for none; the events that were merged into this one.
         int merged = -1;
         std::vector<int> absorbed;
-        // The speed of a block over a piece of its motion, of some length, in which it may exceed the peak velocity,
-        // and its bound: as a rule a later speed is higher, and the maximum need not be found.
+        // The speed of a block over a piece in which it may exceed the peak velocity, the length of the piece, and a
+        // bound on the speed. The maximum is found only if no later piece has a higher bound.
         double bound = 0.0, length = 0.0, speed[Blocks::ORDER + 1] = {};
 
         template <class A>
@@ -42,12 +42,12 @@ class Catalogue {
         }
     };
 
-    // Columns, with an entry for each event, in the order in which events end. Blocks count from 1.
+    // Columns, with an entry for each event, in the order in which events end. Blocks are numbered from 1.
     struct Table {
         std::vector<double> time, slip_time, duration, moment, largest_slip, peak_velocity, stress_drop,
             energy_released, energy_damped, interval;
         std::vector<int> epicentre, first_block, last_block, blocks;
-        // With profiles, blocks and slips of the events one after the other: event k has those before slip_end[k].
+        // With profiles, blocks and slips of successive events; those of event k end before slip_end[k].
         std::vector<int64_t> slip_end;
         std::vector<int> slip_block;
         std::vector<double> slip;
@@ -59,12 +59,12 @@ class Catalogue {
     Table table;
     bool full = false;
 
-    // from : events that begin earlier are left out; profiles : whether the slip of every block is kept; most : number
-    // of events and of slips in profiles at which the table is full
+    // from : earlier events are omitted; profiles : whether the slip of every block is stored; most : number of events
+    // and of slips in profiles at which the table is full
     Catalogue(int blocks, double from, bool profiles, double most)
         : from(from), profiles(profiles), most(size_t(most)), of_block(blocks), slip(blocks) {}
 
-    // Begin again without events; all blocks that slip now have slipped since before.
+    // Start again without events. Blocks that slip now belong to no event until they stop.
     void restart() {
         table = {};
         full = false;
@@ -73,11 +73,11 @@ class Catalogue {
         std::fill(of_block.begin(), of_block.end(), Block{});
     }
 
-    // What is known of a block.
+    // The history of a block.
     struct Block {
-        // The event in which it slips, and the one in which it slipped last, unless that has ended; −1 for none.
+        // The event in which the block slips, and its last event if this has not ended; −1 for none.
         int event = -1, last_event = -1;
-        // Time and position at its start, and time at the start of the last event that has ended.
+        // Time and position at the start of the slip, and start time of the last event that has ended.
         Clock begun;
         double position = 0.0, last_start = NAN;
 
@@ -87,7 +87,7 @@ class Catalogue {
         }
     };
 
-    // Events that have not ended, for a run that goes on.
+    // Events that have not ended, for a continued run.
     struct Open {
         std::vector<Event> events;
         std::vector<Block> of_block;
@@ -124,7 +124,7 @@ class Catalogue {
         of_block = open.of_block;
     }
 
-    // The event of a slipping block; nullptr if it sticks, or slips since before the catalogue began.
+    // The event of a slipping block; nullptr if it sticks, or has slipped since before the catalogue began.
     Event *of(int i) {
         int &event = of_block[i].event;
         if (event < 0) return nullptr;
@@ -151,7 +151,7 @@ class Catalogue {
             event.start = at;
             event.load = load;
             event.epicentre = i;
-            // The last event of this block may go on elsewhere.
+            // The last event of this block may continue elsewhere.
             event.interval =
                 load.time - (block.last_event < 0 ? block.last_start : events[find(block.last_event)].load.time);
             event.peak_velocity = event.energy = event.damped = event.bound = 0.0;
@@ -177,7 +177,7 @@ class Catalogue {
         release(number);
     }
 
-    // A block of the event has a speed with these coefficients over a piece, at most `bound`.
+    // Consider the speed of a block of the event over a piece, with these coefficients and this bound.
     void consider(Event &event, const Polynomial &speed, double length, double bound) {
         find_peak(event);
         if (bound <= event.peak_velocity) return;
@@ -189,8 +189,8 @@ class Catalogue {
   private:
     std::vector<Event> events;
     std::vector<Block> of_block;
-    std::vector<int> spare, blocks;  // numbers to be used again; blocks of the event that ends
-    std::vector<double> slip;        // of its blocks, 0 for others
+    std::vector<int> spare, blocks;  // free numbers of events; blocks of the event that ends
+    std::vector<double> slip;        // slips of the blocks of the event that ends, 0 for other blocks
     Polynomial polynomial;
 
     int find(int number) const {
@@ -215,7 +215,7 @@ class Catalogue {
         event.bound = 0.0;
     }
 
-    // One event of two, with the earlier start.
+    // Merge two events; the result has the earlier start.
     int joined(int number, int other_number) {
         if (number == other_number) return number;
         if (events[other_number].slips.size() > events[number].slips.size()) std::swap(number, other_number);
@@ -240,7 +240,7 @@ class Catalogue {
         return number;
     }
 
-    // Ends of the event that ends, along the chain; over the joint of a ring the first is above the last.
+    // First and last block of the event that ends; in a ring, the first exceeds the last if the event spans the seam.
     std::pair<int, int> ends(const Springs &springs) const {
         const int count = int(blocks.size());
         if (springs.ring && blocks.front() == 0 && blocks.back() == springs.blocks - 1)
@@ -260,7 +260,7 @@ class Catalogue {
         }
         double moment = 0.0, largest = 0.0, drop = 0.0;
         for (int i : blocks) {
-            // Else it has slipped in a later event.
+            // Otherwise the block has slipped in a later event.
             Block &block = of_block[i];
             if (block.last_event >= 0 && find(block.last_event) == number) {
                 block.last_event = -1;

@@ -1,7 +1,8 @@
-// Clouds of states, and whether a state is within the radius of one of them.
+// Clouds of states, and a test whether a state is within the radius of one of them.
 //
-// The points of a cloud are sorted along the coordinate in which it is widest and lie in groups of neighbours, each in
-// a box. A box that is too far off has no close point, to the last bit: rounding keeps the order of differences.
+// The points of a cloud are sorted along the coordinate in which it is widest and divided into groups of neighbours,
+// each in a box. A box that is too far away contains no close point, to the last bit, since rounding preserves the
+// order of differences.
 #pragma once
 
 #include <algorithm>
@@ -59,7 +60,7 @@ class Clouds {
     bool is_near(int number, const double *state) const {
         const Cloud &cloud = clouds[number];
         const int last = int(cloud.low.size()) / width, points = int(cloud.point.size()) / width;
-        // Rounding must not hide a group; whether a point is close `close` decides.
+        // Rounding must not hide a group; `close` decides whether a point is close.
         const double wide = WIDER * cloud.radius, own = state[cloud.axis];
         int group = 0, high = last;
         while (group < high) {

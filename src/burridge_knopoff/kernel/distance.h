@@ -1,9 +1,10 @@
 // The distance J(τ) between the two end blocks in phase space, over one piece: its values and its integral.
 //
-// J = sqrt(d² + d'²) with d = U_N − U_1 is analytic wherever it is not 0. Gauss-Legendre quadrature with m nodes errs
-// by about the Legendre coefficient of degree 2m; those fall geometrically, so the last two that the nodes still
-// resolve, squared over the first, estimate the error. A panel that fails is halved: near a close approach J is |z| of
-// a complex polynomial with a root near the real axis, and the halving closes in on it.
+// J = sqrt(d² + d'²) with d = U_N − U_1 is analytic wherever it is not 0. The error of Gauss-Legendre quadrature with m
+// nodes is about the Legendre coefficient of degree 2m. The coefficients fall geometrically, so the squares of the last
+// two that the nodes resolve, divided by the first, estimate the error. A panel whose estimate is too large is halved:
+// near a close approach J is the modulus of a complex polynomial with a root near the real axis, where panels become
+// short.
 //
 // Reference: L. N. Trefethen, "Is Gauss quadrature better than Clenshaw-Curtis?", SIAM Rev. 50 (2008) 67-87.
 #pragma once
@@ -31,7 +32,7 @@ struct GaussLegendre {
         }
     }
 
-    // By Newton's method, in long double, from the first half of the nodes: the other half is its mirror image.
+    // Half of the nodes are found by Newton's method in long double; the other half is their mirror image.
     GaussLegendre() {
         for (int j = 0; j < NODES / 2; j++) {
             long double x = -std::cos(3.14159265358979323846L * (j + 0.75L) / (NODES + 0.5L)), p[3], slope;
@@ -54,11 +55,11 @@ struct GaussLegendre {
 };
 inline const GaussLegendre GAUSS;
 
-// What an estimate of the error of a panel may be, beside ⟨J⟩ in it.
+// Limits on the estimated error of a panel, relative to the mean of J in it and absolute.
 constexpr double RELATIVE_ERROR = 1e-15, ABSOLUTE_ERROR = 1e-17;
 
-// d and d' at t, from their coefficients, 2n + 2 of each, and J there. Even and odd powers apart, since each sum waits
-// for the last.
+// d and d' at t, from 2n + 2 coefficients of each. Even and odd powers are summed separately, so that the two sums can
+// be computed in parallel.
 template <class T, class C>
 BK_INLINE void distance_at(const C *position, const C *velocity, int n, T t, T &d, T &rate) {
     const T square = t * t, zero = t - t;
@@ -95,7 +96,7 @@ class Distance {
     double position[MOST_TERMS + 2] = {}, velocity[MOST_TERMS + 2] = {};
     int degree = 0;
 
-    // Make ready for integrals, when d and d' have been filled.
+    // Prepare for integrals, after d and d' have been filled.
     void begin(int order) {
         degree = order;
         position[order + 1] = velocity[order + 1] = 0.0;

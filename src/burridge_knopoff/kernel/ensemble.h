@@ -1,7 +1,7 @@
-// Many trajectories of one chain at once: a lane holds a trajectory with its own clock and step.
+// Many trajectories of one chain at once: each lane holds a trajectory with its own clock and step.
 //
-// A lane whose trajectory has ended takes the next one from the list. No number of a trajectory depends on what goes on
-// in other lanes, nor on where it ends: the end only cuts off.
+// A lane whose trajectory has ended takes the next one from the list. The results of a trajectory do not depend on
+// other lanes, nor on its end time, which only truncates the last piece.
 #pragma once
 
 #include "clouds.h"
@@ -10,7 +10,7 @@
 
 namespace bk {
 
-// What is known of n trajectories at their ends, and on the way.
+// The results of n trajectories at their ends and at intermediate times.
 struct Outcome {
     int count, blocks, times, kept;
     std::vector<int> status, label;
@@ -19,7 +19,7 @@ struct Outcome {
     std::vector<long long> event_count;
     std::vector<int> event_block, event_kind;
 
-    // kept : how many events of each are kept
+    // kept : number of events stored for each trajectory
     Outcome(int count, int blocks, int times, int kept)
         : count(count), blocks(blocks), times(times), kept(kept), status(count), label(count, -1), end(count),
           position(size_t(count) * times * blocks, NAN), velocity(size_t(count) * times * blocks, NAN),
@@ -35,12 +35,11 @@ class Ensemble : public TrajectoryLanes {
     Ensemble(const Model &model, long long rate_limit)
         : TrajectoryLanes(model), model(model), rate_limit(double(rate_limit)), slipped(blocks) {}
 
-    // Move trajectories from positions x_i, velocities U_i' and stuck blocks, shape (count, blocks), to the last of
-    // some ascending times, and keep their states at all of them: a state is that before the events of the same
-    // instant.
+    // Integrate trajectories from positions x_i, velocities U_i' and stuck blocks, shape (count, blocks), to the last
+    // of some ascending times, and store their states at all these times. At an event the state before it is stored.
     //
-    // clouds : states (x_i, U_i') at stops; a trajectory ends with the label of a cloud when `returns` successive stops
-    // of the cloud's block, `section`, have been near it
+    // clouds : states (x_i, U_i') at stops. A trajectory ends with the label of a cloud when `returns` successive stops
+    // of the block `section` of this cloud have been near it
     void run(const double *position, const double *velocity, const bool *stuck, const std::vector<double> &times,
              Outcome &out, const Clouds *clouds, const std::vector<int> &returns, const std::vector<int> &section);
 
@@ -55,13 +54,13 @@ class Ensemble : public TrajectoryLanes {
     const std::vector<double> *times = nullptr;
     const Clouds *clouds = nullptr;
 
-    // Let the k-th time be the next at which the state of a lane is kept.
+    // Store the next state of a lane at the k-th time.
     void aim(int lane, int k) {
         next_time[lane] = k;
         target[lane] = k < int(times->size()) ? (*times)[k] : LONG;
     }
 
-    // Move every lane to its next event, or as far as its series goes, and look at the returns among the events.
+    // Integrate every lane to its next event, or to the end of its series, and compare returns with the clouds.
     void move(const std::vector<int> &returns, const std::vector<int> &section) {
         for (int i = 0; i < blocks; i++) slipped[i] = state.slip[i];
         mask resting;
@@ -87,7 +86,7 @@ class Ensemble : public TrajectoryLanes {
         }
     }
 
-    // Keep the states at the times that lie within the coming pieces.
+    // Store the states at the times that lie within the present pieces.
     void sample(vec length) {
         for (;;) {
             const vec ahead = until(target);
@@ -108,7 +107,7 @@ class Ensemble : public TrajectoryLanes {
         }
     }
 
-    // Let block i stop or start now, and count the event.
+    // Stop or start block i now, and count the event.
     void change(int i, mask where) {
         const mask fresh = where & (unit_start + model.springs.unit <= clock);
         state.transition(i, where);
@@ -130,7 +129,7 @@ class Ensemble : public TrajectoryLanes {
         settle(where, [this](int i, mask own) { change(i, own); }, [this] { return ~accumulating; });
     }
 
-    // Look at the returns of some lanes to a cloud; a lane is done when enough of them have been near it.
+    // Compare the states of some lanes with a cloud; a lane is finished after enough successive returns near it.
     void visit(int cloud, int returns, int clouds_in_all, mask where) {
         std::vector<double> point(2 * blocks);
         for (int lane = 0; lane < LANES; lane++) {

@@ -1,14 +1,15 @@
-// The first event in a piece of a series, looked for in all blocks at once and proved to be the first.
+// The first event in a piece of a series, searched for in all blocks at once and proved to be the first.
 //
-// What decides about an event is a polynomial g for each block, positive until the event: its speed while it slips, or
-// how far its spring force is from its threshold while it sticks. A root t* is guessed and refined by Halley's method,
-// and then it is proved that no g has one before: over [0, t*] each g, or the quotient q in g(t) = g(t*) + (1 − t/t*)
-// q(t), is bounded from below. The bounds are the Bernstein coefficients of the first terms, with all others taken off
-// the last one: they add at most Σ|c_k| t*^k u^LOW at u = t/t*, which has no other coefficient. Where the proof fails
-// the exhaustive search of a Polynomial decides. So an event is found late only by as much as rounding hides.
+// Each block has a polynomial g that is positive until its event: the speed of a slipping block, or the distance of the
+// force on a stuck block from its threshold. A root t* is estimated and refined by Halley's method. Then it is proved
+// that no g has an earlier root: over [0, t*] each g, or the quotient q in g(t) = g(t*) + (1 − t/t*) q(t), is bounded
+// from below. The bounds are the Bernstein coefficients of the first terms; the sum of the moduli of all other terms is
+// subtracted from the last coefficient, because these terms are at most Σ|c_k| t*^k u^LOW at u = t/t*, which has no
+// other coefficient. If the proof fails, the exhaustive search of a Polynomial decides. An event can thus be missed or
+// late only within rounding.
 //
-// Where W, which makes the section, changes its sign is found on the way, in a lane behind those of the blocks: it
-// moves no event, and costs next to nothing.
+// Sign changes of the section function W are found in the same search, in a lane after those of the blocks. They do not
+// change any event, and cost very little.
 #pragma once
 
 #include "polynomial.h"
@@ -17,7 +18,7 @@
 namespace bk {
 
 constexpr double UNKNOWN = 1e300;
-// Degree of the first, cheap bounds.
+// Degree of the bounds.
 constexpr int LOW = 8;
 // W at the end of one piece and at the start of the next differ by rounding, less than this.
 constexpr double SEAM = 1e-14;
@@ -51,7 +52,7 @@ struct Bounds {
         for (int k = 0; k <= LOW; k++) corner[k] = b[k];
     }
 
-    // Where the control polygon first falls through 0, as a share of the interval; UNKNOWN where it does not.
+    // Where the control polygon first falls through 0, as a fraction of the interval; UNKNOWN if it does not.
     BK_INLINE vec fall() const {
         vec share = L::splat(UNKNOWN);
         for (int k = LOW - 1; k >= 0; k--) {
@@ -62,7 +63,7 @@ struct Bounds {
     }
 };
 
-// What a search needs only while it goes on: several can share it.
+// Working memory of a search, which several searches can share.
 template <class L>
 struct EventScratch {
     typename L::vec power[L::ORDER + 1], scaled[L::ORDER + 1], quotient[L::ORDER + 1], candidate[L::ORDER + 1];
@@ -76,17 +77,17 @@ class EventSearch {
     using vec = typename L::vec;
     using mask = typename L::mask;
     using Number = typename L::Number;
-    // How often a trajectory had to be searched block by block.
+    // Number of times that a trajectory was searched block by block.
     long long searches = 0;
-    vec time;    // of the event, or the reach where there is none
-    mask found;  // whether there is one
+    vec time;    // of the event, or the reach if there is none
+    mask found;  // whether there is an event
 
     explicit EventSearch(EventScratch<L> &scratch)
         : power(scratch.power), scaled(scratch.scaled), quotient(scratch.quotient), candidate(scratch.candidate),
           polynomial(scratch.polynomial) {}
 
-    // Find the first events within the reach. section : the lane of W in g, or its column where each lane has a clock,
-    // −1 if it is not looked for
+    // Find the first events within the reach. section : the lane of W in g, or its column if each lane has a clock; −1
+    // if sign changes of W are not searched for
     void find(Series<L> &series, const State<L> &state, vec reach, mask where, int section = -1) {
         columns = series.columns;
         width = series.width;
@@ -106,7 +107,7 @@ class EventSearch {
         if (any(wanted)) {
             if (!L::ONE_CLOCK) refine_candidate(series, reach, where);
             doubtful = wanted & where & ~backward & ~proved(series, where & ~backward, section);
-            // Another block than the one that was guessed may be the first.
+            // The first event may be that of another block than was estimated.
             if (!L::ONE_CLOCK && any(contested & ~doubtful)) doubtful |= earlier(series, reach, contested & ~doubtful);
             if (!L::ONE_CLOCK && any(doubtful)) {
                 const vec before_time = time;
@@ -122,7 +123,7 @@ class EventSearch {
         if (any(doubtful)) search(series, state, reach, doubtful);
     }
 
-    // Take g of the block that was found in each clock, for `due`.
+    // Copy g of the block that was found for each clock, for `due`.
     void aim(const Series<L> &series) {
         if (aimed || L::ONE_CLOCK) return;
         aimed = true;
@@ -135,11 +136,11 @@ class EventSearch {
         }
     }
 
-    // Where blocks have the event that was found: what decides about them is the same, to the bit, as of mirror images.
-    // Then their events are one, whatever rounding leaves of them at its time.
+    // Where blocks have the event that was found: their g is the same to the bit, as for mirror images. Their events
+    // are then simultaneous, regardless of rounding errors at that time.
     mask due(const Series<L> &series, int c) const {
         mask same = found & series.layout.present[c];
-        // The block itself is the same for certain.
+        // The block itself need not be compared.
         const int own = L::ONE_CLOCK && block[0] / LANES == c ? 1 << block[0] % LANES : 0;
         for (int k = 0; k <= ORDER && bits(same) != own; k++) {
             const size_t row = size_t(k) * width;
@@ -149,8 +150,8 @@ class EventSearch {
         return same;
     }
 
-    // When W changes its sign in the first `length` of the reach: NONE if it does not, UNCERTAIN if it has to be looked
-    // for.
+    // The time at which W changes its sign in the first `length` of the reach; NONE if it does not, UNCERTAIN if a
+    // search is necessary.
     static constexpr double NONE = -1.0, UNCERTAIN = -2.0;
     Number crossing_within(const Series<L> &series, Number length, int section) const {
         const int c = column_of(section);
@@ -171,13 +172,13 @@ class EventSearch {
     }
 
   private:
-    // Halley steps with the first terms, and with all before a root is left to the exhaustive search.
+    // Number of Halley steps with the first terms, and with all terms before the exhaustive search.
     static constexpr int GUESSES = 1, ITERATIONS = 6;
-    // A root has converged when the next step would be smaller than this share of the piece.
+    // A root has converged when the next step would be smaller than this fraction of the piece.
     static constexpr double CONVERGED = 1e-17;
-    // Values down to minus this share of the highest one count as 0 at the event: no less is left of them by rounding.
+    // At the event, values down to minus this fraction of the highest value count as 0: they are rounding.
     static constexpr double COMMON = 1e-14;
-    // Value at the event of another block below which the quotient serves better.
+    // Value at the event below which another block is bounded by its quotient.
     static constexpr double NEAR = 1e-3;
 
     int columns, width;
@@ -190,14 +191,14 @@ class EventSearch {
     mask contested;
     Polynomial &polynomial;
 
-    // Clocks in which a column has the event, where each column is a block.
+    // Clocks for which a column has the event, if each column is a block.
     mask is_block(int c) const {
         mask own;
         for (int lane = 0; lane < LANES; lane++) own[lane] = -int64_t(block[lane] == c);
         return own;
     }
 
-    // Where W is in g, and what a row has there for each clock.
+    // The column of W in g, and the value of a row there for each clock.
     static int column_of(int section) { return L::ONE_CLOCK ? section / LANES : section; }
     static BK_INLINE Number of_section(vec row, int section) {
         if constexpr (L::ONE_CLOCK)
@@ -208,7 +209,7 @@ class EventSearch {
     static BK_INLINE bool some(bool where) { return where; }
     static BK_INLINE bool some(mask where) { return any(where); }
 
-    // Note that W does not change its sign where a bound on it from below says so.
+    // Record that W does not change its sign if its lower bound is positive.
     BK_INLINE void rule_out(vec low, int section) {
         crossing = of_section(low, section) > SEAM ? Number{} + NONE : crossing;
     }
@@ -218,7 +219,7 @@ class EventSearch {
         const vec zero{};
         for (int c = 0; c < columns; c++) {
             vec *g = series.gap.at(c);
-            // At its threshold by construction: what rounding leaves there must not start the block a second time.
+            // The force is at its threshold by construction: rounding must not start the block a second time.
             const mask at = (state.touching[c] > zero) & (state.slip[c] == zero) &
                             (magnitude(g[0]) < 0.5 * series.layout.threshold[c]);
             if (any(at)) g[0] = select(at, zero, g[0]);
@@ -234,7 +235,7 @@ class EventSearch {
         }
     }
 
-    // Four chains of products, as each waits for the last.
+    // Four independent chains of products, which can be computed in parallel.
     BK_INLINE void raise(vec t) {
         const vec square = t * t, fourth = square * square;
         vec now[4] = {L::splat(1.0), t, square, square * t};
@@ -245,7 +246,7 @@ class EventSearch {
             }
     }
 
-    // Bound g over the reach; return where there may be an event, with guesses in `root_at`.
+    // Bound g over the reach; return where there may be an event, with estimates of its time in `root_at`.
     mask bound(Series<L> &series, vec reach, mask where, int section) {
         mask wanted{};
         raise(reach);
@@ -263,13 +264,13 @@ class EventSearch {
                 root_at[c] = select(own & (share < UNKNOWN), share * reach, root_at[c]);
                 if (section >= 0 && c == column_of(section)) steepness(bounds, reach, section);
             }
-            // Lanes without a block have g = 0 or W.
+            // In lanes without a block g is 0 or W.
             if (c < columns) wanted |= own & series.layout.present[c];
         }
         return L::any_of_clock(wanted);
     }
 
-    // Set `fall`: how fast W falls everywhere in the reach, at least, if that is positive.
+    // Set `fall`: a lower bound on the rate at which W falls everywhere in the reach, if it is positive.
     void steepness(const Bounds<L> &bounds, vec reach, int section) {
         vec steepest = bounds.corner[1] - bounds.corner[0], rest{};
         for (int k = 1; k < LOW; k++) steepest = largest(steepest, bounds.corner[k + 1] - bounds.corner[k]);
@@ -277,7 +278,7 @@ class EventSearch {
         fall = of_section(-(double(LOW) * steepest + rest) / reach, section);
     }
 
-    // Where a stuck block may start backward, which g does not tell.
+    // Where a stuck block may start backward, which g does not show.
     mask turns_back(const State<L> &state, mask where) {
         mask doubtful{};
         for (int c = 0; c < columns; c++)
@@ -286,7 +287,7 @@ class EventSearch {
         return L::any_of_clock(doubtful) & where;
     }
 
-    // Refine the guesses of all columns, and take the earliest.
+    // Refine the estimates of all columns, and take the earliest.
     void refine_columns(Series<L> &series, vec reach, mask where) {
         vec first = L::splat(UNKNOWN);
         for (int c = 0; c < (L::ONE_CLOCK ? width : columns); c++) {
@@ -372,7 +373,7 @@ class EventSearch {
     }
 
     // Where no block has an event before `time`, by bounds over [0, time].
-    // section : the lane of W, −1 if it is not looked for
+    // section : the lane of W, −1 if its sign changes are not searched for
     mask proved(Series<L> &series, mask where, int section) {
         const vec zero{};
         mask failed = where & ~found;
@@ -389,7 +390,7 @@ class EventSearch {
                 quotient[k] = -total;
                 total += term;
             }
-            // A block that has come near to its own event is proved by q, the others as they are.
+            // A block close to its own event is bounded by its q, other blocks by their g.
             const mask near = (total <= NEAR) & (total < scaled[0]);
             failed |= own & near & (total < -COMMON * highest[c]);
             if (!L::ONE_CLOCK) contest(g, c, own & near);
@@ -404,7 +405,7 @@ class EventSearch {
         return ~L::any_of_clock(failed);
     }
 
-    // Note where a block that is near its own event too, and no image of the one that was found, may be first.
+    // Record where another block that is also close to its event, and not a mirror image, may be first.
     void contest(const vec *g, int c, mask near) {
         near &= (root_at[c] < UNKNOWN) & ~is_block(c);
         mask same = near;
@@ -412,7 +413,7 @@ class EventSearch {
         contested |= near & ~same;
     }
 
-    // Take the event of the block that is first, by however little; return where the proof fails then.
+    // Take the event of the block that is first, however small the difference; return where the proof then fails.
     mask earlier(Series<L> &series, vec reach, mask where) {
         mask changed{};
         for (int c = 0; c < columns; c++) {
@@ -449,7 +450,7 @@ class EventSearch {
                 const bool slips = state.slip.lane(place) != 0.0;
                 for (int side = 1; side >= (state.layout.symmetric && !slips ? -1 : 1); side -= 2) {
                     load(series, state, place, side);
-                    // In the whole reach: what one block does must not move the event of another by a bit.
+                    // In the whole reach, so that no block changes a bit of the event of another block.
                     const double t = polynomial.first_root(reach[lane]);
                     if (t >= 0.0 && (t < first || own < 0)) {
                         first = t;
@@ -472,7 +473,7 @@ class EventSearch {
     void load(const Series<L> &series, const State<L> &state, size_t place, int side) {
         polynomial.load(&series.gap.lane(place), width * LANES, ORDER, 1.0);
         if (side > 0) return;
-        // What was divided out of the gap ahead has to be put back first.
+        // The zeros that were divided out of the gap ahead must be restored first.
         const int times = int(zeros.lane(place));
         for (int k = ORDER; k >= 0; k--)
             polynomial.coefficient[k] = k >= times ? -polynomial.coefficient[k - times] : 0.0;

@@ -1,9 +1,9 @@
-// Lyapunov exponents from perturbations that are orthonormalised again and again.
+// Lyapunov exponents from perturbations that are orthonormalised repeatedly.
 //
-// While m blocks are stuck at once, their m velocity perturbations are 0, so that at least as many exponents are −∞ as
-// blocks are ever stuck at the same time. There are more where a stuck block divides the chain into parts that lose
-// perturbations one after the other. Vectors that are lost are dropped, and the growth of the others is collected batch
-// by batch; a batch begins and ends with the first orthonormalisation after its edge.
+// While m blocks are stuck at once, their m velocity perturbations are 0. Hence at least as many exponents are −∞ as
+// blocks are ever stuck at the same time. More are −∞ if a stuck block divides the chain into parts that lose
+// perturbations one after the other. Lost vectors are dropped, and the growth of the others is summed in batches. A
+// batch begins and ends with the first orthonormalisation after its edge.
 //
 // Reference: G. Benettin, L. Galgani, A. Giorgilli and J.-M. Strelcyn, Meccanica 15 (1980) 9-30.
 #pragma once
@@ -16,22 +16,22 @@ constexpr double NEVER = 1e300;
 
 // Growth of the perturbations of a run.
 //
-// start_time : the perturbations start with the piece of the motion in which this time lies; until the first edge they
-//     only turn into the growing directions
+// start_time : the perturbations start with the piece of the motion that contains this time; until the first edge they
+//     only align with the directions of fastest growth
 // edge : boundaries of the batches
-// at_rest : whether the perturbations are orthonormalised whenever a block starts after all have stuck. A batch whose
-//     edges lie in times of rest then has the growth of whole slips, which depends on no unit: all velocities are 0
+// at_rest : whether the perturbations are orthonormalised whenever a block starts after all blocks were stuck. A batch
+//     whose edges lie in times of rest then contains whole slips. Its growth depends on no unit: all velocities are 0
 class Exponents {
   public:
     Tangent<Blocks> tangent;
     const int blocks;
     bool running = false;
     int alive = 0, most_stuck = 0;
-    // Least time between two orthonormalisations, in a chain as slow as the paper's about that between two events: in a
-    // chain of three blocks a stop shortens a vector to 1e-4 of what the others leave of it at worst, in long chains to
-    // 1e-11.
+    // Smallest time between two orthonormalisations; in the paper's chain about the time between two events. Between
+    // two of them the part of a vector that is independent of the others falls at worst to 1e-4 in a chain of three
+    // blocks, and to 1e-11 in long chains.
     double interval = 1.0;
-    // The chain's own unit of time: velocities are compared with displacements by it.
+    // The chain's own unit of time, which relates velocities to displacements in the norm.
     double unit = 1.0;
     std::vector<double> growth, duration;
     const bool at_rest;
@@ -46,7 +46,7 @@ class Exponents {
     double *x(int v) { return &tangent.position.lane(size_t(v) * tangent.columns * Blocks::LANES); }
     double *u(int v) { return &tangent.velocity.lane(size_t(v) * tangent.columns * Blocks::LANES); }
 
-    // Carry perturbations from now on as they are, never orthonormalised.
+    // Propagate perturbations from now on without orthonormalisation.
     void carry() {
         tangent.forget_stops(Blocks::all_lanes(true));
         running = true;
@@ -56,7 +56,7 @@ class Exponents {
 
     // slip : directions in which the blocks slip, 0 for those that stick
     //
-    // Start the perturbations now if their time comes within a piece of this length.
+    // Start the perturbations now if `start_time` lies within a piece of this length.
     void begin_within(const double *slip, double clock, double length) {
         if (running || clock + length <= start_time) return;
         running = true;
@@ -68,7 +68,7 @@ class Exponents {
         }
     }
 
-    // Orthonormalise the perturbations if it is time to, after all changes of this instant.
+    // Orthonormalise the perturbations if this is due, after all changes at this instant.
     void follow(const double *slip, double clock, bool completed) {
         const int now = stuck(slip);
         if (now > most_stuck) {
@@ -86,8 +86,8 @@ class Exponents {
         if (at_rest && running && alive > 0 && stuck(slip) == blocks) renew(slip, clock, false);
     }
 
-    // Carry the perturbations to the start of block i by the driver alone: it goes as far as takes s_i to the
-    // threshold, x_j → x_j + δs_i/D_i for every block.
+    // Map the perturbations to the start of block i under quasi-static loading: the driver advances until s_i reaches
+    // the threshold, x_j → x_j + δs_i/D_i for every block.
     void load_until_start(const Springs &springs, int i) {
         tangent.forget_stops(Blocks::all_lanes(true));
         for (int v = 0; v < tangent.vectors; v++) {
@@ -105,24 +105,24 @@ class Exponents {
         return count;
     }
 
-    // How many of the 2 blocks exponents are −∞, at least; exact if as many vectors were asked for.
+    // Lower bound on the number of exponents −∞; exact if all 2 · blocks vectors are used.
     int lost() const { return std::max(most_stuck, alive < tangent.vectors ? 2 * blocks - alive : 0); }
 
   private:
-    // A vector that has been shortened to less than this is one that stops have taken away: the rest is rounding.
+    // A vector that has been shortened to less than this has been removed by stops: the remainder is rounding.
     static constexpr double LOST = 1e-13;
 
     const std::vector<double> edge;
     const int batches;
     int batch = -1;
     double due = 0.0, batch_start = 0.0;
-    // Lengths multiplied up, whose logarithm is taken at the end of a batch, or before it could overflow.
+    // Products of lengths, whose logarithm is taken at the end of a batch, or before it could overflow.
     std::vector<double> whole, product;
     Watch watch;
 
     bool counted() const { return batch >= 0 && batch < batches; }
 
-    // Give the vectors from `first` on directions of no special symmetry, as many as the stuck blocks allow.
+    // Set the vectors from `first` on to directions without special symmetry, as many as the stuck blocks allow.
     void seed(const double *slip, int first) {
         most_stuck = stuck(slip);
         alive = std::min(tangent.vectors, 2 * blocks - most_stuck);
@@ -146,8 +146,8 @@ class Exponents {
         return moved + unit * unit * sped;
     }
 
-    // Make the vectors orthonormal (modified Gram-Schmidt). kept : vectors that were orthonormal before are dropped
-    // from the first one on that is lost, and their lengths are collected in a batch; else they are seeds
+    // Make the vectors orthonormal (modified Gram-Schmidt). kept : whether the vectors were orthonormal before; their
+    // lengths then count for the batch, and vectors from the first lost one on are dropped. Otherwise they are seeds
     void orthonormalise(bool kept) {
         const int n = blocks;
         for (int c = 0; c < alive; c++) whole[c] = dot(c, c);
@@ -187,7 +187,7 @@ class Exponents {
         product[c] = 1.0;
     }
 
-    // Orthonormalise, and go on to the batch in which the time now lies.
+    // Orthonormalise, and advance to the batch that contains the present time.
     void renew(const double *slip, double clock, bool completed) {
         orthonormalise(true);
         due = clock + interval;
@@ -196,7 +196,7 @@ class Exponents {
                 duration[batch] = clock - batch_start;
                 for (int c = 0; c < alive; c++) collect(c);
             } else {
-                // Blocks that were stuck only in the transient cost no exponent of the window.
+                // Blocks that were stuck in the transient only do not count for the window.
                 seed(slip, alive);
             }
             batch++;

@@ -1,4 +1,4 @@
-// Friction along the motion: the operations of a law's tape on Taylor series in lanes.
+// Friction along the motion: the operations of a law's tape applied to Taylor series in lanes.
 //
 // A coefficient of a register follows from coefficients of the same and of lower order.
 //
@@ -9,7 +9,7 @@
 
 namespace bk {
 
-// The sum of p_k q_(n−k) over k = 1 … n − 1; what was computed last comes last.
+// The sum of p_k q_(n−k) over k = 1 … n − 1. The coefficients that were computed last are added last.
 template <class V>
 BK_INLINE V inner(const V *p, const V *q, const int n) {
     if (n < 2) return V{};
@@ -32,7 +32,7 @@ BK_INLINE V product(const V *p, const V *q, int n) {
     return n == 0 ? p[0] * q[0] : (inner(p, q, n) + p[0] * q[n]) + p[n] * q[0];
 }
 
-// Coefficients first … count − 1 of p², two at a time, which read the same coefficients of p.
+// Coefficients first … count − 1 of p², two at a time, since both read the same coefficients of p.
 template <class V>
 void squares(const V *p, V *out, int first, int count) {
     for (int m = first / 2; m < (count + 1) / 2; m++) {
@@ -68,22 +68,22 @@ class FrictionSeries {
 
     std::vector<Operation<Number>> tape;
 
-    // How far the argument of an exponential may change in a series, per order. Its coefficients y_n follow from p_n,
-    // those of the argument, by n y_n = Σ k p_k y_(n−k). Where Σ k |p_k| t^k is at most n/2, terms from n on are at
-    // most half of the largest before. Else they grow unseen from next to nothing, as exp(−U'/w) does where a block
-    // brakes.
+    // Limit on the change of the argument of an exponential in a series, per order. The coefficients y_n follow from
+    // those of the argument, p_n, by n y_n = Σ k p_k y_(n−k). If Σ k |p_k| t^k is at most n/2, terms from n on are at
+    // most half of the largest term before. Otherwise they may grow from negligible values after the last term, as
+    // those of exp(−U'/w) do when a block slows down.
     static constexpr double FOLLOWED = 0.5;
-    // Modulus of the argument beyond which an exponential, or its reciprocal, is less than what rounding leaves.
+    // Modulus of the argument beyond which an exponential, or its reciprocal, is below rounding.
     static constexpr double SPENT = 50.0;
 
-    // law : one that is like those of all lanes, if each has its own
+    // law : a law with the same operations as those of all lanes
     FrictionSeries(const Law &law, int columns, int order = ORDER)
         : tape(law.tape.size()), law(law), length(order + 1) {
         widen(columns);
         for (int lane = 0; lane < (L::ONE_CLOCK ? 1 : L::LANES); lane++) place(law, lane);
     }
 
-    // Take the constants of the law of a lane, or of all lanes.
+    // Set the constants of the law of a lane, or of all lanes.
     void place(const Law &law, int lane) {
         for (size_t r = 0; r < tape.size(); r++) {
             const Operation<double> &from = law.tape[r];
@@ -97,7 +97,7 @@ class FrictionSeries {
         }
     }
 
-    // Make room for more columns; what was there is lost.
+    // Allocate more columns; the contents are lost.
     void widen(int count) {
         if (count <= columns) return;
         columns = count;
@@ -135,14 +135,14 @@ class FrictionSeries {
         for (int r = 0; r <= law.value; r++) slopes(column)[r] = row(r, column)[1];
     }
 
-    // Fill coefficient n of all registers but for what follows from that of the speed, which `settle` adds.
+    // Fill coefficient n of all registers except the part that follows from that of the speed, which `settle` adds.
     BK_INLINE vec prepare(int column, int n) {
         row(0, column)[n] = vec{};
         fill(column, n, 0, law.value);
         return row(law.value, column)[n];
     }
 
-    // Add to coefficient n of all registers what follows from that of the speed, which enters linearly.
+    // Add to coefficient n of all registers the part that follows from that of the speed, which enters linearly.
     BK_INLINE void settle(int column, int n, vec speed) {
         row(0, column)[n] = speed;
         for (int r = 1; r <= law.value; r++) row(r, column)[n] += slopes(column)[r] * speed;
@@ -164,8 +164,8 @@ class FrictionSeries {
         }
     }
 
-    // Times, t or parts of them, over which every exponential is followed or spent; all coefficients but the last have
-    // been filled. The least time of the columns counts where they share one clock.
+    // Times, at most t, over which the series of every exponential are valid or the exponential is negligible. All
+    // coefficients except the last have been filled. If the columns share one clock, their smallest time is used.
     vec shorten(vec t, int used) {
         const vec limit = L::splat(FOLLOWED * (length - 1));
         for (int r = 0; r < law.value; r++) {
@@ -184,7 +184,7 @@ class FrictionSeries {
         return t;
     }
 
-    // Fill coefficient n of the registers first + 1 … last; those of lower order are there already.
+    // Fill coefficient n of the registers first + 1 … last, after those of lower order.
     void fill(int column, int n, int first, int last) {
         for (int r = first; r < last; r++) {
             const Operation<Number> &o = tape[r];

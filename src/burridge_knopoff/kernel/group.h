@@ -20,13 +20,13 @@ struct Group {
     EventSearch<Blocks> search;
     Clock start;            // of the present piece
     double length = 0.0;    // of the piece: until the next event, or as far as the series goes
-    double observed = 0.0;  // up to when the piece has been observed
+    double observed = 0.0;  // time up to which the piece has been observed
     bool planned = false, event = false;
     int section = -1;  // lane of W in g
     int side = 0;      // the observer's side at the start of the piece
     uint64_t version = 0;
-    int number = 0, first = 0;  // its own number, and that of its first block
-    bool alive = false;         // whether it has blocks
+    int number = 0, first = 0;  // number of the group, and of its first block
+    bool alive = false;         // whether the group has blocks
 
     Group(const Model &model, FrictionSeries<Blocks> &law, EventScratch<Blocks> &scratch)
         : layout(model), state(layout), series(layout, law), search(scratch) {}
@@ -34,18 +34,18 @@ struct Group {
     // The directions in which the blocks slip.
     const double *slip() const { return &state.slip.lane(0); }
     int size() const { return int(layout.member.size()); }
-    // For how many blocks there is memory.
+    // Number of blocks for which there is memory.
     size_t capacity() const { return layout.diagonal.size() * LANES; }
 
-    // Expand the motion from the state and find the next event; false where there is no motion. side : that of W, if
-    // its crossings are looked for as well, else 0; begin, end : the blocks whose sum is W
+    // Expand the motion from the state and find the next event; false if the motion cannot continue. side : the sign of
+    // W if its crossings are also searched for, otherwise 0; begin, end : the blocks whose sum is W
     bool plan(int wanted_side, int begin, int end) {
         const int n = size(), extra = wanted_side && n % LANES == 0;
         side = wanted_side;
         const vec reach = series.expand(state, extra);
         vec fastest{};
         for (int c = 0; c < layout.columns; c++) fastest = largest(fastest, magnitude(state.velocity[c]));
-        // Towards a pole of the law pieces shrink until the clock stands still.
+        // Near a pole of the law pieces become so short that the clock does not advance.
         if (!(start.time + reach[0] > start.time) || !(largest_lane(fastest) < ABSURD_SPEED)) return false;
         section = wanted_side ? n : -1;
         if (wanted_side) load_section(begin, end, extra);
@@ -57,7 +57,7 @@ struct Group {
         return true;
     }
 
-    // Move the state on by t along the piece.
+    // Advance the state by t along the piece.
     void advance(double t) {
         series.move(state, Blocks::splat(t), Blocks::all_lanes(true));
         for (int c = 0; c < layout.columns; c++) layout.sliding_force[c] += layout.drift[c] * t;
@@ -89,7 +89,7 @@ struct Group {
     // Load |U_i'| of the block in a lane, or θ_i − s_i if it sticks.
     Polynomial &load(Polynomial &polynomial, int lane) { return series.load(polynomial, state, lane); }
 
-    // Follow extremes of all blocks between two times of the piece.
+    // Update the extremes over all blocks between two times of the piece.
     void extremes(Observer &observer, Polynomial &polynomial, double from, double to) {
         for (int c = 0; c < layout.columns; c++) {
             const mask slips = state.slip[c] != vec{};
@@ -106,8 +106,8 @@ struct Group {
         }
     }
 
-    // Add to the slip events what the blocks of a piece do between two times of it.
-    // advanced : whether the state is at the later time, else at the start of the piece
+    // Add the motion of the blocks between two times of the piece to their slip events.
+    // advanced : whether the state is at the later time; otherwise it is at the start of the piece
     void record(Catalogue &catalogue, Polynomial &polynomial, double from, double to, bool advanced) {
         const double t = to - from, v = layout.v;
         if (!(t > 0.0)) return;
@@ -152,8 +152,8 @@ struct Group {
   private:
     Rows begun, ended, speeds, damped;
 
-    // What dashpots dissipate between two times of the piece, by block: the sum over slipping blocks is that over
-    // dashpots.
+    // Energy dissipated by dashpots between two times of the piece, per block. The sum over slipping blocks equals the
+    // sum over dashpots.
     void dissipate(double from, double to) {
         for (Rows *row : {&speeds, &damped}) row->reserve(layout.columns);
         for (int c = 0; c < layout.columns; c++) damped[c] = vec{};

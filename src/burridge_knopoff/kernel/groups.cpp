@@ -1,10 +1,11 @@
-// A run in groups: what slips together, with its stuck neighbours, has its own piece of the motion; see run.h.
+// A run in groups: blocks that slip together, with their stuck neighbours, have their own piece of the motion; see
+// run.h.
 #include "run.h"
 
 namespace bk {
 
-// Let a stuck block with stuck neighbours wait for its start, whose time is known: the spring force grows at a constant
-// rate.
+// Put a stuck block with stuck neighbours into the queue for its start, whose time is known because the spring force
+// grows at a constant rate.
 void Run::wait(int i) {
     const Springs &springs = model.springs;
     const bool steady = loading == 0.0;
@@ -16,7 +17,7 @@ void Run::wait(int i) {
     if (rate > 0.0) starts().push({begins[i], i, false, version[i]});
 }
 
-// Plan a group's next piece and put its end into the queue; false where there is no motion.
+// Plan a group's next piece and put its end into the queue; false if the motion cannot continue.
 bool Run::schedule(Group &group) {
     if (!plan(group)) return false;
     group.version = ++versions;
@@ -34,7 +35,7 @@ int Run::run_groups() {
     for (;;) {
         drop_void(queue);
         if (const int reason = blocked()) return reason;
-        // Under quasi-static loading the driver goes on when nothing slips.
+        // Under quasi-static loading the driver advances while nothing slips.
         const bool moving = loading == 0.0 || !queue.empty();
         if (!moving) drop_void(waiting);
         Queue &coming = moving ? queue : waiting;
@@ -66,7 +67,7 @@ int Run::run_groups() {
     }
 }
 
-// Drop from a queue what no longer comes.
+// Drop entries of a queue that are no longer valid.
 void Run::drop_void(Queue &queue) {
     while (!queue.empty()) {
         const Next &next = queue.top();
@@ -77,7 +78,7 @@ void Run::drop_void(Queue &queue) {
     }
 }
 
-// Take all from a queue that comes at the instant of the first: mirror images have the same bit of it.
+// Take all entries of a queue at the time of the first entry; the times of mirror images are equal to the bit.
 void Run::take_next(Queue &queue) {
     const Clock at = queue.top().at;
     ending.clear();
@@ -89,8 +90,8 @@ void Run::take_next(Queue &queue) {
     } while (!queue.empty() && queue.top().at.until(at) == 0.0);
 }
 
-// Carry out what comes next, now: who changes is decided before anyone does, as in a chain that moves as a whole, so
-// that no order of blocks or groups is preferred.
+// Carry out the next events. All changes are decided before any block changes, as in a chain that is integrated as a
+// whole, so that the result does not depend on the order of blocks or groups.
 bool Run::process() {
     const Springs &springs = model.springs;
     std::vector<int> changing = starting, members;
@@ -127,7 +128,7 @@ bool Run::process() {
     return moves;
 }
 
-// Go on in groups where the run before moved as a whole, or the other way round.
+// Convert a state that was integrated in groups to a single group, or the reverse.
 void Run::regroup() {
     std::vector<int> all(blocks);
     for (int i = 0; i < blocks; i++) all[i] = i;
@@ -145,7 +146,7 @@ void Run::regroup() {
     if (local) blind |= !part(group);
 }
 
-// Add a block to the members of a group to be, with all of the group that it is in now.
+// Add a block to the members of a new group, together with its present group.
 void Run::gather(int i, std::vector<int> &members) {
     const int number = group_of[i];
     if (number < 0) {
@@ -159,7 +160,7 @@ void Run::gather(int i, std::vector<int> &members) {
     retire(group);
 }
 
-// Make a group of these blocks, which have none.
+// Make a group of blocks that belong to no group.
 Group &Run::collect(std::vector<int> &members) {
     std::sort(members.begin(), members.end());
     members.erase(std::unique(members.begin(), members.end()), members.end());
@@ -199,7 +200,7 @@ bool Run::part(Group &group) {
     int sets = 0, placed = 0;
     for (int k = 0; k < n; k++) {
         if (set[k] >= 0 || group.state.slip.lane(k) == 0.0) continue;
-        // All that is connected by springs of slipping blocks.
+        // All blocks that are connected by springs of slipping blocks.
         reached.assign(1, k);
         set[k] = sets;
         placed++;
@@ -286,7 +287,7 @@ void Run::observe_distance(const Clock &at) {
     distance_from = at;
 }
 
-// Observe everything that is not of one group up to a time. reach : the time before which nothing changes
+// Observe everything that involves several groups up to a time. reach : the time before which nothing changes
 void Run::observe_all(const Clock &at, const Clock &reach) {
     if (!observing) {
         now = observed = at;
@@ -303,7 +304,7 @@ void Run::observe_all(const Clock &at, const Clock &reach) {
     now = at;
     const double window = observer.transient();
     if (!observer.section_only) {
-        // The spring force on a block that waits grows: it is least at the start and where the window begins.
+        // The spring force on a waiting block grows: it is smallest at the start of the run or of the window.
         for (const Stage stage : {TRANSIENT, WINDOW}) {
             const double from = stage == WINDOW ? std::max(observer.begin, window) : observer.begin;
             if (waiting_seen[stage] || at.time < from || (stage == TRANSIENT && observer.begin >= window)) continue;
@@ -326,7 +327,7 @@ void Run::observe_all(const Clock &at, const Clock &reach) {
     observed = at;
 }
 
-// The force on a block that waits, at a time: no neighbour moves.
+// The force on a waiting block at a time; its neighbours do not move.
 double Run::waiting_force(int i, const Clock &at) const {
     const Springs &springs = model.springs;
     double pull = 0.0;
@@ -335,7 +336,7 @@ double Run::waiting_force(int i, const Clock &at) const {
     return (springs.sliding_force[i] + springs.damping_load[i]) + (pull - springs.diagonal[i] * stuck_position(i, at));
 }
 
-// W at a time at which nothing has changed since the last one.
+// W at a time before the next change of any block.
 double Run::section_value(const Clock &at) {
     double total = 0.0, position, speed, direction;
     const Clock before = now;
@@ -348,14 +349,14 @@ double Run::section_value(const Clock &at) {
     return total;
 }
 
-// The lanes of a group that W sums over; false if there are none.
+// The lanes of a group over which W sums; false if there are none.
 bool Run::section_lanes(const Group &group, int &begin, int &stop) const {
     begin = observer.section ? lane_of[first] : 0;
     stop = observer.section ? begin + 1 : group.size();
     return !observer.section || group_of[first] == group.number;
 }
 
-// How far a group's part of W can go within its piece.
+// Bound on the change of a group's part of W within its piece.
 double Run::section_range(const Group &group) {
     int begin, stop;
     if (!section_lanes(group, begin, stop)) return 0.0;
@@ -366,8 +367,8 @@ double Run::section_range(const Group &group) {
     return 2.0 * most;
 }
 
-// Record crossings of W up to a time. While W is farther from 0 than it can have gone since it was known, there is
-// none. reach : the time before which nothing changes
+// Record crossings of W up to a time. There is none while the last computed |W| exceeds the bound on its change since
+// then. reach : the time before which nothing changes
 void Run::observe_section(const Clock &at, const Clock &reach) {
     const bool begins = observer.side == 0 && observed.until(observer.transient()) > 0.0;
     const Clock from = begins ? Clock{observer.transient(), 0.0} : observed;
@@ -377,7 +378,7 @@ void Run::observe_section(const Clock &at, const Clock &reach) {
     watch.worked(blocks);
     section_from = from;
     section_change = 0.0;
-    // From now on pieces count that end later, also those that have begun.
+    // From now on the pieces that have not ended count.
     for (auto &group : groups) {
         if (!group || !group->alive || !group->planned) continue;
         section_change += section_range(*group);
@@ -386,7 +387,7 @@ void Run::observe_section(const Clock &at, const Clock &reach) {
     double terms[Blocks::ORDER + 1] = {section_at};
     for (int i = first; i < last; i++)
         if (group_of[i] < 0) terms[1] -= model.v;
-    // In the order of their blocks: numbers of groups depend on where a run began.
+    // In the order of their blocks, since the numbers of groups depend on the start of a run.
     std::vector<Group *> parts;
     for (auto &group : groups)
         if (group && group->alive && group->planned) parts.push_back(group.get());

@@ -1,12 +1,12 @@
-// How a long call of the kernel ends early, as by Ctrl-C.
+// Interruption of long calls of the kernel, for example by Ctrl-C.
 #pragma once
 
 namespace bk {
 
-// Throws if the call has to end. Without Python none has to.
+// Throws if the call must end. Without Python it never does.
 inline void (*check_interrupt)() = [] {};
 
-// Counts work, in blocks that a step moves or perturbations of them, and checks for an interrupt about every 0.05 s.
+// Counts work, in steps of blocks and of their perturbations, and checks for an interrupt about every 0.05 s.
 class Watch {
   public:
     void worked(long long blocks) {

@@ -1,6 +1,6 @@
-// Friction as the kernel computes it: the operations of a law's tape, on numbers.
+// Friction as the kernel computes it: the operations of a law's tape, applied to numbers.
 //
-// An operation makes one register of earlier ones; register 0 is the slip speed.
+// An operation computes one register from earlier ones; register 0 is the slip speed.
 #pragma once
 
 #include <algorithm>
@@ -26,10 +26,10 @@ struct Law {
     std::vector<Operation<double>> tape;
     int value, slope;
     bool linear;       // Φ is the straight line Φ(0) − rate U'
-    bool hyperbolic;   // Φ is a multiple of the reciprocal of a straight line, the most usual law
+    bool hyperbolic;   // Φ is a constant plus a multiple of the reciprocal of a straight line, the most common law
     bool exponential;  // an operation is EXP, see FrictionSeries::shorten
     double rate;       // −dΦ/dU' at rest
-    double steepest;   // largest modulus of the slope that occurs
+    double steepest;   // largest modulus of the slope
     double at_rest;    // Φ(0)
 
     double at(double speed) const {
@@ -64,7 +64,7 @@ struct Law {
         return number[value];
     }
 
-    // Whether both do the same operations, with constants of their own.
+    // Whether both laws have the same operations, with any constants.
     bool is_like(const Law &other) const {
         if (value != other.value || slope != other.slope || linear != other.linear || tape.size() != other.tape.size())
             return false;
@@ -83,7 +83,7 @@ struct Law {
             (value == 2 || value == 3) && is(0, LINEAR, 0) && is(1, RECIPROCAL, 1) && (value == 2 || is(2, LINEAR, 2));
         exponential = std::any_of(tape.begin(), tape.begin() + value, [](auto &o) { return o.code == EXP; });
         at_rest = at(0.0);
-        // Exactly 1: rounding must not give a block an acceleration at its start.
+        // Set to exactly 1: rounding must not accelerate a block at its start.
         if (std::fabs(at_rest - 1.0) < FRICTION_ROUNDING) at_rest = 1.0;
     }
 };

@@ -1,4 +1,4 @@
-// The two ways to lay blocks into vectors, with what is constant in their motion.
+// The two layouts of blocks in vectors, with the constants of their motion.
 #pragma once
 
 #include <algorithm>
@@ -11,12 +11,12 @@
 namespace bk {
 
 // Times closer than this, in units of the chain, are one instant: the clock does not resolve them. Blocks whose motion
-// is the same to the bit change together, however far from their threshold rounding leaves them.
+// is the same to the bit change together, regardless of rounding in the distance from their threshold.
 constexpr double COINCIDENCE = 1e-14;
 
-// A block that has slipped for less than this, in units of the chain, keeps the acceleration that was carried along
-// since its start, which began at exactly 0: 1 − s recomputed from positions would be rounding (1e-16), and its sign
-// could stop the block.
+// A block that has slipped for less than this, in units of the chain, keeps the acceleration that has been propagated
+// from its start, where it was exactly 0: 1 − s recomputed from positions would be rounding (1e-16), and its sign could
+// stop the block.
 constexpr double YOUNG = 1e-6;
 
 // The springs, the friction and the driver of a chain or network.
@@ -38,9 +38,9 @@ struct Model {
     }
 };
 
-// What both have in common: constants of the blocks, one vector for each column, and of the model.
+// The common part of both layouts: constants of the blocks, one vector for each column, and of the model.
 //
-// Number : of a constant of the model, one for all lanes or one for each
+// Number : type of a constant of the model, one for all lanes or one for each lane
 template <int COUNT, class Number_>
 struct Layout : Lanes<COUNT> {
     static constexpr int ORDER = 22;
@@ -50,13 +50,13 @@ struct Layout : Lanes<COUNT> {
 
     int columns = 0;
     Rows diagonal, threshold, sliding_force, mass, inverse_mass, damping_diagonal, damping_load;
-    // What stuck neighbours that do not take part add to ds_i/dτ, see Blocks::outside.
+    // Contribution of stuck neighbours outside the group to ds_i/dτ, see Blocks::outside.
     Rows drift;
     std::vector<mask> present;
     bool linear, drops, symmetric, damped;
     Number v, at_rest, rate, coincidence, young;
 
-    // A number of one lane, or of all.
+    // The value for one lane, or for all lanes.
     static double of_lane(const Number &number, int lane) {
         if constexpr (std::is_same_v<Number, double>)
             return number;
@@ -78,7 +78,7 @@ struct Layout : Lanes<COUNT> {
         if (int(present.size()) < count) present.resize(count);
     }
 
-    // Take what lanes share.
+    // Set what all lanes share.
     void share(const Model &model) {
         linear = model.law.linear;
         drops = model.drops();
@@ -86,7 +86,7 @@ struct Layout : Lanes<COUNT> {
         damped = model.springs.damped;
     }
 
-    // Take the numbers of the model of one lane, or of all.
+    // Set the constants of the model of one lane, or of all lanes.
     void take(const Model &model, int lane) {
         set_lane(v, lane, model.v);
         set_lane(at_rest, lane, model.law.at_rest);
@@ -96,17 +96,17 @@ struct Layout : Lanes<COUNT> {
     }
 };
 
-// Blocks in the lanes of vectors, LANES to a column: all share one clock. Four lanes at most, since few blocks slip
-// together as a rule and narrow vectors are quicker one by one. Lanes beyond the last block have no springs and a
-// threshold of 1, which nothing reaches.
+// Blocks in the lanes of vectors, LANES to a column, with one clock. There are at most four lanes, since usually few
+// blocks slip together and narrow vectors are then faster. Lanes beyond the last block have no springs and a threshold
+// of 1, which is never reached.
 struct Blocks : Layout<std::min(WIDEST, 4), double> {
     static constexpr bool ONE_CLOCK = true;
     const Model &model;
-    std::vector<int> member;  // the blocks that take part, in the order of the lanes
+    std::vector<int> member;  // the blocks of the group, in the order of the lanes
     bool row = true, closed = false;
     Rows driving;
-    // What joins blocks to their neighbours: those before and after in a row, and in a network `degree` rows of
-    // columns · LANES, with the lanes of the neighbours.
+    // Connections of blocks to their neighbours: to the blocks before and after in a row, and in a network `degree`
+    // rows of columns · LANES, with the lanes of the neighbours.
     struct Links {
         Rows left, right;
         std::vector<double> of;
@@ -122,8 +122,8 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
 
     const Law &law(int) const { return model.law; }
 
-    // Lay some blocks, all or a connected group with its stuck borders, in ascending order (in a ring: along it).
-    // place(i) : the lane of a block, −1 for one that does not take part
+    // Place blocks, all or a connected group with its stuck neighbours, in ascending order, or in order along a ring.
+    // place(i) : the lane of a block, −1 for a block outside the group
     template <class Place>
     void lay(Place &&place) {
         const Springs &chain = model.springs;
@@ -158,7 +158,7 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
             for (int64_t p = chain.start[i]; p < chain.start[i + 1]; p++) {
                 const int other = place(chain.neighbour[p]);
                 if (other < 0) continue;
-                // Of two blocks in a ring each is before and after the other.
+                // In a ring of two blocks each block is both before and after the other.
                 const bool both = chain.blocks == 2 && chain.ring;
                 const bool is_before =
                     both ? p == chain.start[i] : other == k - 1 || (closed && k == 0 && other == n - 1);
@@ -173,8 +173,8 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
         }
     }
 
-    // Let stuck blocks that do not take part pull on those that do; `place` as in `lay`, x their positions. Their pulls
-    // are added first, as in `pull`.
+    // Add the forces of stuck blocks outside the group; `place` as in `lay`, x their positions. Their pulls are added
+    // first, as in `pull`.
     template <class Place, class Position>
     void outside(Place &&place, Position &&x) {
         const Springs &springs = model.springs;
@@ -194,7 +194,7 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
     BK_INLINE vec pull(const vec *x, int c) const { return pull(springs, x, c); }
     BK_INLINE vec drag(const vec *u, int c) const { return pull(dashpots, u, c); }
 
-    // Both neighbours are added first, so that a mirrored state has mirrored forces to the bit.
+    // The pulls of both neighbours are added first, so that a mirrored state has mirrored forces to the bit.
     BK_INLINE vec pull(const Links &links, const vec *x, int c) const {
         if (__builtin_expect(row, true)) {
             vec previous = before(c > 0 ? x[c - 1] : x[c], x[c]);
@@ -216,7 +216,7 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
         return total;
     }
 
-    // The same value in all lanes, of the least of them or whether one of them is set.
+    // The smallest value of all lanes, or whether any lane is set, in all lanes.
     static BK_INLINE vec least_of_clock(vec a) { return splat(least_lane(a)); }
     static BK_INLINE mask any_of_clock(mask a) { return all_lanes(any(a)); }
 
@@ -234,11 +234,11 @@ struct Blocks : Layout<std::min(WIDEST, 4), double> {
 struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
     static constexpr bool ONE_CLOCK = false;
     int degree = 0;
-    bool row;  // whether neighbours are the blocks before and after alone
+    bool row;  // whether the only neighbours are the blocks before and after
     std::vector<int> neighbour;
     Rows spring, dashpot;
 
-    // model : one that is like those of all lanes, which `place` sets
+    // model : a model of the same kind as those of all lanes, which `place` sets
     explicit Trajectories(const Model &model) {
         const Springs &springs = model.springs;
         share(model);
@@ -257,7 +257,7 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
         for (int lane = 0; lane < LANES; lane++) place(model, lane);
     }
 
-    // Give a lane its model.
+    // Set the model of a lane.
     void place(const Model &model, int lane) {
         const Springs &springs = model.springs;
         for (int i = 0; i < columns; i++) {
@@ -290,7 +290,7 @@ struct Trajectories : Layout<WIDEST, Lanes<WIDEST>::vec> {
         for (int slot = 2; slot < degree; slot++) total += strength[slot] * x[other[slot]];
         return total;
     }
-    // The same in a row of so many blocks, whose neighbours the compiler knows.
+    // The same in a row with a number of blocks known at compile time.
     template <int COUNT>
     BK_INLINE vec pull_in_row(const vec *x, int i) const {
         const vec *strength = spring.at(2 * size_t(i));

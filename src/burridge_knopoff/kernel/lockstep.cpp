@@ -33,7 +33,7 @@ void Lockstep::run(std::map<Run *, int> &status) {
     }
 }
 
-// Let a run move in a lane from now on.
+// Integrate a run in a lane from now on.
 void Lockstep::enter(Run &run, int lane) {
     Group &group = run.whole();
     own[lane] = &run;
@@ -63,14 +63,14 @@ void Lockstep::enter(Run &run, int lane) {
     exchange(lane, false);
 }
 
-// Give a run back as it is, at the beginning of a piece.
+// Return a run in its present state, at the beginning of a piece.
 void Lockstep::leave(int lane) {
     Run &run = *own[lane];
     Group &group = run.whole();
     for (int i = 0; i < blocks; i++) {
         const size_t k = size_t(i) * LANES + lane;
         group.state.copy(i, state, k);
-        // All blocks of a lane that is free stick: that is over soonest.
+        // All blocks of a free lane stick, which costs least time.
         state.place(k, 0.0, 0.0, true);
     }
     layout.place(model, lane);
@@ -84,7 +84,7 @@ void Lockstep::leave(int lane) {
     side[lane] = 0.0;
 }
 
-// Let runs end by themselves.
+// Let runs complete outside the lanes.
 void Lockstep::finish(mask where) {
     for (int lane = 0; lane < LANES; lane++) {
         if (!where[lane]) continue;
@@ -93,7 +93,7 @@ void Lockstep::finish(mask where) {
     }
 }
 
-// Take over what an observer wants next.
+// Copy the next times and limits of an observer.
 void Lockstep::aim(int lane) {
     const Observer &observer = own[lane]->observer;
     auto next = [](const std::vector<double> &times, size_t k) { return k < times.size() ? times[k] : NEVER; };
@@ -106,7 +106,7 @@ void Lockstep::aim(int lane) {
     lowest_force[lane] = averaged[lane] ? std::max(observer.lowest_force[0], observer.lowest_force[1]) : -NEVER;
 }
 
-// Move every lane to its next event, or as far as its series goes.
+// Integrate every lane to its next event, or to the end of its series.
 void Lockstep::round() {
     watch.worked(blocks * LANES);
     mask resting;
@@ -139,7 +139,7 @@ void Lockstep::round() {
         settle(event, change, [this] { return ~accumulating; });
         since_event = select(event, vec{}, since_event);
     }
-    // At events, so that all solvers look after them at the same times.
+    // At events, so that all solvers orthonormalise at the same times.
     const int due = bits(active & running & (event | (since_event >= longest_follow)));
     for (int lane = 0; due >> lane; lane++)
         if (due >> lane & 1) orthonormalise(clock[lane], lane);
@@ -150,7 +150,7 @@ void Lockstep::round() {
     }
 }
 
-// The coefficients of W = Σ x_i, behind the columns of the blocks.
+// The coefficients of W = Σ x_i, after the columns of the blocks.
 void Lockstep::load_section() {
     for (int k = 0; k <= ORDER; k++) {
         const vec *x = series.x(k);
@@ -160,7 +160,7 @@ void Lockstep::load_section() {
     }
 }
 
-// Let a block stop or start now in some lanes, and keep the events.
+// Stop or start a block now in some lanes, and store the events.
 void Lockstep::change(int i, mask where) {
     if (vectors > 0) tangent.change(state, i, where);
     const int starts = bits(state.slip[i] == vec{}), which = bits(where);
@@ -178,7 +178,7 @@ void Lockstep::change(int i, mask where) {
     }
 }
 
-// Take everything from a piece.
+// Take all observables from a piece.
 void Lockstep::observe(vec length) {
     const mask in_window = active & observed & (length > until(transient));
     const mask wanted = active & observed & ((averaged & in_window) | (until(distance_time) <= length));
@@ -286,7 +286,7 @@ void Lockstep::extremes(vec length) {
     }
 }
 
-// Keep the states at times of the trajectory that lie in the piece.
+// Store the states at times of the trajectory that lie in the piece.
 void Lockstep::sample(double length, int lane) {
     Observer &observer = own[lane]->observer;
     while (observer.next_trajectory < observer.trajectory_time.size()) {
@@ -300,7 +300,7 @@ void Lockstep::sample(double length, int lane) {
     aim(lane);
 }
 
-// Carry the perturbations along the piece, in parts after which they can be kept apart.
+// Propagate the perturbations along the piece, in parts after which they can be orthonormalised.
 void Lockstep::follow(vec length) {
     mask moving{};
     for (int i = 0; i < blocks; i++) moving |= state.slip[i] != vec{};
@@ -327,7 +327,7 @@ void Lockstep::follow(vec length) {
     }
 }
 
-// Keep the perturbations of a lane apart if it is time to.
+// Orthonormalise the perturbations of a lane if this is due.
 void Lockstep::orthonormalise(double clock, int lane) {
     Exponents &exponents = own[lane]->exponents;
     const double *directions = slip_of(lane);
@@ -337,7 +337,7 @@ void Lockstep::orthonormalise(double clock, int lane) {
     exchange(lane, false);
 }
 
-// Hand the perturbations of a lane out to its run, or take them from there.
+// Copy the perturbations of a lane to its run, or from there.
 void Lockstep::exchange(int lane, bool out) {
     Exponents &exponents = own[lane]->exponents;
     for (int v = 0; v < vectors; v++)

@@ -1,9 +1,8 @@
-// Several runs at once, a lane of vectors each.
+// Several runs at once, each in a lane of vectors.
 //
-// What a run does in its lane is what it does alone, to the bit: it enters at the beginning of a piece, and leaves at
-// the beginning of the last one, or of one that ends it in any other way, which it then carries out alone. So lanes
-// know nothing of how a run begins and ends. A run has its own law, springs, driver, clock and observables, and no
-// number of it depends on what goes on in other lanes.
+// A run in a lane gives the same results as alone, to the bit. It enters at the beginning of a piece and leaves at the
+// beginning of its last piece, which it computes alone. Lanes therefore contain no code for the start and the end of a
+// run. Each run has its own law, springs, driver, clock and observables, and does not depend on other lanes.
 #pragma once
 
 #include <deque>
@@ -14,7 +13,7 @@
 
 namespace bk {
 
-// A model of its own: those of the runs need not last.
+// A copy of a model, since the models of the runs need not outlive it.
 struct Example {
     const Model model;
 };
@@ -26,22 +25,22 @@ class Lockstep : private Example, public TrajectoryLanes {
         : Example{like.model}, TrajectoryLanes(Example::model), vectors(like.exponents.tangent.vectors),
           tangent(blocks, vectors), in_section(blocks), apart(ORDER + 2), apart_rate(ORDER + 2) {}
 
-    // Whether a run may have a lane at all: one that moves as a whole under steady loading, without a catalogue.
+    // Whether a run can use a lane: it must move as a whole under steady loading, without a catalogue.
     static bool takes(const Run &run) {
         return !run.local && run.loading == 0.0 && !run.modes && !run.catalogue && !run.exponents.at_rest;
     }
-    // Whether a run may move with the others.
+    // Whether a run can share vectors with the others.
     bool is_like(const Run &run) const { return run.exponents.tangent.vectors == vectors && run.model.is_like(model); }
 
-    // Let a run move with the others: one that is like them.
+    // Add a run that can share vectors with the others.
     void add(Run &run) { waiting.push_back(&run); }
 
-    // Carry out all of them, and tell how each ended.
+    // Carry out all runs, and report how each ended.
     void run(std::map<Run *, int> &status);
 
   private:
     static constexpr int ORDER = Trajectories::ORDER;
-    // Runs that remain at the end are as quick alone if they are no more than these.
+    // This many remaining runs, or fewer, are as fast alone.
     static constexpr int FEW = std::max(1, LANES / 4);
 
     const int vectors;
@@ -51,7 +50,7 @@ class Lockstep : private Example, public TrajectoryLanes {
     std::map<Run *, int> *status = nullptr;
     Watch watch;
 
-    // What observers ask for next: times, whether J is averaged, and above what an extreme is one.
+    // The next times of the observers, whether J is averaged, and the extremes so far.
     vec end{}, transient{}, batch_begin{}, batch_end{}, distance_time{}, trajectory_time{}, since_event{}, side{},
         ends_apart{};
     vec highest_speed{}, lowest_force{}, longest_follow{}, steps{}, most_steps{};
@@ -78,7 +77,7 @@ class Lockstep : private Example, public TrajectoryLanes {
     std::vector<double> slip;
 };
 
-// Carry out runs, those that are alike in lockstep, and return how each ended.
+// Carry out runs, in lockstep where they are of the same kind, and return how each ended.
 std::vector<int> run_in_lockstep(const std::vector<Run *> &runs);
 
 }  // namespace bk

@@ -1,8 +1,8 @@
 // Normal modes of the slipping blocks: the paper's mapping between events, in closed form.
 //
-// The friction is a straight line, θ Φ = f − a U' with one threshold for all blocks, and the chain has two ends, one
-// strength of the springs between blocks, c, and unit masses. Stuck blocks cut it into runs of slipping blocks that do
-// not feel each other. In a run
+// The friction is a straight line, θ Φ = f − a U' with one threshold for all blocks, and the chain has open ends,
+// springs of equal strength c between blocks, and unit masses. Stuck blocks divide it into runs of consecutive slipping
+// blocks that are independent of each other. In a run
 //
 //     x'' = −K x + a x' + b − g v τ,        b_i = c Σ x_j(0) over stuck neighbours j (+ 2f where i slips backward),
 //                                           g_i = c times the number of stuck neighbours
@@ -13,10 +13,10 @@
 //
 //     r = −v Qᵀg / λ,     p = (a r + Qᵀb) / λ.
 //
-// No λ is less than the weakest spring to the driver, because K is that of the springs between blocks plus diag(D): all
-// modes oscillate if a < 2 √min D, a < 2 in the paper's chain. The matrix of a run depends only on its length and on
-// the ends of the chain that it contains: there are at most 4N of them for any set of slipping blocks, each solved
-// once, when it is first met.
+// No λ is smaller than the strength of the weakest spring to the driver, because K is the Laplacian of the springs
+// between blocks plus diag(D): all modes oscillate if a < 2 √min D, or a < 2 in the paper's chain. The matrix of a run
+// depends only on its length and on the ends of the chain that it contains. There are at most 4N such matrices, and
+// each is diagonalised once, when it is first needed.
 #pragma once
 
 #include <functional>
@@ -61,8 +61,8 @@ class Modes {
             for (int k = 0; k < length; k++) {
                 const double *vector = &matrix.vector[size_t(k) * length], eigenvalue = matrix.eigenvalue[k];
                 double q = 0.0, speed = 0.0, push = 0.0;
-                // From both ends inward, each block added to its mirror image first: a mirrored state gives the same
-                // sums to the bit, and a symmetric one exactly 0 for every antisymmetric mode.
+                // From both ends inward, adding each block to its mirror image first: a mirrored state gives the same
+                // sums to the bit, and a symmetric state gives exactly 0 for every antisymmetric mode.
                 for (int m = 0; m <= length - 1 - m; m++) {
                     const int near = first + m, far = last - m;
                     const double factor = vector[m], other = near != far ? vector[length - 1 - m] : 0.0;
@@ -84,8 +84,8 @@ class Modes {
 
     // Set the state's positions and velocities to those at time t after the origin.
     //
-    // A block that has only just started keeps its velocity: it is about s' t²/2, less than what rounding leaves of the
-    // sum over modes, whose sign would stop the block.
+    // A block that has just started keeps its velocity: it is about s' t²/2, less than the rounding error of the sum
+    // over modes, whose sign could stop the block.
     void advance(State<Blocks> &state, double t) const {
         const double half = 0.5 * rate, growth = std::exp(half * t);
         for (int i = 0; i < blocks; i++) {
@@ -93,14 +93,14 @@ class Modes {
             state.position.lane(i) = slips ? origin[i] : origin[i] - model.v * t;
             if (slips && state.age.lane(i) >= state.layout.model.young()) state.velocity.lane(i) = origin_velocity[i];
         }
-        for (const Stretch &run : runs) {
+        for (const Slipping &run : runs) {
             const int length = run.last - run.first + 1;
             for (int k = 0; k < length; k++) {
                 const double *vector = &run.matrix->vector[size_t(k) * length], eigenvalue = run.matrix->eigenvalue[k];
                 const double a = amplitude[run.first + k], b = amplitude_rate[run.first + k];
                 const double omega = std::sqrt(eigenvalue - half * half);
                 const double cosine = growth * std::cos(omega * t), sine = growth * std::sin(omega * t) / omega;
-                // Changes since the origin, so that rounding in the modes touches the change only.
+                // Changes since the origin, so that rounding in the modes affects the change only.
                 const double q = a * (cosine - 1.0) + (b - half * a) * sine + drift[run.first + k] * t;
                 const double speed = b * (cosine - 1.0) + (half * b - eigenvalue * a) * sine;
                 for (int i = run.first; i <= run.last; i++) {
@@ -113,7 +113,7 @@ class Modes {
     }
 
   private:
-    struct Stretch {
+    struct Slipping {
         int first, last;
         const Matrix *matrix;
     };
@@ -122,7 +122,7 @@ class Modes {
     const int blocks;
     double rate = 0.0;
     std::vector<double> drift, amplitude, amplitude_rate;
-    std::vector<Stretch> runs;
+    std::vector<Slipping> runs;
     std::map<std::pair<int, int>, Matrix> known;
 
     const Matrix &of(int first, int last) {

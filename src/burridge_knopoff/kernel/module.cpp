@@ -113,7 +113,7 @@ void unpacked(T &at, nb::bytes bytes) {
     Archive archive({bytes.c_str(), bytes.size()});
     archive(made);
     if (!archive.complete())
-        throw nb::value_error("state: got one pickled by another version of the kernel, expected this version");
+        throw nb::value_error("state: got a state pickled by another version of the kernel, expected this version");
     new (&at) T(std::move(made));
 }
 
@@ -163,7 +163,7 @@ NB_MODULE(_core, m) {
     check_interrupt = check_python;
     nb::module_::import_("atexit").attr("register")(nb::cpp_function(end_calls));
 
-    nb::class_<StopFlag>(m, "StopFlag", "Ends calls of the kernel in the threads that heed it, by KeyboardInterrupt.")
+    nb::class_<StopFlag>(m, "StopFlag", "Ends calls of the kernel in the threads that check it, by KeyboardInterrupt.")
         .def(nb::init<>())
         .def("heed", &StopFlag::heed, "Let the calls of this thread end once the flag is set.")
         .def("set", &StopFlag::set);
@@ -186,7 +186,7 @@ NB_MODULE(_core, m) {
             return polynomial.maximum(length, floor);
         },
         "coefficients"_a, "length"_a, "floor"_a,
-        "The larger of floor and the maximum of a polynomial over [0, length].");
+        "The maximum of a polynomial over [0, length], or floor if that is larger.");
     m.def(
         "quadrature",
         [] {
@@ -221,7 +221,7 @@ NB_MODULE(_core, m) {
             "Taylor coefficients of the friction and of its slope along a motion with these coefficients of the "
             "speed.");
 
-    nb::class_<Record>(m, "Record", "A table that grows: one time and a few values a row.")
+    nb::class_<Record>(m, "Record", "A growing table with one time and a few values per row.")
         .def_prop_ro("count", [](const Record &table) { return table.time.size(); })
         .def_ro("full", &Record::full)
         .def(
@@ -244,7 +244,7 @@ NB_MODULE(_core, m) {
 
     nb::class_<Observer>(
         m, "Observer",
-        "What one run measures: J averaged over batches, J and states at given times, section crossings.")
+        "The measurements of one run: J averaged over batches, J and states at given times, section crossings.")
         .def(
             "__init__",
             [](Observer *at, int blocks, double apart, Numbers edge, Numbers distance_time, Numbers trajectory_time,
@@ -303,7 +303,7 @@ NB_MODULE(_core, m) {
                 exponents.carry();
             },
             "matrix"_a,
-            "Carry the columns of a matrix (2 blocks, vectors) from now on as they are, never orthonormalised.")
+            "Propagate the columns of a matrix (2 blocks, vectors) from now on, without orthonormalisation.")
         .def(
             "matrix",
             [](Exponents &exponents) {
@@ -330,8 +330,8 @@ NB_MODULE(_core, m) {
                 made["lost"] = exponents.lost();
                 return made;
             },
-            "growth (batches, vectors), -inf for dropped vectors, duration (batches,), and how many exponents are "
-            "lost.");
+            "growth (batches, vectors), -inf for dropped vectors, duration (batches,), and the number of exponents "
+            "-inf.");
 
     nb::class_<Catalogue>(m, "Catalogue", "Slip events of a run: slips that are connected in space and time.")
         .def(nb::init<int, double, bool, double>(), "blocks"_a, "begin"_a, "profiles"_a, "most"_a)
@@ -363,7 +363,7 @@ NB_MODULE(_core, m) {
             "The columns, with an entry for each event in the order in which events end, and the profiles; the "
             "catalogue is empty afterwards.");
 
-    nb::class_<Mark>(m, "Mark", "What repeats the last pieces of a run that ended.")
+    nb::class_<Mark>(m, "Mark", "State that continues a run exactly.")
         .def("__getstate__", &packed<Mark>)
         .def("__setstate__", &unpacked<Mark>);
 
@@ -396,11 +396,11 @@ NB_MODULE(_core, m) {
                 });
             },
             "solve"_a,
-            "Go from event to event in closed form; solve(first, last) gives eigenvalues and modes, one a row, of K "
+            "Use the closed form between events; solve(first, last) returns eigenvalues and modes, one per row, of K "
             "for these blocks.")
         .def(
             "record", [](Run &run, Catalogue &catalogue) { run.catalogue = &catalogue; }, "catalogue"_a,
-            nb::keep_alive<1, 2>(), "Record slip events in a catalogue from the next beginning on.")
+            nb::keep_alive<1, 2>(), "Record slip events in a catalogue from the next start on.")
         .def_rw("halting_block", &Run::halting_block)
         .def_rw("end", &Run::end)
         .def_ro("steps", &Run::steps)
@@ -408,12 +408,11 @@ NB_MODULE(_core, m) {
         .def_prop_ro("clock", [](const Run &run) { return run.loading_clock(run.now).time; })
         .def_prop_ro("slip_clock", [](const Run &run) { return run.now.time; });
 
-    m.def(
-        "run_in_lockstep", &run_in_lockstep, "runs"_a, nb::call_guard<Unlocked>(),
-        "Carry out several runs, each to the bit as alone, and return their statuses; those that are alike but for the "
-        "numbers of their models share the lanes of vectors.");
+    m.def("run_in_lockstep", &run_in_lockstep, "runs"_a, nb::call_guard<Unlocked>(),
+          "Carry out several runs, with the same bits as alone, and return their statuses. Runs of models that differ "
+          "only in parameters share vectors.");
 
-    nb::class_<StepMark>(m, "StepMark", "What repeats the last step of a run that ended.")
+    nb::class_<StepMark>(m, "StepMark", "State that continues a run with a fixed step exactly.")
         .def("__getstate__", &packed<StepMark>)
         .def("__setstate__", &unpacked<StepMark>);
 
@@ -439,7 +438,7 @@ NB_MODULE(_core, m) {
         .def("values", [](TimeStepping &run) { return values(run, run.model.springs.blocks); })
         .def(
             "record", [](TimeStepping &run, Catalogue &catalogue) { run.catalogue = &catalogue; }, "catalogue"_a,
-            nb::keep_alive<1, 2>(), "Record slip events in a catalogue from the next beginning on.")
+            nb::keep_alive<1, 2>(), "Record slip events in a catalogue from the next start on.")
         .def_ro("steps", &TimeStepping::steps)
         .def_ro("clock", &TimeStepping::clock);
 
@@ -459,7 +458,7 @@ NB_MODULE(_core, m) {
             [](const Clouds &clouds, int cloud, Numbers state) { return clouds.is_near(cloud, state.data()); },
             "cloud"_a, "state"_a, "Whether a state, shape (width,), is within the radius of a point of a cloud.");
 
-    nb::class_<Ensemble>(m, "Ensemble", "Many trajectories of one model at once, a lane of a vector each.")
+    nb::class_<Ensemble>(m, "Ensemble", "Many trajectories of one model at once, each in a lane of vectors.")
         .def(
             "__init__",
             [](Ensemble *at, const Model &model, long long rate_limit) { new (at) Ensemble(model, rate_limit); },
@@ -500,5 +499,5 @@ NB_MODULE(_core, m) {
                                       numbers(last, {n, 2 * blocks}));
             },
             "position"_a, "velocity"_a, "stuck"_a, "clouds"_a, "returns"_a, "section"_a, "end"_a,
-            "Which cloud each state comes close to, when that was certain, and where the others are at the end.");
+            "The cloud that each state reaches, -1 for none, the end times, and the states at the end.");
 }

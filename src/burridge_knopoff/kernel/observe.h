@@ -1,4 +1,4 @@
-// Observables taken from the motion while it passes, piece by piece, without storing it.
+// Observables computed during the motion, piece by piece, without storing it.
 #pragma once
 
 #include "distance.h"
@@ -10,11 +10,11 @@ namespace bk {
 constexpr double NOTHING = -1e300;
 enum Stage { TRANSIENT, WINDOW };
 
-// What one run measures.
+// The measurements of one run.
 //
 // edge : batch boundaries; the first is the end of the transient, the last the end of the run
 // distance_time : times at which J is sampled; trajectory_time : times at which positions and velocities are sampled
-// section_only : whether J is not averaged, nor extremes followed
+// section_only : whether averages of J and extremes are omitted
 // section : block whose x_i is W, from 1 on; 0 if W is the sum of all x_i
 struct Observer {
     const int blocks;
@@ -27,7 +27,7 @@ struct Observer {
     size_t batch = 0, next_distance = 0, next_trajectory = 0;
     Record crossings;
     int side = 0;
-    // Since when a run that this one continues has looked for crossings.
+    // Time since which the run that this run continues has searched for crossings.
     double section_from = UNKNOWN;
     double highest_speed[2] = {NOTHING, NOTHING}, lowest_force[2] = {-NOTHING, -NOTHING};
     Distance distance;
@@ -44,13 +44,13 @@ struct Observer {
     double end() const { return edge.back(); }
     bool in_section(int block) const { return section == 0 || block == section - 1; }
 
-    // Whether J is wanted in a piece, up to a time of it.
+    // Whether J is needed in a piece, up to a time of it.
     bool wants_distance(const Clock &start, double to) const {
         return (!section_only && to > start.until(transient())) ||
                (next_distance < distance_time.size() && start.until(distance_time[next_distance]) <= to);
     }
 
-    // Add the integral of J between two times of a piece, whose distance is loaded, and take its samples.
+    // Add the integral of J between two times of a piece, whose `distance` is loaded, and take samples.
     void average(const Clock &start, double from, double to) {
         if (!section_only && to > start.until(transient())) {
             double begins = std::max(from, start.until(edge[batch]));
@@ -76,7 +76,7 @@ struct Observer {
         batch_integral[batch] = total;
     }
 
-    // Keep a state at the next time of the trajectory. value(i, t, x, u) sets those of block i
+    // Store the state at the next time of the trajectory. value(i, x, u) sets position and velocity of block i
     template <class Value>
     void sample(Value &&value) {
         for (int i = 0; i < blocks; i++)
@@ -87,12 +87,12 @@ struct Observer {
 
     // Record where W changes its sign between two times of a piece, with W' and the direction.
     //
-    // The side on which W lies is remembered from piece to piece, so that rounding at a seam can neither hide a
-    // crossing nor make one.
+    // The sign of W is carried over from piece to piece, so that rounding between two pieces can neither hide nor
+    // create a crossing.
     //
     // w : W as a polynomial
-    // crossing : when it changes its sign by `to`, if EventSearch has found that
-    // reach : end of the piece: sign changes are searched up to there, so that the end of a run moves none by a bit
+    // crossing : time of the sign change before `to`, if EventSearch has found it
+    // reach : end of the piece. Sign changes are searched for up to there, so that the end of a run changes no bit
     // rate(t) : W' = Σ (U_i' − v)
     template <class Rate>
     void cross(Polynomial &w, double crossing, const Clock &start, double from, double to, double reach, Rate &&rate) {
@@ -120,8 +120,8 @@ struct Observer {
             if (side < 0) w.negate();
             if (t < 0.0 || begins + t > to) return;
             begins += t;
-            // The root is divided out, and with it what rounding leaves of W there. If the sign after it is the one
-            // before it, W has touched 0 within rounding and not crossed.
+            // The root is divided out, together with the rounding error of W there. If the signs before and after it
+            // are equal, W has touched 0 within rounding and not crossed it.
             w.shift(t);
             w.coefficient[0] = 0.0;
             w.deflate();
@@ -130,8 +130,8 @@ struct Observer {
         }
     }
 
-    // Follow the highest slip speed and the lowest force on a stuck block, in transient and window: a piece from
-    // one time to another in which |U_i'| or θ_i − s_i, a polynomial that `load` gives, is at most `bound`.
+    // Update the highest slip speed and the lowest force on a stuck block, in transient and window, in a piece from one
+    // time to another. |U_i'| or θ_i − s_i, a polynomial that `load` returns, is at most `bound` in the piece.
     template <class Load>
     void extreme(bool slips, double threshold, double bound, const Clock &start, double from, double to, Load &&load) {
         const double until_window = start.until(transient()), until_begin = start.until(begin);
@@ -149,7 +149,7 @@ struct Observer {
     template <class Rate>
     void turn(double t, const Clock &start, Rate &&rate) {
         side = -side;
-        // A run that goes on repeats a piece of the one before, and has kept what it crossed there.
+        // A continued run repeats a piece of the previous run, which has stored the crossings in this piece.
         if (t <= start.until(begin)) return;
         if (double *row = crossings.append(start.time + (start.rest + t))) {
             row[0] = rate(t);
@@ -173,8 +173,8 @@ struct Observer {
 // The event sequence of a run.
 //
 // `earlier` has rows (time | block, kind) for events before `states_from`; `events` has rows (time | block, kind, x_1 …
-// x_N, U_1' … U_N') for those from `states_from` on. `stops_only` keeps of all these only the stops from `states_from`
-// on. More than `rate_limit` events in one time unit of the chain count as an accumulation.
+// x_N, U_1' … U_N') for those from `states_from` on. With `stops_only` only the stops from `states_from`
+// on are stored. More than `rate_limit` events in one time unit of the chain count as an accumulation.
 struct EventLog {
     const double states_from;
     const bool keep, stops_only;
@@ -197,7 +197,7 @@ struct EventLog {
     }
     bool full() const { return earlier.full || events.full; }
 
-    // Keep an event: block (from 0), kind 0 stop | 1 start. state(row) writes x and U'
+    // Store an event: block (from 0), kind 0 stop | 1 start. states(row) writes x and U'
     template <class States>
     void add(int block, int kind, double clock, States &&states) {
         count++;

@@ -1,4 +1,4 @@
-// One polynomial over one piece of the motion: its first root and its maximum, neither of which can be missed.
+// One polynomial over one piece of the motion: its first root and its maximum, which cannot be missed.
 //
 // A polynomial of degree n over [0, h] is a convex combination of its n + 1 Bernstein coefficients. Hence
 //
@@ -6,10 +6,9 @@
 // - exactly one change of sign, and neither end coefficient 0: exactly one root, and it is simple (Descartes' rule);
 // - otherwise the interval is halved (de Casteljau) and the left half is searched first.
 //
-// Every interval that is passed over is passed over by the first statement, so a grazing touch is found at any distance
-// from the ends of the piece. What remains undecided are dips that rounding alone can fill: the halving ends at
-// intervals of 4e-15 of their distance from the start of the piece. The conversion has positive weights of at most 1,
-// so its error is a few ulp of the largest scaled coefficient.
+// Intervals are excluded by the first statement only, so that grazing contacts are found anywhere in the piece. Only
+// dips within rounding remain undecided: the halving ends at intervals of 4e-15 of their distance from the start of the
+// piece. The conversion has positive weights of at most 1, so its error is a few ulp of the largest scaled coefficient.
 //
 // Reference: R. T. Farouki, "The Bernstein polynomial basis: a centennial retrospective", Comput. Aided Geom. Des. 29
 // (2012) 379-419.
@@ -151,7 +150,7 @@ class Polynomial {
     double bernstein[DEPTH + 2][MOST_TERMS + 1], left[DEPTH + 2], right[DEPTH + 2];
     double lowest, highest;
 
-    // The value, or a derivative, at t: even and odd powers apart, as each sum waits for the last.
+    // The value, or a derivative, at t. Even and odd powers are summed separately, to be computed in parallel.
     template <int DERIVATIVE>
     double evaluate(double t) const {
         const double square = t * t;
@@ -170,8 +169,8 @@ class Polynomial {
         return even + t * odd;
     }
 
-    // Put the terms at t = length into the first row and return the degree that matters there. `lowest` and `highest`
-    // become bounds of the polynomial over [0, length]: the sums of its negative and of its positive terms.
+    // Put the terms at t = length into the first row and return the degree without negligible terms. `lowest` and
+    // `highest` become bounds of the polynomial over [0, length]: the sums of its negative and of its positive terms.
     int scale(double length) {
         double power = length, negative = 0.0, positive = 0.0;
         int n = degree;
@@ -189,14 +188,14 @@ class Polynomial {
         return n;
     }
 
-    // Whether the polynomial that was scaled is known to bend downward everywhere in the interval.
+    // Whether the scaled polynomial is certain to be concave everywhere in the interval.
     bool is_concave(int n) const {
         double bend = 2.0 * bernstein[0][2];
         for (int k = 3; k <= n; k++) bend += std::max(0.0, k * (k - 1.0) * bernstein[0][k]);
         return n >= 2 && bend < 0.0;
     }
 
-    // Turn the scaled terms in the first row into Bernstein coefficients.
+    // Convert the scaled terms in the first row to Bernstein coefficients.
     void convert(int n) {
         double *b = bernstein[0];
         for (int k = 1; k <= n; k++) b[k] /= BINOMIAL[n][k];
@@ -217,7 +216,7 @@ class Polynomial {
         }
     }
 
-    // The only root in the interval of row top, where the sign falls: Halley's method kept in a bracket.
+    // The only root in the interval of row top, where the sign changes from + to −: Halley's method in a bracket.
     double root_between(int top, int n) const {
         double low = left[top], high = right[top];
         const double at_low = bernstein[top][0], at_high = bernstein[top][n];
@@ -252,7 +251,7 @@ class Polynomial {
                 if (low < next && next < high) change = next - t;
             }
             t += change;
-            // The maximum is flat: half of the digits of its place give all digits of its value.
+            // The maximum is flat: half of the digits of its position give all digits of its value.
             if (std::fabs(change) <= 1e-9 * high) break;
         }
         return value(t);

@@ -1,11 +1,11 @@
-// A table that grows: one time and a few values a row, for events and section crossings.
+// A growing table with one time and a few values per row, for events and section crossings.
 #pragma once
 
 #include <vector>
 
 namespace bk {
 
-// A table of `most` numbers is full: no row is added any more.
+// A table with `most` rows is full: no more rows are added.
 struct Record {
     int width;
     size_t most;
@@ -14,7 +14,7 @@ struct Record {
 
     Record(int width, double most_numbers) : width(width), most(size_t(most_numbers) / (width + 1)) {}
 
-    // Room for the values of a new row, nullptr if there is none left.
+    // The values of a new row, nullptr if the table is full.
     double *append(double at) {
         if (time.size() >= most) {
             full = true;

@@ -32,7 +32,7 @@ void Run::resume(const Mark &mark, double time) {
     }
     since_event = mark.since_event;
     if (catalogue && mark.catalogue) catalogue->resume(*mark.catalogue);
-    // A section that is observed from now on is crossed from the side that the run was on.
+    // A section that is observed from now on keeps the sign of W of the previous run.
     if (observer.transient() <= time) {
         observer.side = mark.side;
         observer.section_from = mark.section_from;
@@ -51,7 +51,7 @@ void Run::resume(const Mark &mark, double time) {
     for (auto &own : members) {
         if (own.empty()) continue;
         Group &group = build(own, alone[own[0]].since);
-        // To the bit, whatever has become of the blocks around it since.
+        // Equal to the bit, even if the blocks around the group have changed since.
         for (int k = 0; k < group.size(); k++) {
             group.layout.sliding_force.lane(k) = mark.sliding_force[group.layout.member[k]];
             group.layout.drift.lane(k) = mark.drift[group.layout.member[k]];
@@ -66,7 +66,7 @@ void Run::resume(const Mark &mark, double time) {
         observed = mark.now;
 }
 
-// Carry out what is due when a run begins.
+// Carry out the changes that are due when a run begins.
 void Run::settle_first() {
     settled = true;
     std::vector<int> all(blocks);
@@ -97,7 +97,7 @@ void Run::state_of(int i, double &position, double &speed, double &direction) {
     }
 }
 
-// Where a block is at a time, if it sticks.
+// The position of a stuck block at a time.
 double Run::stuck_position(int i, const Clock &at) const {
     if (group_of[i] < 0)
         return (alone[i].x - model.v * alone[i].since.until(at)) - loading * alone[i].loaded.until(load);
@@ -105,7 +105,7 @@ double Run::stuck_position(int i, const Clock &at) const {
     return group.state.position.lane(lane_of[i]) - model.v * group.start.until(at);
 }
 
-// Make a group of connected blocks that have none, in ascending order, of the states that are kept for them.
+// Make a group of connected blocks that belong to no group, in ascending order, from their stored states.
 Group &Run::build(std::vector<int> members, const Clock &at) {
     if (spare.empty()) {
         spare.push_back(int(groups.size()));
@@ -113,11 +113,11 @@ Group &Run::build(std::vector<int> members, const Clock &at) {
     }
     const int number = spare.back(), n = int(members.size());
     spare.pop_back();
-    // Memory that a group of many blocks has left behind is given back.
+    // The memory of a much larger group is freed.
     if (!groups[number] || groups[number]->capacity() > 4 * size_t(n) + 64)
         groups[number] = std::make_unique<Group>(model, law, scratch);
     Group &group = *groups[number];
-    // Along a ring, past its last block.
+    // In the order along a ring, across its seam.
     if (model.springs.ring && n < blocks && members[0] == 0 && members[n - 1] == blocks - 1) {
         int gap = 0;
         while (members[gap + 1] == members[gap] + 1) gap++;
@@ -163,7 +163,7 @@ static Block block_in(Group &group, int lane, const Clock &loaded) {
             loaded};
 }
 
-// Keep the states of a group's blocks for themselves, and dissolve it.
+// Store the states of a group's blocks, and dissolve the group.
 void Run::retire(Group &group) {
     for (int k = 0; k < group.size(); k++) {
         const int i = group.layout.member[k];
@@ -173,7 +173,7 @@ void Run::retire(Group &group) {
     group.version = ++versions;
     group.alive = group.planned = false;
     spare.push_back(group.number);
-    // Of groups that many are spare, as after the whole chain has slipped, the memory is given back.
+    // If many groups are unused, for example after the whole chain has slipped, their memory is freed.
     if (2 * spare.size() > groups.size() + SPARE) groups[group.number] = nullptr;
 }
 
@@ -184,7 +184,7 @@ bool Run::plan(Group &group) {
     return group.plan(seen ? observer.side : 0, first, last);
 }
 
-// Let the block in a lane stop or start now, and keep the event.
+// Stop or start the block in a lane now, and store the event.
 void Run::change(Group &group, int lane, const Clock &at) {
     const int i = group.layout.member[lane];
     if (exponents.tangent.vectors > 0)
@@ -203,20 +203,20 @@ void Run::change(Group &group, int lane, const Clock &at) {
     });
 }
 
-// Let the blocks that are due stop or start now, in their order.
+// Stop or start the blocks that are due now, in order.
 void Run::change_due(Group &group, const Clock &at) {
     for (int c = 0; c < group.layout.columns; c++)
         for (int lane = 0; due[c] >> lane; lane++)
             if (due[c] >> lane & 1) change(group, c * LANES + lane, at);
 }
 
-// Carry out every change that is due at this instant; tell whether there was one.
+// Carry out every change that is due at this instant; return whether there was one.
 bool Run::settle(Group &group, const Clock &at) {
     due.assign(group.layout.columns, 0);
     bool changing = false;
     watch.worked(group.size());
     group.state.measure();
-    // Who changes is decided before anyone does: then no order of the blocks is preferred.
+    // All changes are decided before any block changes, so that the result does not depend on the order of blocks.
     for (int c = 0; c < group.layout.columns; c++) changing |= (due[c] = bits(group.state.pending(c))) != 0;
     if (changing) change_due(group, at);
     return changing;
@@ -228,7 +228,7 @@ void Run::find_due(Group &group) {
     for (int c = 0; c < group.layout.columns; c++) due[c] = bits(group.search.due(group.series, c));
 }
 
-// Find the blocks that come to rest where a piece ends without an event, and tell whether there are any.
+// Find the blocks that come to rest at the end of a piece without an event; return whether there are any.
 bool Run::find_resting(Group &group) {
     due.assign(group.layout.columns, 0);
     if (!(loading > 0.0 && model.springs.damped)) return false;
@@ -238,14 +238,14 @@ bool Run::find_resting(Group &group) {
     return any;
 }
 
-// Keep the pieces that the end of a run cuts off.
+// Store the pieces that the end of a run truncates.
 void Run::remember() {
     marked.block = alone;
     marked.begins = begins;
     marked.sliding_force.assign(blocks, 0.0);
     marked.drift.assign(blocks, 0.0);
     marked.group = group_of;
-    // Up to when groups have been observed: a run of no length leaves that as it is.
+    // The time up to which groups have been observed, which a run of zero length does not change.
     marked.now = local && loading == 0.0 ? observed : now;
     marked.load = load;
     marked.since_event = since_event;
@@ -268,7 +268,7 @@ void Run::remember() {
     }
 }
 
-// Begin the closed form where the run that goes on had its last event.
+// Start the closed form at the last event of the previous run.
 void Run::start_modes(Group &group, const Mark &mark) {
     const Blocks::Rows position = group.state.position, velocity = group.state.velocity;
     for (int i = 0; i < blocks; i++) {
@@ -280,7 +280,7 @@ void Run::start_modes(Group &group, const Mark &mark) {
     group.state.velocity = velocity;
 }
 
-// Why the run has to end here, COMPLETED if it has not.
+// The reason why the run must end here, COMPLETED if there is none.
 int Run::blocked() const {
     if (log.accumulating) return ACCUMULATING_EVENTS;
     if (log.full() || observer.crossings.full || (catalogue && catalogue->full)) return FULL;
@@ -300,12 +300,12 @@ int Run::run_whole() {
             now = group.start;
             return DIVERGED;
         }
-        // The loading clock, which ends a run, stands while blocks slip.
+        // The loading clock, which ends a run, stops while blocks slip.
         const double remaining = loading > 0.0 ? NEVER : group.start.until(end),
                      length = std::min(group.length, remaining);
         const bool completed = group.length >= remaining, event = group.event && group.length <= remaining;
         const bool due = event || completed;
-        // The end of the run has no part in the search: it must not move an event by a bit.
+        // The end of the run does not enter the search, so that it does not change a bit of an event.
         if (completed) remember();
         if (observing) observe(group, length);
         if (exponents.tangent.vectors > 0) {
@@ -335,7 +335,7 @@ int Run::run_whole() {
             advance(group, length);
             if (find_resting(group)) change_due(group, now);
         }
-        // At events, so that all solvers look after them at the same times.
+        // At events, so that all solvers orthonormalise at the same times.
         if (exponents.running && (due || since_event >= LONGEST_FOLLOW * model.springs.unit))
             exponents.follow(group.slip(), loading_clock(now).time, completed);
         if (completed) return COMPLETED;
@@ -343,7 +343,7 @@ int Run::run_whole() {
     }
 }
 
-// Let the driver, which stands while blocks slip, go on until a block starts; false if the run ends before.
+// Advance the driver, which stops while blocks slip, until a block starts; false if the run ends before.
 bool Run::load_next(Group &group) {
     const Blocks &layout = group.layout;
     Blocks::Rows left(layout.columns);
@@ -354,7 +354,7 @@ bool Run::load_next(Group &group) {
         left[c] = select(pulled, gap / (loading * layout.driving[c]), Blocks::splat(NEVER));
         least = std::min(least, least_lane(left[c]));
     }
-    // The state stays where the last slip left it until the next start.
+    // The state does not change from the last slip to the next start.
     const Clock from = alone[0].loaded;
     if (exponents.tangent.vectors > 0) exponents.begin_within(group.slip(), from.time, least);
     if (from.until(end) < least) {
@@ -381,7 +381,7 @@ bool Run::load_next(Group &group) {
     return true;
 }
 
-// Move the state on along the piece; in closed form, from the last event.
+// Advance the state along the piece; in closed form, from the last event.
 void Run::advance(Group &group, double length) {
     group.advance(length);
     if (catalogue) group.record(*catalogue, polynomial, group.observed, length, true);
@@ -389,7 +389,7 @@ void Run::advance(Group &group, double length) {
     if (modes) modes->advance(group.state, since_event);
 }
 
-// Take everything from a piece, up to a time of it.
+// Take all observables from a piece, up to a time of it.
 void Run::observe(Group &group, double to) {
     const double from = group.observed;
     const Clock &start = group.start;
@@ -409,7 +409,7 @@ void Run::observe(Group &group, double to) {
     if (in_window) {
         double crossing = EventSearch<Blocks>::UNCERTAIN;
         if (group.section >= 0) crossing = group.search.crossing_within(group.series, to, group.section);
-        // The first part of a piece may have had this crossing, by another bit.
+        // This crossing may already have been found in the first part of the piece, with another last bit.
         if (from > 0.0 && crossing != EventSearch<Blocks>::NONE) crossing = EventSearch<Blocks>::UNCERTAIN;
         if (observer.side == 0 || crossing != EventSearch<Blocks>::NONE) {
             if (observer.side == 0 || crossing == EventSearch<Blocks>::UNCERTAIN)
@@ -429,15 +429,15 @@ void Run::observe(Group &group, double to) {
     }
 }
 
-// Carry the perturbations along a piece, in strides after which they can be kept apart.
+// Propagate the perturbations along a piece, in parts after which they can be orthonormalised.
 void Run::follow(Group &group, double length) {
     exponents.tangent.forget_stops(Blocks::all_lanes(true));
-    // However long a slow driver takes, nothing changes while all blocks stick.
+    // Nothing changes while all blocks stick, however slow the driver is.
     if (exponents.stuck(group.slip()) == blocks) return;
     exponents.tangent.load(group.state, group.series, length, Blocks::all_lanes(true),
                            [&](int) -> const Model & { return model; });
     const int parts = exponents.tangent.parts_of(0);
-    // The loading clock, on which the batches are, stands while blocks slip under quasi-static loading.
+    // The loading clock, which defines the batches, stops while blocks slip under quasi-static loading.
     const double part = loading > 0.0 ? 0.0 : length / parts;
     for (int k = 1; k <= parts; k++) {
         exponents.tangent.follow(group.layout);

@@ -1,9 +1,9 @@
-// One run from event to event: smooth motion as Taylor series, each event where it truly lies.
+// One run from event to event: smooth motion as Taylor series, each event at its exact time.
 //
 // A chain of few blocks is one group with one clock. In a long chain, where few blocks slip at a time, each connected
-// set of slipping blocks and their stuck neighbours is a group with its own series, clock and next event; a stuck block
-// whose neighbours are stuck starts at a time known in closed form. Groups merge at a start beside them and split at a
-// stop. The events are the same either way.
+// set of slipping blocks and their stuck neighbours is a group with its own series, clock and next event. A stuck block
+// whose neighbours are stuck starts at a time known in closed form. Groups merge when a block at their border starts,
+// and split when a block stops. The events are the same either way.
 #pragma once
 
 #include <memory>
@@ -16,7 +16,7 @@
 
 namespace bk {
 
-// A block by itself: see State.
+// The state of a single block, see State.
 struct Block {
     double x, u, acceleration, age, slip, touching;
     Clock since, loaded;  // the time of this state, and the loading clock then
@@ -27,13 +27,13 @@ struct Block {
     }
 };
 
-// What repeats the last pieces of a run that ended, so that one that goes on has the same pieces as if it had not.
+// State that lets a continued run repeat the last pieces of the previous run, so that it equals an uninterrupted run.
 struct Mark {
     std::vector<Block> block;
     std::vector<int> group;  // of each block, −1 for none
-    // Of blocks without a group, when they start.
+    // Start times of blocks without a group.
     std::vector<Clock> begins;
-    // What pulls on the blocks of a group from outside it.
+    // Forces on the blocks of a group from outside it.
     std::vector<double> sliding_force, drift;
     // The slip clock and, under quasi-static loading, the loading clock.
     Clock now, load;
@@ -42,7 +42,7 @@ struct Mark {
     // Slip events that had not ended.
     std::optional<Catalogue::Open> catalogue;
     double since_event = 0.0;
-    // The side of the section at the start of the piece, 0 if it was not known, and since when it was looked for.
+    // The sign of W at the start of the piece, 0 if it was not known, and the time since which it was tracked.
     int side = 0;
     double section_from = 0.0;
     // Whether the chain moved in groups.
@@ -57,13 +57,12 @@ struct Mark {
 
 class Run {
   public:
-    // Number of blocks from which on groups are faster than one.
+    // Number of blocks from which on groups are faster than a single group.
     static constexpr int MANY = 24;
-    // Longest time, in units of the chain, over which perturbations are followed at once: without events, too, they
-    // have to be kept apart.
+    // Longest time, in units of the chain, between orthonormalisations, which are also needed without events.
     static constexpr double LONGEST_FOLLOW = 4.0;
     static constexpr int LANES = Blocks::LANES;
-    // Groups that are kept for others to come, besides as many as there are.
+    // Number of unused groups whose memory is kept, in addition to the number in use.
     static constexpr size_t SPARE = 64;
     using vec = Blocks::vec;
     using mask = Blocks::mask;
@@ -82,12 +81,12 @@ class Run {
     // Under quasi-static loading, the loading clock: it runs while all blocks stick, `now` while some slip.
     Clock load;
     long long steps = 0;
-    // The closed form between events, if that is wanted.
+    // The closed form between events, if it is used.
     std::unique_ptr<Modes> modes;
-    // Slip events are recorded in it, if that is wanted.
+    // Slip events are recorded here, if a catalogue is given.
     Catalogue *catalogue = nullptr;
 
-    // local : 1 in groups, 0 as one, −1 whatever is faster
+    // local : 1 in groups, 0 as a single group, −1 whichever is faster
     Run(const Model &model, EventLog &log, Observer &observer, Exponents &exponents, bool observing, int local,
         long long step_limit, double loading)
         : model(model), log(log), observer(observer), exponents(exponents), observing(observing),
@@ -103,7 +102,7 @@ class Run {
 
     Run(const Run &) = delete;
 
-    // Begin at a time from positions x_i, velocities U_i' and which blocks are stuck.
+    // Start at a time from positions x_i, velocities U_i' and stuck blocks.
     void begin(const double *position, const double *speed, const bool *stuck, double time) {
         for (int i = 0; i < blocks; i++) {
             const double slip = stuck[i] ? 0.0 : speed[i] < 0.0 ? -1.0 : 1.0;
@@ -113,7 +112,7 @@ class Run {
         settled = false;
     }
 
-    // Go on at a time from the mark of a run that ended then, in groups or as a whole, whichever that was.
+    // Continue at a time from the mark of a run that ended then, in groups or as a whole.
     void resume(const Mark &mark, double time);
 
     const Mark &mark() const { return marked; }
@@ -123,10 +122,10 @@ class Run {
         return local ? run_groups() : run_whole();
     }
 
-    // The loading clock, at a time of the slip clock: under steady loading both are one.
+    // The loading clock at a time of the slip clock. Under steady loading the two are the same.
     const Clock &loading_clock(const Clock &at) const { return loading > 0.0 ? load : at; }
 
-    // Positions, velocities and slip directions now, or at the end of a run that has completed.
+    // Positions, velocities and slip directions now, or at the end of a completed run.
     void state(double *position, double *speed, double *direction) {
         for (int i = 0; i < blocks; i++) state_of(i, position[i], speed[i], direction[i]);
     }
@@ -147,16 +146,16 @@ class Run {
     EventScratch<Blocks> scratch;
     Polynomial &polynomial = scratch.polynomial;
     FrictionSeries<Blocks> law;  // of the group whose piece was expanded last
-    std::vector<Block> alone;    // of those in a group, when it began
+    std::vector<Block> alone;    // states of blocks; for those in a group, at its start
     std::vector<int> group_of, lane_of;
     std::vector<uint64_t> version;
     uint64_t versions = 0;                       // of groups, no two alike
-    std::vector<std::unique_ptr<Group>> groups;  // none where its memory was given back
+    std::vector<std::unique_ptr<Group>> groups;  // nullptr if the memory was freed
     std::vector<int> spare, due;
-    // What comes next at one instant: groups whose pieces end, and blocks without a group that start.
+    // The next events at one instant: groups whose pieces end, and blocks without a group that start.
     std::vector<int> ending, starting;
 
-    // What comes next: the start of a block without a group, or the end of a group's piece.
+    // A future event: the start of a block without a group, or the end of a group's piece.
     struct Next {
         Clock at;
         int number;
@@ -164,7 +163,7 @@ class Run {
         uint64_t version;
         bool operator>(const Next &other) const { return other.at.until(at) > 0.0; }
     };
-    // What the slip clock comes to next, and what the loading clock does.
+    // Future events on the slip clock, and on the loading clock.
     using Queue = std::priority_queue<Next, std::vector<Next>, std::greater<Next>>;
     Queue queue, waiting;
     Queue &starts() { return loading > 0.0 ? waiting : queue; }
@@ -219,7 +218,7 @@ class Run {
         return group_of[i] < 0 ? alone[i].slip : groups[group_of[i]]->state.slip.lane(lane_of[i]);
     }
 
-    std::vector<Clock> begins;  // when blocks that wait start
+    std::vector<Clock> begins;  // start times of waiting blocks
     Clock observed, distance_from, section_from;
     double section_at = 0.0, section_change = 0.0;
     bool waiting_seen[2] = {false, false}, blind = false;

@@ -1,10 +1,10 @@
 // Taylor series of the motion between two events, with a step that leaves no remainder.
 //
-// Coefficients follow from x' = U' − v and m U'' = F − θ Φ by recursion, F the force of springs and dashpots, those of
-// Φ from the operations of the law. The step comes from the last two coefficients (Jorba and Zou): the last terms that
-// are kept stay below TRUNCATION, and those that are left out are smaller still. For the linearized law that is safe by
-// a bound: all derivatives of the motion obey the same linear equation, whose energy, with pairs of successive
-// derivatives of all blocks in it, grows at most like exp(2aτ) within a step.
+// Coefficients follow from x' = U' − v and m U'' = F − θ Φ by recursion, with F the force of springs and dashpots;
+// those of Φ follow from the operations of the law. The step size is set by the last two coefficients (Jorba and Zou):
+// the last retained terms stay below TRUNCATION, and the neglected terms are smaller still. For the linearized law this
+// is guaranteed by a bound: all derivatives of the motion obey the same linear equation, whose energy, formed from
+// pairs of successive derivatives of all blocks, grows at most like exp(2aτ) within a step.
 //
 // Reference: A. Jorba and M. Zou, "A software package for the numerical integration of ODEs by means of high-order
 // Taylor methods", Exp. Math. 14 (2005) 99-117.
@@ -18,13 +18,13 @@
 
 namespace bk {
 
-// Binary digits below 1 at which terms are left out.
+// Terms are neglected below 2 to minus this power.
 constexpr int TRUNCATION = 53;
 
-// Longest piece, while nothing slips: high powers of it are still numbers.
+// Longest piece, while nothing slips; its high powers are still finite.
 constexpr double LONGEST = 1e9;
 
-// Roots of 2, cut to 30 bits: C libraries differ in the last one.
+// Roots of 2, truncated to 30 bits because C libraries differ in the last bit.
 struct RootsOfTwo {
     double root[MOST_TERMS + 1][MOST_TERMS + 1] = {};
     RootsOfTwo() {
@@ -43,7 +43,7 @@ inline constexpr auto INVERSE = [] {
     return table;
 }();
 
-// About the time at which this power of it, with its coefficient, is as small as TRUNCATION says.
+// About the time at which the term with this coefficient and power reaches TRUNCATION.
 inline double step_length(double coefficient, int power) {
     if (coefficient < 1e-300) return LONGEST;
     const int digits = -TRUNCATION - (exponent(coefficient) - 1022);
@@ -51,12 +51,11 @@ inline double step_length(double coefficient, int power) {
     return scaled_by_two(ROOTS_OF_TWO.root[power][digits - whole * power], whole);
 }
 
-// One piece of the motion: positions x_i, velocities U_i' and what decides about events, g_i, as polynomials of the
-// time since its start.
+// One piece of the motion: positions x_i, velocities U_i' and the event functions g_i as polynomials of the time since
+// its start.
 //
 // Coefficient k of column c is in row k · width + c. g_i is the speed |U_i'| of a slipping block and θ_i − F_i of a
-// stuck one: where it falls below 0 the block changes. Rows of g may have a column more than the others, for the
-// section.
+// stuck one: the block changes where g_i falls below 0. Rows of g may have an additional column for the section.
 template <class L>
 struct Series {
     static constexpr int ORDER = L::ORDER;
@@ -69,13 +68,13 @@ struct Series {
     int columns = 0, width = 0;
     Rows position, velocity, gap;
     Rows slipping, stuck;  // 1 where a block slips, or sticks
-    // Of the piece that was expanded last, of this series or of another that shares it.
+    // Series of the piece that was expanded last, by this object or another that shares them.
     FrictionSeries<L> &law;
 
     Series(L &layout, FrictionSeries<L> &law) : layout(layout), law(law) {}
 
-    // Fill the series with the motion that starts from the state; return the time for which it is valid: 0 where a
-    // state has no motion. extra : columns of g beyond those of the blocks
+    // Expand the motion from the state; return the time for which the series is valid, 0 if it is not finite. extra :
+    // number of columns of g beyond those of the blocks
     vec expand(const State<L> &state, int extra) {
         begin(state, extra);
         if (law.law.linear)
@@ -96,7 +95,7 @@ struct Series {
     BK_INLINE vec *u(int n) { return velocity.at(size_t(n) * columns); }
     BK_INLINE vec *g(int n) { return gap.at(size_t(n) * width); }
 
-    // Positions or velocities of a column at t: even and odd powers apart, as each sum waits for the last.
+    // Positions or velocities of a column at t. Even and odd powers are summed separately, to be computed in parallel.
     BK_INLINE vec value(const Rows &series, int c, vec t) const {
         const vec *term = series.at(c), square = t * t;
         vec even = term[size_t(ORDER) * columns], odd = term[size_t(ORDER - 1) * columns];
@@ -119,7 +118,7 @@ struct Series {
         return t * ((even * square + t * odd) + term[0]);
     }
 
-    // Load |U_i'| of the block in a place, of all lanes of the state, or θ_i − F_i if it sticks.
+    // Load |U_i'| of the block in a lane of the state, or θ_i − F_i if it sticks.
     Polynomial &load(Polynomial &polynomial, const State<L> &state, size_t place) {
         const int c = int(place / L::LANES), lane = int(place % L::LANES);
         const double slip = state.slip.lane(place);
@@ -138,7 +137,7 @@ struct Series {
         return polynomial;
     }
 
-    // Move the state on by t where `moved` says so.
+    // Advance the state by t where `moved` is set.
     void move(State<L> &state, vec t, mask moved) {
         const vec zero{};
         for (int c = 0; c < columns; c++) {
@@ -157,7 +156,7 @@ struct Series {
   private:
     enum Kind { LINEAR_LAW, HYPERBOLIC_LAW, ANY_LAW };
     Rows signed_threshold, weakening, pressed, force;
-    // What the rows of a column need, and the last of them.
+    // Quantities of a column for the recursion, and its last row.
     struct Column {
         vec slip, stuck, moving, weakening, pressed, diagonal, line_slope, inverse_slope, start, force, speed;
         vec *line, *inverse;
@@ -183,7 +182,7 @@ struct Series {
             const vec slip = state.slip[c], own = slip * u(0)[c], s = state.force(c);
             slipping[c] = slip * slip;
             stuck[c] = 1.0 - slipping[c];
-            // Signed by the direction of slip, as friction is; per mass, as all that accelerates.
+            // With the sign of the slip direction, as friction; divided by the mass, as accelerations.
             signed_threshold[c] = (slip * layout.threshold[c]) * layout.inverse_mass[c];
             vec friction, slope;
             if (law.law.linear) {
@@ -209,7 +208,8 @@ struct Series {
     }
 
     // Fill row n of g, and row n + 1 of positions and velocities, from the rows before: n = 1 … ORDER − 1. Friction in
-    // row n is its slope at the start times U'_n, plus what follows from the rows before: that is ready before U'_n is.
+    // row n is its slope at the start times U'_n, plus a part that follows from the rows before, so that it can be
+    // computed before U'_n.
     template <Kind KIND>
     void rows(const State<L> &state) {
         constexpr int FEW = L::ONE_CLOCK ? 1 : 3, FEWER = L::ONE_CLOCK ? 1 : 2;
@@ -217,7 +217,7 @@ struct Series {
         columns == FEW ? fill<KIND, FEW>(state) : columns == FEWER ? fill<KIND, FEWER>(state) : fill<KIND, 0>(state);
     }
 
-    // COLUMNS : their number, 0 for any; one that is known lets the compiler keep all that a row needs in registers.
+    // COLUMNS : the number of columns, 0 for any. If it is known, the compiler keeps a row in registers.
     template <Kind KIND, int COLUMNS, bool DAMPED = false>
     void fill(const State<L> &state) {
         const int count = COLUMNS ? COLUMNS : columns;
@@ -272,7 +272,7 @@ struct Series {
             g += gap_step;
         };
         if constexpr (COLUMNS == 1 && KIND != ANY_LAW) {
-            // Every row for itself: a processor need not guess where its sums end.
+            // The rows are unrolled, so that no branches have to be predicted.
             [&]<int... K>(std::integer_sequence<int, K...>) {
                 (row(std::integral_constant<int, K + 1>{}), ...);
             }(std::make_integer_sequence<int, ORDER - 1>{});
@@ -282,8 +282,8 @@ struct Series {
         for (int c = 0; c < count; c++) g[c] = own[c].slip * own[c].speed - own[c].stuck * own[c].force;
     }
 
-    // The time over which the last terms that are kept stay below TRUNCATION; LONGEST if nothing slips. 0 where a term
-    // is no number: the larger of that and a number may be the number, but no sum is one.
+    // The time over which the last retained terms stay below TRUNCATION; LONGEST if nothing slips; 0 if a term is NaN.
+    // The sum of the terms is tested, since the maximum of NaN and a number may be the number.
     vec step() {
         vec last{}, previous{}, total{};
         for (int c = 0; c < columns; c++) {

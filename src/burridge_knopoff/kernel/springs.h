@@ -33,13 +33,13 @@ struct Springs {
     bool damped;
     // Neighbours are the blocks before and after, in this order; in a ring the first and the last are neighbours too.
     bool row, ring;
-    // Bound on the angular frequencies of slipping blocks: the root of that of Collatz and Wielandt on the eigenvalues
-    // of M⁻¹K. Any positive vector gives one, and a few steps of the power method tighten it.
+    // Bound on the angular frequencies of slipping blocks: the square root of the Collatz-Wielandt bound on the
+    // eigenvalues of M⁻¹K. Any positive vector gives a bound, and a few steps of the power method tighten it.
     double fastest;
-    // Bound on the rates at which dashpots damp velocities: Gershgorin's, on the eigenvalues of M⁻¹C.
+    // Gershgorin's bound on the eigenvalues of M⁻¹C, the rates at which dashpots damp velocities.
     double damping_rate;
-    // The chain's own unit of time: 1 where it is as slow as the paper's, else shorter as the chain is faster. A power
-    // of 2, so that a chain in other units moves the same to the bit.
+    // The chain's own unit of time: 1 if the chain is as slow as the paper's, shorter if it is faster. It is a power of
+    // 2, so that a rescaled chain gives the same motion to the bit.
     double unit;
     // Largest threshold per mass.
     double firmest;

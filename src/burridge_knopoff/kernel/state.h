@@ -1,4 +1,4 @@
-// The state of a chain as a solver moves it on, and the stick-slip rules that change it.
+// The state of a chain during integration, and the stick-slip rules that change it.
 //
 // Coordinates are co-moving: position is x_i = U_i − vτ − e_i with K e = −θ Φ(v), velocity is U_i' itself, so that a
 // stuck block has velocity exactly 0. Nothing in the system depends on τ. A block slips against friction θ_i Φ, and
@@ -16,8 +16,8 @@ constexpr double AT_THRESHOLD = 1e-13;
 
 // Positions x_i, velocities U_i', slip directions (0 stuck, 1 forward, −1 backward) and what the next event depends on.
 //
-// `touching` marks a block on which the force is at its threshold exactly, because it has started (or started and
-// stopped again) at this very instant. `age` is the time since the start of the present slip.
+// `touching` marks a block on which the force is exactly at its threshold, because it has started (or started and
+// stopped again) at this instant. `age` is the time since the start of the present slip.
 template <class L>
 struct State {
     using vec = typename L::vec;
@@ -25,7 +25,7 @@ struct State {
 
     L &layout;
     typename L::Rows position, velocity, acceleration, age, slip, touching;
-    // As `measure` finds them: U_i' − v and, with dashpots, U_i''.
+    // Set by `measure`: U_i' − v and, with dashpots, U_i''.
     typename L::Rows relative, slope;
 
     explicit State(L &layout) : layout(layout) { widen(); }
@@ -35,7 +35,7 @@ struct State {
             row->reserve(layout.columns);
     }
 
-    // Set one block, in lane k of all lanes: a stuck one has velocity 0.
+    // Set the block in lane k of all lanes; a stuck block has velocity 0.
     void place(size_t k, double x, double speed, bool stuck) {
         position.lane(k) = x;
         velocity.lane(k) = stuck ? 0.0 : speed;
@@ -45,7 +45,7 @@ struct State {
         touching.lane(k) = 0.0;
     }
 
-    // Set one block, in lane k of all lanes, to that in a lane of another state.
+    // Set the block in lane k of all lanes to the block in a lane of another state.
     template <class Other>
     void copy(size_t k, const State<Other> &from, size_t other) {
         position.lane(k) = from.position.lane(other);
@@ -72,7 +72,7 @@ struct State {
     // −(C u)_i for velocities u, or their rates.
     BK_INLINE vec damping(const vec *u, int c) const { return layout.drag(u, c) - layout.damping_diagonal[c] * u[c]; }
 
-    // Take what the rates of forces depend on.
+    // Compute what the rates of forces depend on.
     void measure() {
         const vec zero{};
         for (int c = 0; c < layout.columns; c++) relative[c] = velocity[c] - layout.v;
@@ -80,13 +80,13 @@ struct State {
             slope[c] = select(slip[c] != zero, slip_acceleration(c, force(c)), zero);
     }
 
-    // Friction at a speed |U_i'|, one by one where it matters little how long that takes.
+    // Friction at a speed |U_i'|, lane by lane where the time does not matter.
     BK_INLINE vec friction(vec speed) const {
         if (layout.linear) return layout.at_rest - layout.rate * speed;
         return each(speed, [this](double u, int lane) { return layout.law(lane).at(u); });
     }
 
-    // U_i'' of a block that starts at its threshold: 0, exactly, unless friction drops at the start.
+    // U_i'' of a block that starts at its threshold: exactly 0 unless friction drops at the start.
     BK_INLINE vec start_acceleration(int c) const {
         return (layout.threshold[c] * (1.0 - layout.at_rest)) * layout.inverse_mass[c];
     }
@@ -99,8 +99,8 @@ struct State {
         return select((touching[c] > 0.0), slip[c] * start_acceleration(c), made);
     }
 
-    // Where blocks change at this very instant: they are past their threshold, or within COINCIDENCE of it. To be
-    // called after `measure`.
+    // Where blocks change at this instant: they are beyond their threshold, or within COINCIDENCE of it. Call `measure`
+    // first.
     mask pending(int c) const {
         const auto coincidence = layout.coincidence;
         const vec zero{}, s = force(c);
@@ -124,15 +124,15 @@ struct State {
         return ((stopping & ~stuck) | (starting & stuck & ~touches)) & layout.present[c];
     }
 
-    // Whether forces that start blocks are their thresholds, within rounding.
+    // Whether forces that start blocks are at their thresholds within rounding.
     BK_INLINE mask at_threshold(int c, vec s) const {
         vec size = largest(layout.threshold[c], layout.diagonal[c] * magnitude(position[c]));
         if (layout.damped) size = largest(size, layout.damping_diagonal[c] * fastest());
         return magnitude(s) - layout.threshold[c] <= AT_THRESHOLD * size;
     }
-    // Where a slip has come to rest but for rounding: friction and the force on the block balance, and what is left of
-    // the dashpots' force is rounding as well. A slip that dashpots overdamp, behind a driver that stands, decays
-    // exponentially: it has no other end.
+    // Where a slip has come to rest within rounding: friction balances the force on the block, and the force of the
+    // dashpots is negligible as well. With a stationary driver an overdamped slip decays exponentially and has no other
+    // end.
     mask at_rest(int c) const {
         const vec zero{}, own = slip[c] * velocity[c];
         const vec size = largest(layout.threshold[c], layout.diagonal[c] * magnitude(position[c]));
@@ -147,7 +147,7 @@ struct State {
         return L::ONE_CLOCK ? L::splat(largest_lane(found)) : found;
     }
 
-    // Let blocks stop if they slip and start if they are stuck.
+    // Stop blocks that slip, and start blocks that are stuck.
     void transition(int c, mask where) {
         const vec zero{}, s = force(c);
         const mask starting = where & (slip[c] == zero);

@@ -1,14 +1,14 @@
-// Tangent dynamics: how small perturbations δx_i, δU_i' of a run grow, through stops and starts.
+// Tangent dynamics: the growth of small perturbations δx_i, δU_i' of a run, through stops and starts.
 //
 // Between events a perturbation obeys the linearized equations of the slipping blocks,
 //
 //     δx' = δU',    m_i δU_i'' = −(K δx)_i − (C δU')_i − θ_i (dΦ/dU') δU_i',    stuck blocks: δU_i' = 0.
 //
 // At a stop of block i, whose acceleration is A before and 0 after it, the saltation matrix 1 + (f⁺ − f⁻)nᵀ/(nᵀf⁻) with
-// n along U_i' sets δU_i' to 0 and leaves all else. At a start n is along the force F_i and f⁺ − f⁻ is the acceleration
-// A⁺ of a block that starts: δU_i' becomes A⁺ δF_i/F_i'. Where friction does not drop at the start, A⁺ = 0
-// and the matrix is the identity. A block that turns round at once, beyond the threshold of a symmetric contact, has A⁺
-// after the stop and its perturbation is multiplied by A⁺/A.
+// n along U_i' sets δU_i' to 0 and changes nothing else. At a start n is along the force F_i and f⁺ − f⁻ is the
+// acceleration A⁺ of the starting block: δU_i' becomes A⁺ δF_i/F_i'. If friction does not drop at the start, A⁺ = 0 and
+// the matrix is the identity. A block that reverses at once, beyond the threshold of a symmetric contact, has the
+// acceleration A⁺ after the stop, and its perturbation is multiplied by A⁺/A.
 //
 // Reference: R. I. Leine and H. Nijmeijer, "Dynamics and Bifurcations of Non-Smooth Mechanical Systems" (Springer
 // 2004).
@@ -29,7 +29,7 @@ class Tangent {
     using Number = typename L::Number;
 
     const int vectors, columns;
-    // Vector v has the lanes of its blocks in columns v · columns …
+    // Vector v has its blocks in the lanes of the columns from v · columns on.
     Rows position, velocity;
 
     // columns : of a state
@@ -39,12 +39,12 @@ class Tangent {
           moving(columns), pull_scale(columns), rates(size_t(columns) * LENGTH),
           speeds(size_t(columns) * LENGTH * TOGETHER), rows(size_t(columns) * TOGETHER), speed_rows(rows.size()) {}
 
-    // Forget what stops have taken away, as time moves on or begins again.
+    // Discard what stops have removed, when time advances or a run starts.
     void forget_stops(mask where) {
         for (int c = 0; c < columns; c++) deceleration[c] = select(where, vec{}, deceleration[c]);
     }
 
-    // Carry the perturbations through stops or starts that blocks of a column are about to make.
+    // Map the perturbations through the stops or starts that blocks of a column are about to make.
     void change(State<L> &state, int c, mask where) {
         const L &layout = state.layout;
         const vec zero{}, force = state.force(c);
@@ -71,7 +71,8 @@ class Tangent {
         if (!layout.drops) return;
         state.measure();
         const vec rate = state.force_rate(c);
-        // Where the driver stands the perturbed block starts at the same time: the driver has gone less or more far.
+        // If the driver does not move, the perturbed block starts at the same time: the driver has advanced less or
+        // more.
         const mask jumps = starts & ~turns & state.at_threshold(c, force) & (rate != zero);
         if (!any(jumps)) return;
         const vec factor = sign * state.start_acceleration(c) / rate;
@@ -83,10 +84,10 @@ class Tangent {
         }
     }
 
-    // Expand −θ dΦ/dU' / m along a piece of the motion; set into how many parts to divide its length. Coefficient k is
-    // multiplied by t^(k + 1), with t the length of a part, and is 0 where a block sticks.
+    // Expand −θ dΦ/dU' / m along a piece of the motion, and determine the number of parts into which it is divided.
+    // Coefficient k is multiplied by t^(k + 1), with t the length of a part, and is 0 where a block sticks.
     //
-    // where : clocks whose perturbations are followed; model(clock) : its model
+    // where : clocks whose perturbations are propagated; model(clock) : its model
     template <class Models>
     void load(const State<L> &state, Series<L> &series, const Number &length, mask where, Models &&model) {
         const L &layout = state.layout;
@@ -104,7 +105,7 @@ class Tangent {
             degree[k] = LENGTH - 1;
             while (degree[k] > 3 && x <= enough(degree[k] - 2)) degree[k] -= 2;
             if (layout.linear) continue;
-            // Fewer rates than terms: one that is left out does harm by itself only, but in a term all rates add up.
+            // Fewer rates than terms are needed: a neglected rate causes one error, whereas a term sums over all rates.
             rate_terms[k] = degree[k] - degree[k] / 5;
             if (parts[k] > 1) {
                 degree[k] = LENGTH - 1;
@@ -132,12 +133,11 @@ class Tangent {
         }
     }
 
-    // Of how many parts the piece of a clock consists.
+    // Number of parts of the piece of a clock.
     int parts_of(int clock) const { return parts[clock]; }
     int most_parts() const { return *std::max_element(parts, parts + CLOCKS); }
 
-    // Take the rates as series about the end of a part (Horner's scheme, repeated); leave clocks that have followed
-    // `done` parts.
+    // Expand the rates about the end of a part (repeated Horner scheme). Clocks with at most `done` parts are finished.
     void move_on(int done) {
         for (int k = 0; k < CLOCKS; k++)
             if (parts[k] <= done) degree[k] = 0;
@@ -149,10 +149,10 @@ class Tangent {
         }
     }
 
-    // Propagate over one part of a piece with what `load` has made ready for it.
+    // Propagate over one part of a piece that `load` has prepared.
     void follow(const L &layout) {
         int v = 0;
-        // Several side by side, as each waits for itself.
+        // Several at once, to be computed in parallel.
         for (; v + 3 <= vectors; v += 3) {
             propagate<3>(layout, v);
             watch.worked(3 * columns * LANES);
@@ -166,18 +166,18 @@ class Tangent {
 
   private:
     static constexpr int LENGTH = L::ORDER + 1, TOGETHER = 3;
-    // What may be left out of a perturbation over one piece of the motion, as a share of it. Rates and perturbations
-    // each leave out that much by the bounds below, about 1e-12 at worst together; as a rule it is less than 1e-13.
+    // Relative truncation error of a perturbation over one piece of the motion. The bounds below allow this error for
+    // the rates and for the perturbations, about 1e-12 at worst together; usually it is less than 1e-13.
     static constexpr double NEGLIGIBLE = 5e-13;
-    // Over x/(ω + a), ω² a bound on the eigenvalues of M⁻¹K, the terms of the series fall at least like x^n/n! if the
-    // rates are constant: with this x the first neglected one is rounding. The pieces of the motion may be longer: they
-    // are made for terms that are small beside 1, however small the motion itself is.
+    // Over a time x/(ω + a), with ω² a bound on the eigenvalues of M⁻¹K, the terms of the series fall at least like
+    // x^n/n! if the rates are constant: with this x the first neglected term is rounding. The pieces of the motion may
+    // be longer, since their terms are small relative to 1, however small the motion itself is.
     static constexpr double STRIDE = 2.4;
-    // Rates fall like the terms of the motion, which come down to 2^-53 in 22 steps at the end of a piece: each to this
-    // share of the one before, as a rule.
+    // Rates fall like the terms of the motion, which reach 2^-53 in 22 steps at the end of a piece: usually each term
+    // is this fraction of the previous one.
     static constexpr double FALL = 0.19;
-    // Slower than x^n/n!, rates that vary make the terms of a perturbation fall like FALL^n in the end. For them x is
-    // taken larger by this factor.
+    // If the rates vary, the terms of a perturbation finally fall like FALL^n, more slowly than x^n/n!. To allow for
+    // this, x is increased by this factor.
     static constexpr double SLOWER = 1.25;
 
     Rows lost, deceleration, moving, pull_scale, rates, speeds, rows, speed_rows;
@@ -192,7 +192,7 @@ class Tangent {
         return made;
     }
 
-    // The x with x^(n+1)/(n+1)! = NEGLIGIBLE, rounded to fewer digits than C libraries agree on.
+    // The x with x^(n+1)/(n+1)! = NEGLIGIBLE, rounded to digits on which all C libraries agree.
     static double enough(int n) {
         static const auto table = [] {
             std::vector<double> made(LENGTH);
@@ -221,7 +221,7 @@ class Tangent {
             for (int n = 0; n < LENGTH - 1; n++) rate[n] = select(last_rate > double(n), rate[n], vec{});
     }
 
-    // Whether the rates that are left out are negligible, by the last two that are there.
+    // Whether the neglected rates are small enough, judged by the last two retained rates.
     bool is_enough(int clock) const {
         const double limit = NEGLIGIBLE * (rate_terms[clock] + 1);
         for (int c = 0; c < columns; c++) {
@@ -232,7 +232,7 @@ class Tangent {
         return true;
     }
 
-    // With all coefficients multiplied by the power of t that they belong to,
+    // With each coefficient multiplied by its power of t,
     //
     //     u_(n+1) = (t (pulls of x_n)/m + sum of rate_k u_(n−k))/(n + 1),      x_(n+1) = t u_n/(n + 1).
     template <int COUNT>
@@ -248,7 +248,7 @@ class Tangent {
         propagate_columns<COUNT, 0>(layout, v);
     }
 
-    // In one column all that a row needs, but for the speeds before, stays in registers.
+    // In one column everything except the earlier speeds stays in registers.
     template <int COUNT, bool OPEN>
     void propagate_column(const L &layout, int v) {
         const int degree = this->degree[0];
@@ -290,7 +290,7 @@ class Tangent {
         sum = L::ONE_CLOCK ? sum + term : select(own, sum + term, sum);
     }
 
-    // COLUMNS : their number in a short row of blocks, 0 for any; see Series::fill
+    // COLUMNS : the number of columns of a short row of blocks, 0 for any; see Series::fill
     template <int COUNT, int COLUMNS, bool DAMPED = false>
     void propagate_columns(const L &layout, int v) {
         // x_n of vector i is row[i · columns + c], u_n is speed[(n · columns + c) · COUNT + i].

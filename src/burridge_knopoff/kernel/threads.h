@@ -1,7 +1,7 @@
-// Calls of the kernel that run without Python's lock, and how they end early.
+// Calls of the kernel that run without Python's lock, and their interruption.
 //
-// Python delivers Ctrl-C to the main thread alone. Calls in other threads heed a flag that the main thread sets. Before
-// the interpreter closes all calls have to end: a thread that asked for the lock later would be killed inside C++,
+// Python delivers Ctrl-C to the main thread only. Calls in other threads check a flag that the main thread sets. All
+// calls must end before the interpreter closes: a thread that requested the lock later would be killed inside C++,
 // which aborts the process.
 #pragma once
 
@@ -18,12 +18,12 @@ namespace bk {
 
 using Flag = std::shared_ptr<std::atomic<bool>>;
 
-// The flag that a thread heeds, if it heeds one.
+// The flag that a thread checks, if any.
 inline thread_local Flag heeded;
 inline std::atomic<bool> closing = false;
 inline std::atomic<int> calls = 0;
 
-// Once set, ends the calls of the threads that heed it.
+// Once set, ends the calls of the threads that check it.
 struct StopFlag {
     Flag flag = std::make_shared<std::atomic<bool>>(false);
 
@@ -38,7 +38,7 @@ inline void check_python() {
     if (stopped || PyErr_CheckSignals() != 0) throw nanobind::python_error();
 }
 
-// A call that goes on without Python's lock.
+// A call that runs without Python's lock.
 class Unlocked {
   public:
     Unlocked() {
@@ -56,7 +56,7 @@ class Unlocked {
     PyThreadState *thread;
 };
 
-// End all calls, and wait until they have ended: it takes as long as the work between two checks.
+// End all calls, and wait until they have ended, which takes as long as the work between two checks.
 inline void end_calls() {
     closing = true;
     nanobind::gil_scoped_release free;

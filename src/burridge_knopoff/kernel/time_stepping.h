@@ -1,4 +1,4 @@
-// The usual methods, for comparison: a fixed step with events at step ends.
+// Standard methods for comparison: a fixed step with events at step ends.
 #pragma once
 
 #include <optional>
@@ -7,7 +7,7 @@
 
 namespace bk {
 
-// What repeats the last step of a run that ended: slip directions, and the slip events that had not ended.
+// State that continues a run: slip directions, and the slip events that had not ended.
 struct StepMark {
     std::vector<double> slip;
     std::optional<Catalogue::Open> catalogue;
@@ -30,7 +30,7 @@ class TimeStepping {
     const bool euler;
     double clock = 0.0;
     long long steps = 0;
-    // Slip events are recorded in it, if that is wanted.
+    // Slip events are recorded here, if a catalogue is given.
     Catalogue *catalogue = nullptr;
 
     TimeStepping(const Model &model, EventLog &log, Observer &observer, double step, bool euler)
@@ -45,7 +45,7 @@ class TimeStepping {
         for (int k = n; k < layout.columns * LANES; k++) state.place(k, 0.0, 0.0, true);
     }
 
-    // Begin at a time from x_i, U_i' and stuck blocks; steps end at multiples of h.
+    // Start at a time from x_i, U_i' and stuck blocks; steps end at multiples of h.
     void begin(const double *position, const double *velocity, const bool *stuck, double time) {
         for (int i = 0; i < n; i++) state.place(i, position[i], velocity[i], stuck[i]);
         clock = time;
@@ -65,7 +65,7 @@ class TimeStepping {
         return made;
     }
 
-    // Go on as if the run that has come to this state had not ended.
+    // Continue as if the run that led to this state had not ended.
     void resume(const StepMark &mark) {
         for (int i = 0; i < n; i++) state.slip.lane(i) = mark.slip[i];
         if (catalogue && mark.catalogue) catalogue->resume(*mark.catalogue);
@@ -144,7 +144,7 @@ class TimeStepping {
         }
     }
 
-    // Set the state to the one at the start of the step, moved on by h with the slope in row `stage`.
+    // Set the state to that at the start of the step, advanced by h with the slope in row `stage`.
     void stage(int row, double h) {
         for (int i = 0; i < n; i++) {
             state.position.lane(i) = old_x[i] + h * speed[row][i];
@@ -170,7 +170,7 @@ class TimeStepping {
         }
     }
 
-    // Add to the slip events what the step did, its work by the trapezoidal rule and the speeds at its end.
+    // Add the step to the slip events: its work by the trapezoidal rule, and the speeds at its end.
     void record(double h) {
         const double *position = &state.position.lane(0);
         for (int i = 0; i < n; i++) {

@@ -1,4 +1,4 @@
-// What moves trajectories in the lanes of vectors, each with its own clock and its own model.
+// Integration of trajectories in the lanes of vectors, each with its own clock and its own model.
 #pragma once
 
 #include "events.h"
@@ -28,15 +28,15 @@ class TrajectoryLanes {
     vec clock{}, clock_rest{};
     mask active{};
 
-    // model : one that is like those of all lanes
+    // model : a model of the same kind as those of all lanes
     explicit TrajectoryLanes(const Model &model)
         : blocks(model.springs.blocks), layout(model), law(model.law, blocks), state(layout), series(layout, law),
           search(scratch) {}
     TrajectoryLanes(const TrajectoryLanes &) = delete;
 
-    // Expand the motion of all lanes, with columns of g beyond those of the blocks; return for which time the series
-    // are valid, and in `resting` where a lane has no motion: towards a pole of the law pieces shrink until the clock
-    // stands still.
+    // Expand the motion of all lanes, with additional columns of g; return the times for which the series are valid.
+    // `resting` becomes true for lanes that cannot continue: near a pole of the law pieces become so short that the
+    // clock does not advance.
     vec expand(int extra, mask &resting) {
         vec fastest{};
         for (int i = 0; i < blocks; i++) fastest = largest(fastest, magnitude(state.velocity[i]));
@@ -45,7 +45,7 @@ class TrajectoryLanes {
         return reach;
     }
 
-    // Move lanes and their clocks on along their pieces.
+    // Advance lanes and their clocks along their pieces.
     void advance(vec length, mask where) {
         series.move(state, length, where);
         const vec total = clock + (clock_rest + length), rest = (clock - total) + (clock_rest + length);
@@ -53,11 +53,11 @@ class TrajectoryLanes {
         clock = select(where, total, clock);
     }
 
-    // The time from the clocks until others.
+    // The times from the clocks to others.
     vec until(vec other) const { return (other - clock) - clock_rest; }
     Clock clock_of(int lane) const { return {clock[lane], clock_rest[lane]}; }
 
-    // Let the blocks that have the events that were found stop or start, in their order. change(i, where) : lets one
+    // Stop or start the blocks whose events were found, in order. change(i, where) changes one block
     template <class Change>
     void change_due(mask where, Change &&change) {
         search.aim(series);
@@ -67,7 +67,7 @@ class TrajectoryLanes {
         }
     }
 
-    // Carry out every change that is due at this instant, to the last one, before time moves on.
+    // Carry out every change that is due at this instant, before time advances.
     // is_open() : lanes in which events do not accumulate
     template <class Change, class Open>
     void settle(mask where, Change &&change, Open &&is_open) {
@@ -75,7 +75,7 @@ class TrajectoryLanes {
         for (where &= is_open(); any(where); where &= is_open()) {
             mask changing{};
             state.measure();
-            // Who changes is decided before anyone does: then no order of the blocks is preferred.
+            // All changes are decided before any block changes, so that the result does not depend on their order.
             for (int i = 0; i < blocks; i++) {
                 const mask own = where & state.pending(i);
                 due[i] = bits(own);

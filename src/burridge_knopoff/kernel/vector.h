@@ -1,7 +1,7 @@
-// Vectors of doubles: every operation works on all lanes at once, and on each lane as on a double alone.
+// Vectors of doubles: every operation acts on all lanes at once, and on each lane as on a single double.
 //
-// WIDEST is 8 with AVX-512, 4 with AVX2, else 2: as many lanes as the processor has. An operation that has an
-// instruction of its own gives what the plain loop beside it gives, bit for bit. So all widths give the same numbers.
+// WIDEST is 8 with AVX-512, 4 with AVX2, otherwise 2: the number of lanes of the processor. Operations with a special
+// instruction give the same bits as the plain loop next to them, so that all widths give the same results.
 #pragma once
 
 #include <cmath>
@@ -88,7 +88,7 @@ BK_INLINE bool any(M where) {
     return bits(where) != 0;
 }
 
-// An operation with an instruction of its own in every width, and what it does.
+// An operation with a special instruction for every width, and its definition.
 #if defined(__AVX512DQ__) && defined(__AVX512VL__)
 #define BK_WIDE(name, ...) \
     if constexpr (sizeof(V) == 64) return _mm512_##name(__VA_ARGS__)
@@ -139,7 +139,7 @@ BK_INLINE V each(V a, F function) {
     return a;
 }
 
-// The least and the largest lane; the order of the lanes does not matter.
+// The smallest and the largest lane; the order of the lanes does not matter.
 template <class V>
 BK_INLINE double least_lane(V a) {
     double found = a[0];
@@ -153,7 +153,7 @@ BK_INLINE double largest_lane(V a) {
     return found;
 }
 
-// Lane k of the result is lane k − 1 of a row of lanes that goes from `left` on to `right`; or lane k + 1.
+// Lane k of the result is lane k − 1, or k + 1, of the row of lanes that consists of `left` and `right`.
 #if defined(__clang__) || __GNUC__ >= 12
 #define BK_SHUFFLE(...) return __builtin_shufflevector(left, right, __VA_ARGS__)
 #else
@@ -193,7 +193,7 @@ class Vectors {
     BK_INLINE double &lane(size_t k) { return reinterpret_cast<double *>(storage.data())[k]; }
     BK_INLINE const double &lane(size_t k) const { return reinterpret_cast<const double *>(storage.data())[k]; }
     size_t size() const { return storage.size(); }
-    // Make room for as many; what was there is lost.
+    // Allocate this many vectors; the contents are lost.
     void reserve(size_t count) {
         if (storage.size() < count) storage.assign(count + count / 8, Vec{vec{}});
     }

@@ -26,15 +26,15 @@ LAWS: Mapping[str, type[Law]] = {
 
 
 def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) -> Law:
-    """Return a friction law by its name, at one a.
+    """Return a friction law by name, at a value of a.
 
-    description : for a law by formula, `formula` and its numbers; for a built-in law, its numbers, and `law`, the name
-        of the built-in law, if `name` is another one
+    description : for a law given by a formula, `formula` and its parameters; for a built-in law, its parameters, and
+        `law`, the name of the built-in law, if `name` is a different one
 
-    Raises ValueError if there is no such law, or if it refuses its numbers.
+    Raises ValueError if there is no such law, or if the law does not accept these parameters.
 
-    Built-in laws are linearized and nonlinear (the paper's), carlson_langer, exponential and stribeck. Their modules in
-    `burridge_knopoff.laws` give formula and source.
+    The built-in laws are linearized and nonlinear (the paper's), carlson_langer, exponential and stribeck. Formulas and
+    sources are in the modules of `burridge_knopoff.laws`.
 
     >>> from burridge_knopoff import law_of
     >>> law_of("carlson_langer", 0.5, {"sigma": 0.02})
@@ -43,10 +43,10 @@ def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) ->
     'mine'
     """
     if not isinstance(description, Mapping | None):
-        raise refusal("description", description, "the numbers of a law by name, and its formula")
+        raise refusal("description", description, "a mapping with the parameters of a law, and its formula if any")
     values = dict(description or {})
     if "name" in values:
-        raise ValueError(f"{name}.name: not a number of a law")
+        raise ValueError(f"{name}.name: not a parameter of a law")
     if "formula" in values:
         if "law" in values:
             raise ValueError(f"{name}: got law and formula, expected one of them")

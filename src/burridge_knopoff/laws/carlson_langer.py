@@ -1,7 +1,7 @@
-"""The law of the earthquake literature: static friction drops by σ when a slip starts, then weakens with speed.
+"""The law of Carlson, Langer and Shaw: friction drops by σ when a slip starts, then weakens with speed.
 
 Reference: J. M. Carlson, J. S. Langer and B. E. Shaw, "Dynamics of earthquake faults", Rev. Mod. Phys. 66 (1994) 657,
-where 2α stands for a.
+where 2α is our a.
 """
 
 from types import MappingProxyType

@@ -1,4 +1,4 @@
-"""Friction laws written as a formula, which Python's parser reads and a tape evaluates; it never runs as code."""
+"""Friction laws given by a formula. Python's parser reads it and a tape evaluates it; it is never run as code."""
 
 from __future__ import annotations
 
@@ -13,23 +13,23 @@ from burridge_knopoff.values import cut
 FUNCTIONS = ("sqrt", "exp", "log", "tanh")
 SYNTAX = "numbers, names, + - * / **, parentheses, " + ", ".join(f"{name}()" for name in FUNCTIONS)
 
-# A formula occurs in commands and files: one line of ASCII, since other letters may look the same.
+# Formulas appear in commands and files: one line of ASCII, since letters of other alphabets may look the same.
 _ALLOWED = re.compile(r"[-+*/().\w ]+", re.ASCII)
 
 
 class FormulaError(ValueError):
-    """A formula that is not a friction law; the message gives the reason."""
+    """Raised for a formula that is not a friction law; the message gives the reason."""
 
 
-def names_of(formula: str) -> set[str]:
-    """Return the names in a formula, without those of functions."""
+def formula_names(formula: str) -> set[str]:
+    """Return the names in a formula, except names of functions."""
     return set(re.findall(r"\b[A-Za-z_]\w*", formula)) - set(FUNCTIONS)
 
 
-def tape_of(formula: str, values: Mapping[str, float]) -> Tape:
+def compile_formula(formula: str, values: Mapping[str, float]) -> Tape:
     """Return the tape of a formula in the speed u.
 
-    values : numbers for all other names, including `a`
+    values : values of all other names, including `a`
     Raises FormulaError for syntax that is not allowed in a formula, and for names without a value.
     """
     if not _ALLOWED.fullmatch(formula):
@@ -42,18 +42,18 @@ def tape_of(formula: str, values: Mapping[str, float]) -> Tape:
     try:
         return builder.tape(_Reader(builder, {"u": SPEED} | {key: number(x) for key, x in values.items()}).read(tree))
     except (OverflowError, ZeroDivisionError):
-        raise FormulaError("a part that does not depend on u is not finite") from None
+        raise FormulaError("a constant term is not finite") from None
 
 
 class _Reader:
-    """Reads the syntax tree of a formula."""
+    """Translates the syntax tree of a formula into operations on a tape."""
 
     def __init__(self, builder: Builder, names: Mapping[str, Term]) -> None:
         self.builder = builder
         self.names = names
 
     def read(self, node: ast.AST) -> Term:
-        """Return the value of a part of the formula."""
+        """Return the term of a node of the syntax tree."""
         builder = self.builder
         match node:
             case ast.Expression(body=body):
@@ -63,9 +63,7 @@ class _Reader:
             case ast.Name(id=name) if name in self.names:
                 return self.names[name]
             case ast.Name(id=name):
-                raise FormulaError(
-                    f"{cut(name)}: unknown name without a number; u is the slip speed U', a the friction parameter"
-                )
+                raise FormulaError(f"{cut(name)}: unknown name; u is the slip speed U', a the friction parameter")
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
                 return self.read(operand)
             case ast.UnaryOp(op=ast.USub(), operand=operand):
@@ -87,26 +85,26 @@ class _Reader:
     def _power(self, base: Term, exponent: Term) -> Term:
         if exponent.is_number:
             value = self.builder.power(base, exponent.shift) if not base.is_number else None
-            return number(_real(base.shift**exponent.shift)) if value is None else value
-        logarithm = number(math.log(_positive(base.shift))) if base.is_number else self.builder.log(base)
+            return number(_require_real(base.shift**exponent.shift)) if value is None else value
+        logarithm = number(math.log(_require_positive(base.shift))) if base.is_number else self.builder.log(base)
         return self.builder.exp(self.builder.multiply(exponent, logarithm))
 
     def _function(self, name: str, argument: Term) -> Term:
         if name == "sqrt":
             return self._power(argument, number(0.5))
         if name == "log" and argument.is_number:
-            _positive(argument.shift)
+            _require_positive(argument.shift)
         found: Term = getattr(self.builder, name)(argument)
         return found
 
 
-def _real(value: float | complex) -> float:
+def _require_real(value: float | complex) -> float:
     if isinstance(value, complex):
-        raise FormulaError("a root of a negative number")
+        raise FormulaError("a fractional power of a negative number")
     return value
 
 
-def _positive(value: float) -> float:
+def _require_positive(value: float) -> float:
     if not value > 0.0:
         raise FormulaError(f"the logarithm of {value:g}")
     return value

@@ -1,7 +1,7 @@
 """Friction laws: a formula for Φ in the slip speed and the friction parameter a.
 
-Everything else follows from the formula: the slope, the Taylor series of both in the kernel, how a slip starts, and the
-least friction. Your own law is a class with a formula, or a formula in a config.
+Everything else follows from the formula: the slope, the Taylor series of both in the kernel, the start of a slip, and
+the least friction. A new law is a class with a formula, or a formula in a config.
 """
 
 from __future__ import annotations
@@ -15,33 +15,33 @@ from typing import ClassVar, Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.laws.formula import FormulaError, names_of, tape_of
+from burridge_knopoff.laws.formula import FormulaError, compile_formula, formula_names
 from burridge_knopoff.laws.tape import Tape
 from burridge_knopoff.values import Unchanging, format_value, full_key, instance_of, real_number, refusal
 
-#: A law has to be analytic up to this speed. Blocks stay slower if springs and thresholds are about 1.
-FASTEST = 10.0
+#: A law must be analytic up to this speed. Blocks stay slower if springs and thresholds are about 1.
+MAX_SPEED = 10.0
 
-# Φ(0) may exceed 1 by this much, for rounding in its formula.
+# Φ(0) may exceed 1 by this much because of rounding in the formula.
 ROUNDING = 1e-12
 
-# Number of speeds at which the least friction is sampled first.
+# Number of speeds at which the least friction is first sampled.
 SAMPLES = 256
-_SHARES = np.linspace(0.0, 1.0, SAMPLES + 1)
+_FRACTIONS = np.linspace(0.0, 1.0, SAMPLES + 1)
 
 
 class Law(Unchanging):
     """Base class of all laws: friction Φ on a block slipping at speed U', as a fraction of its static friction.
 
     a : friction parameter, at least 0
-    name : name of the law in a study and in its files; by default that of its class
-    numbers : values of the names in the formula other than `a` and `u`; by default those of its class
+    name : name of the law in a study and in its files; by default the name of its module
+    parameters : values of the other parameters in the formula; by default those of the class
 
-    Raises ValueError for a number that is not finite, if the friction Φ(0) at the start of a slip is not above 0 and at
-    most 1, and if Φ is not analytic and finite for all speeds up to FASTEST.
+    Raises ValueError for a parameter that is not finite, if the friction Φ(0) at the start of a slip is not above 0 and
+    at most 1, and if Φ is not analytic and finite for all speeds up to MAX_SPEED.
 
     A law is a function of the speed, in units of ωF(0)/k; `at` returns the law at another a. `law_of` returns the
-    built-in laws, which name their source. Your own law is a `FormulaLaw`, or a subclass with `formula` and `text`.
+    built-in laws, whose modules give the sources. A new law is a `FormulaLaw`, or a subclass with `formula` and `text`.
 
     >>> from burridge_knopoff import Law, law_of
     >>> law = law_of("nonlinear", 0.25)
@@ -53,39 +53,39 @@ class Law(Unchanging):
 
     #: Φ in the syntax of a config; u is U', a the friction parameter.
     formula: str
-    #: The same for a reader, in plain text.
+    #: The same as it is printed, in plain text.
     text: str
-    #: The other numbers in the formula, with their defaults.
+    #: The parameters in the formula other than a, with their defaults.
     defaults: ClassVar[Mapping[str, float]] = {}
     #: Maximum length of the formula in characters.
-    longest: ClassVar[int] = 400
+    max_length: ClassVar[int] = 400
 
-    def __init__(self, a: float, /, *, name: str = "", **numbers: float) -> None:
+    def __init__(self, a: float, /, *, name: str = "", **parameters: float) -> None:
         self.name = name or type(self).__module__.rpartition(".")[2]
-        for key in numbers.keys() - self.defaults.keys():
+        for key in parameters.keys() - self.defaults.keys():
             allowed = " | ".join(self.defaults) or "none"
-            raise ValueError(f"{full_key(self.name, key)}: not a number of this law, expected {allowed}")
-        self._set(a, {**self.defaults, **numbers})
+            raise ValueError(f"{full_key(self.name, key)}: not a parameter of this law, expected {allowed}")
+        self._set(a, {**self.defaults, **parameters})
 
-    def _set(self, a: float, numbers: Mapping[str, float]) -> None:
+    def _set(self, a: float, parameters: Mapping[str, float]) -> None:
         for key in ("formula", "text"):
             if key not in vars(self) and not hasattr(type(self), key):
                 raise ValueError(f"{self.name}.{key}: missing, expected a text")
-        known = names_of(self.formula)
-        for key in numbers:
+        known = formula_names(self.formula)
+        for key in parameters:
             if key in ("a", "u"):
                 place = full_key(self.name, key)
-                raise ValueError(f"{place}: got a name that is taken, expected another one for a number")
+                raise ValueError(f"{place}: got a reserved name, expected another name for the parameter")
             if key not in known:
                 raise ValueError(f"{full_key(self.name, key)}: not in the formula {format_value(self.formula)}")
-        for key, value in {"a": a, **numbers}.items():
+        for key, value in {"a": a, **parameters}.items():
             if not abs(real_number(value)) < 1e300:
                 raise refusal(key, value, "a finite number")
         if real_number(a) < 0.0:
             raise refusal("a", a, "0 or more")
-        # Adding 0 turns -0.0 into 0.0: equal numbers must give equal files.
+        # Adding 0 turns -0.0 into 0.0: equal parameters must give equal files.
         self.a = real_number(a) + 0.0
-        self._numbers = {key: real_number(value) + 0.0 for key, value in numbers.items()}
+        self._parameters = {key: real_number(value) + 0.0 for key, value in parameters.items()}
         try:
             self._check()
         except FormulaError as error:
@@ -94,17 +94,17 @@ class Law(Unchanging):
             ) from None
 
     def _check(self) -> None:
-        if len(self.formula) > self.longest:
-            raise FormulaError(f"at most {self.longest} characters")
-        if not self.tape.is_analytic(0.0, FASTEST):
-            raise FormulaError(f"it is not analytic and finite for all speeds u from 0 to {FASTEST:g}")
+        if len(self.formula) > self.max_length:
+            raise FormulaError(f"at most {self.max_length} characters")
+        if not self.tape.is_analytic(0.0, MAX_SPEED):
+            raise FormulaError(f"the formula is not analytic and finite for all speeds u from 0 to {MAX_SPEED:g}")
         start = float(self(0.0))
         if not 0.0 < start <= 1.0 + ROUNDING:
-            raise FormulaError(f"at u = 0 it is {start:g}, not above 0 and at most 1 (the static friction)")
+            raise FormulaError(f"its value at u = 0 is {start:g}, not above 0 and at most 1 (the static friction)")
 
     def __setattr__(self, name: str, value: object) -> None:
-        # Values derived from a and the numbers are cached.
-        if "_numbers" in vars(self):
+        # Values derived from the parameters are cached.
+        if "_parameters" in vars(self):
             raise AttributeError(f"{name}: a law cannot be changed; `at` returns the law at another a")
         super().__setattr__(name, value)
 
@@ -115,34 +115,34 @@ class Law(Unchanging):
         return hash(self._key)
 
     def __repr__(self) -> str:
-        numbers = "".join(f", {key}={value!r}" for key, value in self.numbers.items())
-        return f"<law {self.name}: {self.formula}, a={self.a!r}{numbers}>"
+        parameters = "".join(f", {key}={value!r}" for key, value in self.parameters.items())
+        return f"<law {self.name}: {self.formula}, a={self.a!r}{parameters}>"
 
     @property
-    def numbers(self) -> Mapping[str, float]:
-        """Values of the names in the formula other than `a` and `u`."""
-        return MappingProxyType(self._numbers)
+    def parameters(self) -> Mapping[str, float]:
+        """Values of the parameters in the formula other than `a`."""
+        return MappingProxyType(self._parameters)
 
     @property
     def words(self) -> str:
-        """The law for a reader, with its numbers: «Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.01»."""
-        return ", ".join([self.text, *(f"{_letter(key)} = {value:g}" for key, value in self.numbers.items())])
+        """The law as it is printed, with its parameters: «Φ = (1 − σ)/(1 + aU′/(1 − σ)), σ = 0.01»."""
+        return ", ".join([self.text, *(f"{_greek_letter(key)} = {value:g}" for key, value in self.parameters.items())])
 
     @property
     def _key(self) -> tuple[object, ...]:
-        return self.name, self.formula, self.a, tuple(self.numbers.items())
+        return self.name, self.formula, self.a, tuple(self.parameters.items())
 
-    def at(self, a: float | None = None, /, **numbers: float) -> Self:
-        """Return the same law at another friction parameter, or with other values of some of its numbers."""
+    def at(self, a: float | None = None, /, **parameters: float) -> Self:
+        """Return the same law at another a, or with other values of some of its parameters."""
         other = object.__new__(type(self))
         other.name, other.formula = self.name, self.formula
-        other._set(self.a if a is None else a, {**self.numbers, **numbers})
+        other._set(self.a if a is None else a, {**self.parameters, **parameters})
         return other
 
     @cached_property
     def tape(self) -> Tape:
         """The operations that compute Φ and its slope from a speed."""
-        return tape_of(self.formula, {"a": self.a, **self.numbers})
+        return compile_formula(self.formula, {"a": self.a, **self.parameters})
 
     def __call__(self, speed: ArrayLike) -> np.ndarray:
         """Return Φ at speeds U' ≥ 0, elementwise."""
@@ -160,19 +160,19 @@ class Law(Unchanging):
         return self.tape.is_linear
 
     @cached_property
-    def steepest(self) -> float:
-        """The largest modulus of the slope up to FASTEST."""
-        return float(np.abs(self.slope(np.linspace(0.0, FASTEST, 4 * SAMPLES + 1))).max())
+    def steepest_slope(self) -> float:
+        """The largest modulus of the slope up to MAX_SPEED."""
+        return float(np.abs(self.slope(np.linspace(0.0, MAX_SPEED, 4 * SAMPLES + 1))).max())
 
-    def least(self, fastest: float) -> float:
+    def least_friction(self, fastest: float) -> float:
         """Return the least friction at speeds from 0 to `fastest`."""
-        speed = fastest * _SHARES
+        speed = fastest * _FRACTIONS
         # A diverging run may reach speeds at which the law is not defined.
         with np.errstate(invalid="ignore"):
             friction = self(speed)
             lowest = int(np.where(np.isnan(friction), np.inf, friction).argmin())
             around = self.slope(speed[max(lowest - 1, 0) : lowest + 2])
-        # Where friction is constant up to rounding, the slope has no change of sign.
+        # Where friction is constant up to rounding, the slope does not change sign.
         if not (len(around) == 3 and around[0] < 0.0 < around[2]):
             return float(friction[lowest])
         from scipy.optimize import brentq
@@ -185,7 +185,7 @@ class FormulaLaw(Law):
 
     Raises ValueError as `Law` does, and for syntax that is not allowed in a formula.
 
-    Allowed are numbers, parentheses, `+`, `-`, `*`, `/`, `**`, and exp, log, sqrt and tanh; u is the speed U'.
+    A formula may contain numbers, parentheses, `+`, `-`, `*`, `/`, `**`, exp, log, sqrt and tanh; u is the speed U'.
 
     >>> from burridge_knopoff import FormulaLaw
     >>> law = FormulaLaw(0.04, "1/(1 + a*u)**p", name="power", p=2.0)
@@ -193,24 +193,24 @@ class FormulaLaw(Law):
     (<law power: 1/(1 + a*u)**p, a=0.04, p=2.0>, 0.6944)
     """
 
-    def __init__(self, a: float, formula: str, /, *, name: str = "formula", **numbers: float) -> None:
+    def __init__(self, a: float, formula: str, /, *, name: str = "formula", **parameters: float) -> None:
         self.name = name
         self.formula = instance_of(formula, str, "formula")
-        self._set(a, numbers)
+        self._set(a, parameters)
 
     @property
     def text(self) -> str:  # type: ignore[override]
-        """The formula with its numbers."""
-        numbers = "".join(f", {key} = {value:g}" for key, value in self.numbers.items())
-        return f"Φ = {self.formula}, u = U′{numbers}"
+        """The formula with the values of its parameters."""
+        parameters = "".join(f", {key} = {value:g}" for key, value in self.parameters.items())
+        return f"Φ = {self.formula}, u = U′{parameters}"
 
     @property
     def words(self) -> str:
-        """The same as `text`: the formula shows its numbers itself."""
+        """The same as `text`, which already gives the parameters."""
         return self.text
 
 
-def _letter(name: str) -> str:
+def _greek_letter(name: str) -> str:
     try:
         return unicodedata.lookup(f"GREEK SMALL LETTER {name}")
     except KeyError:

@@ -1,7 +1,7 @@
 """A friction law as a tape: operations on the slip speed that yield its value, slope and Taylor series.
 
-Register 0 is the speed u = |U'|; operation r fills register r + 1 from earlier ones. The kernel runs the operations on
-truncated Taylor series. Here they run on numbers, and on intervals, which prove that the law is analytic.
+Register 0 is the speed u = |U'|; operation r fills register r + 1 from earlier ones. The kernel applies the operations
+to truncated Taylor series. Here they are applied to numbers, and to intervals, which prove that the law is analytic.
 
 Reference for derivatives by operations on a tape: A. Griewank and A. Walther, "Evaluating Derivatives" (SIAM 2008).
 """
@@ -22,8 +22,8 @@ from burridge_knopoff.values import read_only_copy
 CODES = ("linear", "multiply", "reciprocal", "power", "exp", "log")
 LINEAR, MULTIPLY, RECIPROCAL, POWER, EXP, LOG = range(len(CODES))
 
-# An interval that is not free of singularities after this many halvings counts as having one.
-DEEPEST = 12
+# An interval that is not proved free of singularities after this many halvings counts as having one.
+MAX_DEPTH = 12
 
 
 @dataclass(frozen=True)
@@ -40,7 +40,7 @@ class Operation:
 
 @dataclass(frozen=True)
 class Term:
-    """A value on a tape being built: scale · register + shift; a constant if register is −1."""
+    """A value on a tape under construction: scale · register + shift; a constant if register is −1."""
 
     register: int
     scale: float
@@ -48,7 +48,7 @@ class Term:
 
     @property
     def is_number(self) -> bool:
-        """Whether it does not depend on the speed."""
+        """Whether the term does not depend on the speed."""
         return self.register < 0
 
 
@@ -200,14 +200,14 @@ class Tape:
         return registers[self.value], registers[self.slope]
 
     def is_analytic(self, low: float, high: float, depth: int = 0) -> bool:
-        """Tell whether the friction is analytic and finite for all speeds from low to high.
+        """Return whether the friction is analytic and finite for all speeds from low to high.
 
-        Bounds the registers over an interval, and halves it where the bounds do not exclude a singularity.
+        The registers are bounded over an interval, which is halved if the bounds do not exclude a singularity.
         """
         if self._is_bounded(low, high):
             return True
         middle = 0.5 * (low + high)
-        return depth < DEEPEST and all(self.is_analytic(*part, depth + 1) for part in ((low, middle), (middle, high)))
+        return depth < MAX_DEPTH and all(self.is_analytic(*part, depth + 1) for part in ((low, middle), (middle, high)))
 
     def _is_bounded(self, low: float, high: float) -> bool:
         registers = [(low, high)]

@@ -13,8 +13,8 @@ import netCDF4
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.about import point_about
 from burridge_knopoff.dataset.point import POINT_VARIABLES
+from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.jobs.checked import check_file
 from burridge_knopoff.jobs.jobs import Jobs
@@ -146,7 +146,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
         """Raise ValueError, one line, if a file is damaged or not the expected one of the study."""
         if name in self._points:
             command = self._study.command(**self._points[name])
-            check_seal(self._results / f"{name}.nc", point_about(command), any_sources=True)
+            check_seal(self._results / f"{name}.nc", point_identity(command), any_sources=True)
         else:
             check_file(self._jobs, self._results, f"{name}.nc", any_sources=True)
 

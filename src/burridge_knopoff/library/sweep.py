@@ -19,12 +19,18 @@ from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, gi
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import names_of, plain_name, single_of, value_of, words_of
+from burridge_knopoff.model.parameters import (
+    format_parameter_names,
+    parameter_names,
+    parameter_value,
+    parse_indexed_name,
+    plain_name,
+)
 from burridge_knopoff.model.ranges import Whole
-from burridge_knopoff.running.runner import TOGETHER, run_together
+from burridge_knopoff.running.runner import LOCKSTEP_RUNS, run_together
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import prepare
-from burridge_knopoff.running.threads import in_threads
+from burridge_knopoff.running.threads import map_in_threads
 from burridge_knopoff.values import format_value, full_key, refusal
 
 if TYPE_CHECKING:
@@ -90,13 +96,13 @@ def sweep(
         part = range(first, min(first + size, len(points)))
         made = [_call_at(points[k], prepare, models[k], state, chosen) for k in part]
         how = run_together([one.runner for one in made])
-        statuses = [_call_at(points[k], one.runner.ended, end) for k, one, end in zip(part, made, how, strict=True)]
+        statuses = [_call_at(points[k], one.runner.status_of, end) for k, one, end in zip(part, made, how, strict=True)]
         runs = [one.result(status) for one, status in zip(made, statuses, strict=True)]
         return [(_common_values(point_values(run)), point_attributes(run)) for run in runs]
 
     cores = cores or _cores()
-    size = min(TOGETHER, -(-len(points) // cores))
-    found = list(chained.from_iterable(in_threads(cores, some, range(0, len(points), size))))
+    size = min(LOCKSTEP_RUNS, -(-len(points) // cores))
+    found = list(chained.from_iterable(map_in_threads(cores, some, range(0, len(points), size))))
     import xarray
 
     shape = [len(values) for values in axes.values()]
@@ -139,12 +145,12 @@ def _grid(
         first = axes["a"][0] if "a" in axes else single.get("a", law.a if isinstance(law, Law) else None)
         base = given_model(law, first, blocks, chain, None, contact)
     for name in parameters:
-        if name not in names_of(base) and single_of(name) is None:
-            known = " | ".join([words_of(base), *sorted(fields_of(Settings))])
+        if name not in parameter_names(base) and parse_indexed_name(name) is None:
+            known = " | ".join([format_parameter_names(base), *sorted(fields_of(Settings))])
             raise ValueError(f"{full_key('', name)}: not a setting or a parameter, expected {known}")
     base = base.at(**single)
     for name, values in axes.items():
-        axes[name] = [value_of(base.at(**{name: value}), name) for value in values]
+        axes[name] = [parameter_value(base.at(**{name: value}), name) for value in values]
         value, count = Counter(axes[name]).most_common(1)[0]
         if count > 1:
             raise ValueError(f"{name}: got {format_value(value)} twice, expected each value once")

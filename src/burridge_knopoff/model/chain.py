@@ -10,9 +10,10 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from burridge_knopoff.model.drawn import Drawn, Numbers, numbers_of
 from burridge_knopoff.model.fields import check_fields, settings
+from burridge_knopoff.model.laplacian import Laplacian
 from burridge_knopoff.model.own_units import OwnUnits, own_units_of
+from burridge_knopoff.model.random_numbers import Numbers, RandomNumbers, block_values
 from burridge_knopoff.model.ranges import Either, Number, OneOf, Several, Whole
 from burridge_knopoff.model.solving import static_displacement
 from burridge_knopoff.model.springs import (
@@ -21,11 +22,11 @@ from burridge_knopoff.model.springs import (
     STRENGTH,
     Neighbours,
     SpringsFile,
-    along,
+    grid_neighbours,
     has_digest,
-    of_edges,
-    of_grid,
+    network_neighbours,
     read_edges,
+    row_neighbours,
 )
 from burridge_knopoff.values import Unchanging, read_only_copy, refusal
 
@@ -34,16 +35,16 @@ if TYPE_CHECKING:
 
 ENDS = ("open", "ring")
 NEIGHBOURS = "neighbours"
-#: Number of blocks if nothing tells it: the paper's.
+#: Default number of blocks: the paper's.
 BLOCKS = 3
 
 _STRENGTHS = Either((STRENGTH, Several(STRENGTH)))
-_OF_BLOCKS = Either((STRENGTH, Several(STRENGTH), Drawn(STRENGTH)))
+_BLOCK_VALUES = Either((STRENGTH, Several(STRENGTH), RandomNumbers(STRENGTH)))
 _PULLING = Number(STRENGTH.least, STRENGTH.most, or_zero=True)
 _DAMPING = Either((DAMPING, Several(DAMPING)))
-#: What each spring between neighbours, and each block, has a number of, with the range of this number.
-SPRING_NUMBERS = {"coupling": STRENGTH, "damping": DAMPING}
-BLOCK_NUMBERS = {"pulling": _PULLING, "threshold": STRENGTH, "mass": STRENGTH, "pulling_damping": DAMPING}
+#: Parameters of each spring between neighbours, and of each block, with their ranges.
+SPRING_PARAMETERS = {"coupling": STRENGTH, "damping": DAMPING}
+BLOCK_PARAMETERS = {"pulling": _PULLING, "threshold": STRENGTH, "mass": STRENGTH, "pulling_damping": DAMPING}
 _SIDE = Whole(1, MAXIMUM_BLOCKS)
 
 
@@ -52,21 +53,21 @@ _SIDE = Whole(1, MAXIMUM_BLOCKS)
 class Chain(Unchanging):
     """N blocks in a row, a ring, a grid, or any network of springs.
 
-    A row has N − 1 springs between neighbours; spring i joins blocks i and i + 1. A ring has N: the last spring joins
-    the last block to the first. A grid of nx × ny blocks has open edges; block 1 + ix + nx·iy is in column ix and row
-    iy, both from 0. A file of springs has a line `block block strength` for each, with blocks numbered from 1, or
-    `block block strength damping`. A block of mass m obeys m U'' = F − threshold · Φ(U') while it slips, and sticks
-    while F is at most its threshold.
+    A row has N − 1 springs between neighbours; spring i joins blocks i and i + 1. A ring has N springs; the last one
+    joins the last block to the first. A grid of nx × ny blocks has open edges; block 1 + ix + nx·iy is in column ix and
+    row iy, both counted from 0. A file of springs has one line for each spring, `block block strength` or
+    `block block strength damping`, with blocks numbered from 1. A block of mass m obeys m U'' = F − threshold · Φ(U')
+    while it slips, and sticks while F is at most its threshold.
 
     The force on block i is F_i = s_i + d_i. The spring force is s_i = D_i vτ − (K U)_i, where K is the graph Laplacian
     of the springs plus diag(D), so that K·1 = D. Dashpots (Kelvin-Voigt damping) add
     d_i = Σ_j c_ij (U_j' − U_i') + c_i (v − U_i') = c_i v − (C U')_i, by default 0.
 
-    The defaults give the paper's chain (Eq. 2) for N = 3. The train model that the paper cites is
-    pulled at its first block only: `Chain(2, pulling=(1.0, 0.0))`. A single block hangs on one spring to the driver.
+    The defaults give the paper's chain (Eq. 2) for N = 3. The train model that the paper cites is pulled at its first
+    block only: `Chain(2, pulling=(1.0, 0.0))`. A single block is pulled by one spring to the driver.
 
-    Raises ValueError for a number of blocks, a number of springs or a strength out of range, for a file that is no list
-    of springs, and if the driver pulls no block of a connected part of the chain, since K is then singular.
+    Raises ValueError for a number of blocks, a number of springs or a strength out of range, for a file that is not a
+    list of springs, and if the driver pulls no block of a connected part of the chain, since K is then singular.
 
     Positions are in units of F(0)/k, strengths in units of the paper's spring constant k (its Section II), thresholds
     in units of F(0), masses in units of the mass m of the paper's blocks, damping in units of √(km).
@@ -84,30 +85,32 @@ class Chain(Unchanging):
     blocks: Annotated[
         int,
         Whole(1, MAXIMUM_BLOCKS),
-        "number of blocks N; by default that of the grid, the largest in the file of springs, or that of the positions",
+        "number of blocks N; by default the number in the grid, in the file of springs, or in the initial state",
     ] = None  # type: ignore[assignment]
     coupling: Annotated[
         float | Sequence[float],
         _STRENGTHS,
-        "springs between neighbours: one number for all, or one a spring of a row or a ring",
+        "springs between neighbours: one number for all, or one for each spring of a row or a ring",
     ] = 1.0
     pulling: Annotated[
         float | Sequence[float] | str,
         Either((OneOf((NEIGHBOURS,)), _PULLING, Several(_PULLING))),
-        "springs to the driver: one number for all, or one a block (0: no spring); neighbours: the number of the "
-        "block's neighbours, as in the paper (1 for a single block)",
+        "springs to the driver: one number for all blocks, or one per block (0: no spring); neighbours: the number of "
+        "the block's neighbours, as in the paper (1 for a single block)",
     ] = NEIGHBOURS
-    threshold: Annotated[Numbers, _OF_BLOCKS, "static friction: one number for all, one a block, or drawn"] = 1.0
+    threshold: Annotated[
+        Numbers, _BLOCK_VALUES, "static friction: one number for all blocks, one per block, or random"
+    ] = 1.0
     ends: Annotated[str, OneOf(ENDS), "open, or ring: the last block is coupled to the first"] = "open"
-    mass: Annotated[Numbers, _OF_BLOCKS, "mass: one number for all, one a block, or drawn"] = 1.0
+    mass: Annotated[Numbers, _BLOCK_VALUES, "mass: one number for all blocks, one per block, or random"] = 1.0
     grid: Annotated[
         Sequence[int] | None, Several(_SIDE, 2, 2), "[nx, ny]: nx columns and ny rows of blocks, instead of a row"
     ] = None
     springs: Annotated[
         str | None,
         SpringsFile(),
-        "file of the springs between blocks, instead of a row: lines `block block strength`, blocks numbered from 1; a "
-        "fourth column is the dashpot in parallel with each spring",
+        "file with the springs between blocks, instead of a row: lines `block block strength`, blocks numbered from 1; "
+        "an optional fourth column gives the dashpot in parallel with each spring",
     ] = None
     damping: Annotated[
         float | Sequence[float],
@@ -116,44 +119,44 @@ class Chain(Unchanging):
         "or a ring",
     ] = 0.0
     pulling_damping: Annotated[
-        float | Sequence[float], _DAMPING, "dashpots to the driver: one number for all, or one for each block"
+        float | Sequence[float], _DAMPING, "dashpots to the driver: one number for all blocks, or one per block"
     ] = 0.0
 
     def __post_init__(self) -> None:
         is_new = isinstance(self.springs, str) and not has_digest(self.springs)
         check_fields(self, "chain.")
         if self.grid and self.springs:
-            raise refusal("chain.grid", list(self.grid), "none beside chain.springs")
+            raise refusal("chain.grid", list(self.grid), "none together with chain.springs")
         if self.grid and math.prod(self.grid) > MAXIMUM_BLOCKS:
             raise refusal("chain.grid", list(self.grid), f"at most {MAXIMUM_BLOCKS} blocks")
         if self.is_network:
             self._check_network()
         elif self.blocks is None:
             object.__setattr__(self, "blocks", BLOCKS)
-        for key in (*SPRING_NUMBERS, *BLOCK_NUMBERS):
-            value, count = getattr(self, key), self.count_of(key)
+        for key in (*SPRING_PARAMETERS, *BLOCK_PARAMETERS):
+            value, count = getattr(self, key), self.parameter_count(key)
             if isinstance(value, tuple) and len(value) != count:
                 raise ValueError(
-                    f"chain.{key}: got {len(value)} numbers, expected 1, or {count}: one for each of the "
-                    f"{'springs' if key in SPRING_NUMBERS else 'blocks'}"
+                    f"chain.{key}: got {len(value)} numbers, expected 1, or {count}: one per "
+                    f"{'spring' if key in SPRING_PARAMETERS else 'block'}"
                 )
         if self.blocks == 1 and self.ends == "ring":
             raise ValueError("chain.ends: got ring, expected open for one block")
         if not isinstance(self.pulling, str) and not np.any(self.pulling):
-            raise ValueError(f"chain.pulling: got {self.pulling!r}, expected a number above 0 for one block or more")
+            raise ValueError(f"chain.pulling: got {self.pulling!r}, expected a number above 0 for at least one block")
         if is_new:
             self.check_springs()
 
     def _check_network(self) -> None:
         given = "chain.grid" if self.grid else "chain.springs"
         if self.ends != "open":
-            raise ValueError(f"chain.ends: got {self.ends}, expected open beside {given}")
+            raise ValueError(f"chain.ends: got {self.ends}, expected open together with {given}")
         for key in ("coupling", "damping"):
             value, usual = getattr(self, key), 1.0 if key == "coupling" else 0.0
             if isinstance(value, tuple):
-                raise ValueError(f"chain.{key}: got {len(value)} numbers, expected one beside {given}")
+                raise ValueError(f"chain.{key}: got {len(value)} numbers, expected one together with {given}")
             if self.springs and value != usual:
-                raise ValueError(f"chain.{key}: got {value!r}, expected none beside {given}")
+                raise ValueError(f"chain.{key}: got {value!r}, expected none together with {given}")
         if self.grid:
             count = math.prod(self.grid)
             if self.blocks not in (None, count):
@@ -166,26 +169,26 @@ class Chain(Unchanging):
     def check_springs(self) -> None:
         """Read the file of springs, if there is one.
 
-        Raises ValueError, one line, if it is no list of springs between these blocks, and if the driver pulls no block
-        of a connected part, since K is then singular.
+        Raises ValueError, one line, if it is not a list of springs between these blocks, and if the driver pulls no
+        block of a connected part, since K is then singular.
         """
         if self.springs is None:
             return
         from scipy.sparse.csgraph import connected_components
 
-        part = connected_components(self._matrix(self.neighbours.strength), directed=False)[1]
+        part = connected_components(self._springs.adjacency, directed=False)[1]
         slack = np.flatnonzero(np.bincount(part, self.driving)[part] == 0.0)
         if len(slack):
             count = int((part == part[slack[0]]).sum())
             raise ValueError(
                 f"chain.pulling: got 0 for all of the {count} blocks connected to block {slack[0] + 1}, expected a "
-                "number above 0 for one of them or more"
+                "number above 0 for at least one of them"
             )
 
-    def is_like(self, other: Chain) -> bool:
-        """Tell whether another chain has the same springs, dashpots, masses and static friction, in whatever form.
+    def is_equivalent_to(self, other: Chain) -> bool:
+        """Return whether another chain has the same springs, dashpots, masses and static friction, in whatever form.
 
-        A network is like no row, which has a mirror image.
+        A network is never equivalent to a row, because a row has a mirror image.
         """
         if self.is_network != other.is_network:
             return False
@@ -193,18 +196,18 @@ class Chain(Unchanging):
         pairs = [(getattr(self, name), getattr(other, name)) for name in of_blocks]
         return all(np.array_equal(*pair) for pair in (*pairs, *zip(self.neighbours, other.neighbours, strict=True)))
 
-    def count_of(self, key: str) -> int:
-        """Return the number of springs of a row or a ring, or of blocks, each of which has a number under this key."""
-        if key in BLOCK_NUMBERS:
+    def parameter_count(self, key: str) -> int:
+        """Return how many values a parameter has: one for each spring of a row or a ring, or one for each block."""
+        if key in BLOCK_PARAMETERS:
             return self.blocks
         return 0 if self.is_network else self.blocks - (self.ends == "open")
 
-    def numbers_of(self, key: str) -> np.ndarray:
-        """Return the numbers of all springs, or of all blocks, under a key of the chain, shape (count_of(key),).
+    def parameter_values(self, key: str) -> np.ndarray:
+        """Return the values of a parameter for all springs or all blocks, shape (parameter_count(key),).
 
         Springs of a row or a ring are in the order of the blocks on their left.
         """
-        return self.driving if key == "pulling" else numbers_of(getattr(self, key), self.count_of(key), key)
+        return self.driving if key == "pulling" else block_values(getattr(self, key), self.parameter_count(key), key)
 
     @property
     def is_network(self) -> bool:
@@ -214,20 +217,20 @@ class Chain(Unchanging):
     @cached_property
     def thresholds(self) -> np.ndarray:
         """Static friction of each block, shape (blocks,)."""
-        return read_only_copy(numbers_of(self.threshold, self.blocks, "threshold"))
+        return read_only_copy(block_values(self.threshold, self.blocks, "threshold"))
 
     @cached_property
     def masses(self) -> np.ndarray:
         """Mass of each block, shape (blocks,)."""
-        return read_only_copy(numbers_of(self.mass, self.blocks, "mass"))
+        return read_only_copy(block_values(self.mass, self.blocks, "mass"))
 
     @cached_property
-    def before(self) -> np.ndarray:
+    def coupling_to_previous(self) -> np.ndarray:
         """Strength of the spring to the previous block of a row or ring, shape (blocks,); 0 at an open end."""
-        return self._before(self.coupling)
+        return self._shift_to_next(self.coupling)
 
-    def _before(self, values: float | Sequence[float]) -> np.ndarray:
-        """Return a number of each spring in the place of the block after it, shape (blocks,); 0 at an open end."""
+    def _shift_to_next(self, values: float | Sequence[float]) -> np.ndarray:
+        """Return the values of the springs to the previous blocks, shape (blocks,); 0 at an open end."""
         if self.is_network:
             raise ValueError("chain: got a network of springs, expected a row or a ring")
         springs = np.zeros(self.blocks)
@@ -235,27 +238,27 @@ class Chain(Unchanging):
         return read_only_copy(np.roll(springs, 1))
 
     @cached_property
-    def after(self) -> np.ndarray:
+    def coupling_to_next(self) -> np.ndarray:
         """Strength of the spring to the next block of a row or ring, shape (blocks,); 0 at an open end."""
-        return read_only_copy(np.roll(self.before, -1))
+        return read_only_copy(np.roll(self.coupling_to_previous, -1))
 
     @cached_property
     def neighbours(self) -> Neighbours:
         """The neighbours of each block and the springs to them; raises ValueError as `check_springs` does.
 
-        In a row or ring the previous block comes first, in a grid left, right, down, up, in a network from a file the
-        smallest number. The two blocks of a ring are joined by two springs.
+        The order is previous, next in a row or ring; left, right, down, up in a grid; ascending in a network from a
+        file. The two blocks of a ring of two are joined by two springs.
         """
         if self.grid:
             columns, rows = self.grid
-            return of_grid(columns, rows, float(self.coupling), float(self.damping))  # type: ignore[arg-type]
+            return grid_neighbours(columns, rows, float(self.coupling), float(self.damping))  # type: ignore[arg-type]
         if self.springs is None:
-            return along(self.before, self._before(self.damping))
+            return row_neighbours(self.coupling_to_previous, self._shift_to_next(self.damping))
         one, other, strength, damping = read_edges(self.springs)
         largest = int(max(one.max(), other.max())) + 1
         if largest > self.blocks:
             raise ValueError(f"chain.springs: got block {largest}, expected at most chain.blocks ({self.blocks})")
-        return of_edges(one, other, strength, damping, self.blocks)
+        return network_neighbours(one, other, strength, damping, self.blocks)
 
     @cached_property
     def driving(self) -> np.ndarray:
@@ -266,56 +269,46 @@ class Chain(Unchanging):
 
     @cached_property
     def driver_damping(self) -> np.ndarray:
-        """The dashpots c_i to the driver, shape (blocks,)."""
+        """Coefficients c_i of the dashpots to the driver, shape (blocks,)."""
         return read_only_copy(np.broadcast_to(self.pulling_damping, self.blocks).astype(float))
 
     @cached_property
-    def damping_diagonal(self) -> np.ndarray:
-        """Diagonal of C: the total of the dashpots at each block, shape (blocks,)."""
-        coupled = np.bincount(self.neighbours.block, self.neighbours.damping, self.blocks)
-        return read_only_copy(coupled + self.driver_damping)
-
-    @property
-    def is_damped(self) -> bool:
-        """Whether there is a dashpot."""
-        return bool(self.damping_diagonal.any())
+    def _springs(self) -> Laplacian:
+        return Laplacian(self.neighbours, self.neighbours.strength, self.driving)
 
     @cached_property
+    def _dashpots(self) -> Laplacian:
+        return Laplacian(self.neighbours, self.neighbours.damping, self.driver_damping)
+
+    @property
     def diagonal(self) -> np.ndarray:
         """Diagonal of K: the total strength of the springs at each block, shape (blocks,)."""
-        coupled = np.bincount(self.neighbours.block, self.neighbours.strength, self.blocks)
-        return read_only_copy(coupled + self.driving)
+        return self._springs.diagonal
+
+    @property
+    def damping_diagonal(self) -> np.ndarray:
+        """Diagonal of C: the total coefficient of the dashpots at each block, shape (blocks,)."""
+        return self._dashpots.diagonal
 
     @property
     def stiffness(self) -> np.ndarray:
         """The matrix K, dense, shape (blocks, blocks)."""
-        return self._dense(self.diagonal, self.neighbours.strength)
-
-    @property
-    def damping_matrix(self) -> np.ndarray:
-        """The matrix C, dense, shape (blocks, blocks)."""
-        return self._dense(self.damping_diagonal, self.neighbours.damping)
-
-    def _dense(self, diagonal: np.ndarray, joined: np.ndarray) -> np.ndarray:
-        """Return the matrix with this diagonal and minus a number for each neighbour of each block."""
-        matrix = np.diag(diagonal)
-        np.subtract.at(matrix, (self.neighbours.block, self.neighbours.index), joined)
-        return matrix
+        return self._springs.dense
 
     @property
     def sparse_stiffness(self) -> csr_array:
         """The matrix K as a sparse matrix of SciPy, shape (blocks, blocks)."""
-        from scipy.sparse import diags_array
+        return self._springs.sparse
 
-        matrix = (diags_array(self.diagonal) - self._matrix(self.neighbours.strength)).tocsr()
-        matrix.sum_duplicates()
-        return matrix
+    @property
+    def damping_matrix(self) -> np.ndarray:
+        """The matrix C, dense, shape (blocks, blocks)."""
+        return self._dashpots.dense
 
-    def _matrix(self, strength: np.ndarray) -> csr_array:
-        """Return the sparse matrix with a number for each neighbour of each block."""
-        from scipy.sparse import csr_array
-
-        return csr_array((strength, self.neighbours.index, self.neighbours.start), (self.blocks, self.blocks))
+    @property
+    def is_damped(self) -> bool:
+        """Whether the chain has a dashpot."""
+        return bool(self.damping_diagonal.any())
 
     @property
     def is_mirror_symmetric(self) -> bool:
@@ -326,16 +319,15 @@ class Chain(Unchanging):
         if self.blocks == 1 or self.is_network:
             return False
         of_blocks = (self.driving, self.thresholds, self.masses, self.driver_damping)
-        of_springs = (self.before, self._before(self.damping))
+        of_springs = (self.coupling_to_previous, self._shift_to_next(self.damping))
         pairs = [(values, values) for values in of_blocks] + [(values, np.roll(values, -1)) for values in of_springs]
         return all(bool((one == other[::-1]).all()) for one, other in pairs)
 
     @property
     def is_uniform(self) -> bool:
-        """Whether this is a row with open ends, masses of 1, one number each for coupling, pulling and threshold, and
-        no dashpots.
+        """Whether this is an undamped row with open ends, masses of 1, and equal coupling, pulling and thresholds.
 
-        The solver `map` knows the modes of no other chain.
+        The solver `map` requires such a chain.
         """
         return (
             self.ends == "open"
@@ -349,19 +341,13 @@ class Chain(Unchanging):
 
     @property
     def highest_frequency(self) -> float:
-        """Upper bound on the angular frequencies of slipping blocks: Gershgorin's, on the eigenvalues of M⁻¹K."""
-        return math.sqrt(self._bound(self.diagonal, self.neighbours.strength))
+        """Upper bound on the angular frequencies of slipping blocks, by Gershgorin's theorem for M⁻¹K."""
+        return math.sqrt(self._springs.eigenvalue_bound(self.masses))
 
     @property
     def highest_rate(self) -> float:
-        """Upper bound on the rates |λ| at which slipping blocks oscillate and dashpots damp them, friction aside."""
-        return self.highest_frequency + self._bound(self.damping_diagonal, self.neighbours.damping)
-
-    def _bound(self, diagonal: np.ndarray, joined: np.ndarray) -> float:
-        """Return Gershgorin's bound on the eigenvalues of M⁻¹ times the matrix of `_dense`."""
-        bound = diagonal.copy()
-        np.add.at(bound, self.neighbours.block, joined)
-        return float((bound / self.masses).max())
+        """Upper bound on the rates |λ| of oscillation and damping of slipping blocks, without friction."""
+        return self.highest_frequency + self._dashpots.eigenvalue_bound(self.masses)
 
     @cached_property
     def own_units(self) -> OwnUnits:
@@ -370,27 +356,23 @@ class Chain(Unchanging):
 
     @property
     def damping_limit(self) -> float:
-        """The a below which every mode of slipping blocks is underdamped for Φ = 1 − aU'; for a uniform chain."""
+        """The a below which all modes of slipping blocks of a uniform chain oscillate under the law Φ = 1 − aU'."""
         return 2.0 * math.sqrt(self.driving.min()) / float(self.thresholds[0])
 
     def force(self, position: np.ndarray) -> np.ndarray:
-        """Return the spring forces −(K U) at τ = 0 for positions U, shape (…, blocks)."""
+        """Return the spring forces −(K U)_i at τ = 0 for positions U, shape (…, blocks)."""
         if self.is_network:
-            return self._pulls(self.neighbours.strength, position) - self.diagonal * position
+            return self._springs.negative_product(position)
         block = np.arange(self.blocks)
-        pull = self.before * position[..., block - 1] + self.after * position[..., (block + 1) % self.blocks]
-        return pull - self.diagonal * position
+        previous, following = position[..., block - 1], position[..., (block + 1) % self.blocks]
+        # Both neighbours are added first, so that mirrored positions give mirrored forces to the bit.
+        return self.coupling_to_previous * previous + self.coupling_to_next * following - self.diagonal * position
 
     def damping_force(self, velocity: np.ndarray, v: float) -> np.ndarray:
         """Return the forces c_i v − (C U')_i of the dashpots for velocities U', shape (…, blocks)."""
         if not self.is_damped:
             return np.zeros(velocity.shape)
-        pulls = self._pulls(self.neighbours.damping, velocity)
-        return self.driver_damping * v + (pulls - self.damping_diagonal * velocity)
-
-    def _pulls(self, joined: np.ndarray, values: np.ndarray) -> np.ndarray:
-        """Return Σ_j joined_ij values_j over the neighbours j of each block, shape (…, blocks)."""
-        return (self._matrix(joined) @ values.reshape(-1, self.blocks).T).T.reshape(values.shape)
+        return self.driver_damping * v + self._dashpots.negative_product(velocity)
 
     def sliding_offset(self, friction: float) -> np.ndarray:
         """Return e with K e = −friction · threshold, shape (blocks,).

@@ -4,8 +4,8 @@ A setting is a field of a dataclass whose type is annotated with a range and a d
 
     step: Annotated[float, Number(1e-9, 10.0), "step of rk4"] = 1e-3
 
-This line alone defines the setting for Python, the options of `bk simulate`, the config of a study and the tables of
-config/README.md. The decorator `settings` makes `help` show the plain type.
+This single line defines the setting in Python, in the options of `bk simulate`, in the config of a study and in the
+tables of config/README.md. The decorator `settings` makes `help` show the plain type.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 from burridge_knopoff.model.ranges import Range
 from burridge_knopoff.values import full_key
 
-#: Default of a required field, and of an optional field whose value is derived from others.
+#: Default of a required field, and of an optional field whose value follows from other fields.
 REQUIRED, FOLLOWS = object(), object()
 
 
@@ -34,7 +34,7 @@ class Field:
 
 @dataclass(eq=False, repr=False)
 class Keys(Range):
-    """A mapping with known keys, each a field; its form has all defaults, in the order of the fields."""
+    """A mapping with known keys, each of which is a field. Its form has all defaults, in the order of the fields."""
 
     fields: Mapping[str, Field]
     #: Appended to the description of the keys.
@@ -45,7 +45,7 @@ class Keys(Range):
             return None
         for name in value:
             if name not in self.fields:
-                raise unknown_key(key, name, sorted(self.fields))
+                raise unknown_key_error(key, name, sorted(self.fields))
         values = {}
         for name, field in self.fields.items():
             given = value.get(name, field.default)
@@ -59,21 +59,21 @@ class Keys(Range):
         return f"{{{', '.join(self.fields)}}}{self.words}"
 
 
-#: Keys of earlier configs, and what they are called now.
+#: Keys of earlier configs, and their present names.
 RENAMED = {"fraction_samples": "fraction_width", "pushes": "perturbations"}
 
 
-def unknown_key(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
-    """Return the error for an unknown key: its place, its new name or the closest known key, and all known keys."""
+def unknown_key_error(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
+    """Return the error for an unknown key, with its present name or the closest known key, and all known keys."""
     near = get_close_matches(name, allowed, 1) if isinstance(name, str) else []
     hint = f" (did you mean {near[0]}?)" if near else ""
     if RENAMED.get(name) in allowed:
-        hint = f" (it is called {RENAMED[name]} now)"
+        hint = f" (renamed to {RENAMED[name]})"
     return ValueError(f"{full_key(place, name)}: unknown key{hint}, expected one of: {', '.join(allowed)}")
 
 
 _T = TypeVar("_T")
-_KNOWN: dict[type, Mapping[str, Field]] = {}
+_FIELDS: dict[type, Mapping[str, Field]] = {}
 
 
 def settings(kind: type[_T]) -> type[_T]:
@@ -87,7 +87,7 @@ def settings(kind: type[_T]) -> type[_T]:
 
 def fields_of(kind: type) -> Mapping[str, Field]:
     """Return the settings of a dataclass by name: the fields that have a range."""
-    if kind not in _KNOWN:
+    if kind not in _FIELDS:
         hints, found = get_type_hints(kind, include_extras=True), {}
         for item in dataclasses.fields(kind):
             if get_origin(hints[item.name]) is Annotated:
@@ -95,11 +95,11 @@ def fields_of(kind: type) -> Mapping[str, Field]:
                 default = REQUIRED if item.default is dataclasses.MISSING else item.default
                 default = FOLLOWS if default is None else default
                 found[item.name] = Field(allowed, description, default)
-        _KNOWN[kind] = found
-    return _KNOWN[kind]
+        _FIELDS[kind] = found
+    return _FIELDS[kind]
 
 
-def settings_from(kind: type[_T], config: Mapping[str, Any]) -> _T:
+def settings_from_config(kind: type[_T], config: Mapping[str, Any]) -> _T:
     """Return settings of a class from the keys of the same names in a config."""
     return kind(**{name: config[name] for name in fields_of(kind) if name in config})
 
@@ -107,7 +107,7 @@ def settings_from(kind: type[_T], config: Mapping[str, Any]) -> _T:
 def check_fields(settings: Any, place: str = "") -> None:
     """Convert the settings of a new dataclass to their form: 3 becomes 3.0, a list becomes a tuple.
 
-    None stays where the value is derived from others.
+    None is kept if the value follows from other fields.
 
     place : prefix of the names in messages
     Raises ValueError, one line, for anything out of range.

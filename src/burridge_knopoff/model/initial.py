@@ -7,23 +7,23 @@ from typing import Annotated
 
 import numpy as np
 
-from burridge_knopoff.model.drawn import Drawn, Numbers, numbers_of
 from burridge_knopoff.model.fields import check_fields, settings
+from burridge_knopoff.model.random_numbers import Numbers, RandomNumbers, block_values
 from burridge_knopoff.model.ranges import Either, Number, Several, Text
 from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
 from burridge_knopoff.values import format_value
 
 STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
 COORDINATE = Number(-1e6, 1e6)
-_OF_BLOCKS = Either((COORDINATE, Several(COORDINATE, 1, MAXIMUM_BLOCKS), Drawn(COORDINATE)))
+_BLOCK_VALUES = Either((COORDINATE, Several(COORDINATE, 1, MAXIMUM_BLOCKS), RandomNumbers(COORDINATE)))
 
 
 @settings
 @dataclass(frozen=True)
 class InitialState:
-    """A named initial state: positions U(0) and velocities U'(0), one number for all blocks, one a block, or drawn.
+    """A named initial state: positions U(0) and velocities U'(0), one number for all blocks, one per block, or random.
 
-    `Model.begin` turns it into a `ChainState`, which knows which blocks stick and the position of uniform sliding.
+    `Model.begin` turns it into a `ChainState`, in which some blocks may stick.
 
     Raises ValueError, one line, for a number out of range and for different numbers of positions and velocities.
 
@@ -33,13 +33,17 @@ class InitialState:
     >>> InitialState("own", position=(-0.9, -1.1), velocity=(0.1, 0.1))
     InitialState(name='own', position=(-0.9, -1.1), velocity=(0.1, 0.1))
     >>> rough = InitialState("rough", {"random": "uniform", "low": -1.5, "high": -0.5, "seed": 1}, 0.0)
-    >>> rough.numbers(4)[0].round(2).tolist()
+    >>> rough.coordinates(4)[0].round(2).tolist()
     [-1.45, -1.15, -0.55, -0.68]
     """
 
     name: str
-    position: Annotated[Numbers, _OF_BLOCKS, "initial positions U(0): one number for all, one a block, or drawn"]
-    velocity: Annotated[Numbers, _OF_BLOCKS, "initial velocities U'(0): one number for all, one a block, or drawn"]
+    position: Annotated[
+        Numbers, _BLOCK_VALUES, "initial positions U(0): one number for all blocks, one per block, or random"
+    ]
+    velocity: Annotated[
+        Numbers, _BLOCK_VALUES, "initial velocities U'(0): one number for all blocks, one per block, or random"
+    ]
 
     def __post_init__(self) -> None:
         check_fields(self)
@@ -49,13 +53,13 @@ class InitialState:
 
     @property
     def blocks(self) -> int | None:
-        """Number of blocks that the state tells: that of its lists, 1 for numbers alone, None for drawn numbers."""
+        """Number of blocks: the length of the lists, 1 for single numbers, None for random numbers."""
         lists = [len(values) for values in (self.position, self.velocity) if isinstance(values, tuple)]
         drawn = isinstance(self.position, str) or isinstance(self.velocity, str)
         return lists[0] if lists else None if drawn else 1
 
-    def numbers(self, blocks: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return U(0) and U'(0) of a number of blocks, each of shape (blocks,).
+    def coordinates(self, blocks: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return U(0) and U'(0) for this number of blocks, each of shape (blocks,).
 
         Raises ValueError, one line, if the state has lists of another length.
         """
@@ -63,7 +67,7 @@ class InitialState:
             if isinstance(values, tuple) and len(values) != blocks:
                 given = f"the number of {words} of the initial state {self.name!r}"
                 raise ValueError(f"blocks: got {blocks}, expected {len(values)}, {given}")
-        return numbers_of(self.position, blocks, "position"), numbers_of(self.velocity, blocks, "velocity")
+        return block_values(self.position, blocks, "position"), block_values(self.velocity, blocks, "velocity")
 
 
 _PAPER_VELOCITY = (0.099, 0.1012, 0.1023)
@@ -76,7 +80,7 @@ PAPER_STATES = {
 
 
 def initial_state(name: str, position: Numbers | None = None, velocity: Numbers | None = None) -> InitialState:
-    """Return one of the paper's states by its name, or the given numbers under this name.
+    """Return one of the paper's states by its name, or a state of this name with the given numbers.
 
     Raises ValueError for an unknown name without numbers.
     """

@@ -9,11 +9,11 @@ from typing import Annotated, Any
 import numpy as np
 
 from burridge_knopoff.laws import Law
-from burridge_knopoff.laws.law import FASTEST
+from burridge_knopoff.laws.law import MAX_SPEED
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
-from burridge_knopoff.model.parameters import at
+from burridge_knopoff.model.parameters import set_parameters
 from burridge_knopoff.model.ranges import Number, OneOf, Text
 from burridge_knopoff.values import Unchanging, instance_of, read_only_copy
 
@@ -22,7 +22,9 @@ LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z
 CONTACTS = ("one_sided", "symmetric")
 STARTS = ("moving", "tested")
 #: The choices of `start` and their meaning.
-START = "moving: every block slips at tau = 0 | tested: those on which the force is at most threshold stick there"
+START = (
+    "moving: every block slips at tau = 0 | tested: blocks on which the force is at most the threshold stick at tau = 0"
+)
 
 
 @settings
@@ -53,19 +55,19 @@ class Model(Unchanging):
     contact: Annotated[
         str,
         OneOf(CONTACTS),
-        "one_sided: a stuck block holds against any pull below its threshold | "
-        "symmetric: it holds while |s| is below its threshold, and slips backward beyond",
+        "one_sided: a block sticks while the force is at most its threshold, however strong a backward pull is | "
+        "symmetric: it sticks while the modulus of the force is at most its threshold, and can slip backward",
     ] = "one_sided"
 
     def __post_init__(self) -> None:
         check_fields(self)
         instance_of(self.chain, Chain, "chain")
         instance_of(self.law, Law, "law")
-        # Blocks slip at a few v, faster from distant initial states: such a run ends where the law is not analytic.
-        fastest = FASTEST * self.v
-        if fastest > FASTEST and not self.law.tape.is_analytic(0.0, fastest):
+        # Blocks slip at a few times v, and faster from distant states: a run ends where the law is not analytic.
+        fastest = MAX_SPEED * self.v
+        if fastest > MAX_SPEED and not self.law.tape.is_analytic(0.0, fastest):
             raise ValueError(
-                f"v: got {self.v!r}, expected one up to ten times which the law {self.law.name} is analytic"
+                f"v: got {self.v!r}, expected a velocity up to ten times which the law {self.law.name} is analytic"
             )
 
     @property
@@ -81,9 +83,9 @@ class Model(Unchanging):
     def at(self, a: float | None = None, /, **parameters: float) -> Model:
         """Return the same model at another a, or at other values of any parameters, such as `at(v=0.2, coupling=1.5)`.
 
-        Raises ValueError, one line, as `parameters.at` does.
+        Raises ValueError, one line, as `parameters.set_parameters` does.
         """
-        return at(self, parameters if a is None else {"a": a, **parameters})
+        return set_parameters(self, parameters if a is None else {"a": a, **parameters})
 
     @property
     def has_closed_form(self) -> bool:
@@ -94,12 +96,14 @@ class Model(Unchanging):
 
     @property
     def scale(self) -> float:
-        """Factor on distances given for v = 0.1: distances grow with v, in proportion under the linearized law."""
+        """Factor for distances that are given for v = 0.1: under the linearized law distances are proportional to v."""
         return self.v / 0.1
 
     @property
     def state_scale(self) -> np.ndarray:
-        """Factors on differences of positions and velocities given for v = 0.1 in own units, shape (2 blocks,)."""
+        """Factors for differences of positions and velocities that are given for v = 0.1 in the chain's own units,
+        shape (2 blocks,).
+        """
         units = self.chain.own_units
         return self.scale / units.velocity * units.state(self.blocks)
 
@@ -109,27 +113,29 @@ class Model(Unchanging):
         return read_only_copy(self.chain.sliding_offset(float(self.law(self.v))))
 
     def begin(self, initial: InitialState, start: str = "moving") -> ChainState:
-        """Return the instant τ = 0 of a run from an initial state.
+        """Return the state at τ = 0 of a run from an initial state.
 
         start : moving or tested, see START
 
         Raises ValueError if the state does not fit the chain, or slips backward under one-sided contact.
         """
         OneOf(STARTS).form(start, "start")
-        u, w = self.numbers_of(initial)
-        stuck = self.starts_stuck(u, w, start)
+        u, w = self.initial_coordinates(initial)
+        stuck = self.stuck_blocks(u, w, start)
         return ChainState(u - self.sliding_offset, np.where(stuck, 0.0, w), stuck)
 
-    def numbers_of(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
-        """Return U(0) and U'(0) of an initial state, each of shape (blocks,); raises ValueError as `begin` does."""
-        u, w = initial.numbers(self.blocks)
+    def initial_coordinates(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
+        """Return U(0) and U'(0) of an initial state, each of shape (blocks,). Raises ValueError as `begin` does."""
+        u, w = initial.coordinates(self.blocks)
         self.check_directions(w, "velocity")
         return u, w
 
     def check_directions(self, velocity: np.ndarray, key: str, rounding: float = 0.0) -> None:
-        """Check that no block slips backward under one-sided contact, by more than rounding.
+        """Check that no block slips backward under one-sided contact.
 
-        Raises ValueError, one line, if one does.
+        rounding : largest backward velocity that counts as 0
+
+        Raises ValueError, one line, if a block slips backward.
         """
         if self.contact == "one_sided" and velocity.min() < -rounding:
             raise ValueError(
@@ -137,10 +143,10 @@ class Model(Unchanging):
                 "forward; contact symmetric lets them slip backward"
             )
 
-    def starts_stuck(self, position: np.ndarray, velocity: np.ndarray, start: str) -> np.ndarray:
-        """Return which blocks stick at τ = 0 for a choice of `start`; same shape as U(0) and U'(0), (…, blocks).
+    def stuck_blocks(self, position: np.ndarray, velocity: np.ndarray, start: str) -> np.ndarray:
+        """Return a mask of the blocks that stick at τ = 0 for a choice of `start`; U(0), U'(0) and mask: (…, blocks).
 
-        Dashpots pull on a block at rest whose neighbours have their U'(0), or stick themselves.
+        The force includes the dashpots, with the block at rest and its neighbours moving unless they stick as well.
         """
         chain = self.chain
         # Spring forces from U itself: rounding in co-moving coordinates could move a block across its threshold.
@@ -164,15 +170,14 @@ class Model(Unchanging):
 class ChainState:
     """The state of all blocks at one instant of a motion, from which a run can continue; arrays of shape (blocks,).
 
-    `Model.begin` makes one of an `InitialState` and decides which blocks stick. The kernel's `State` is the one that a
-    solver changes as it integrates.
+    `Model.begin` makes a ChainState from an `InitialState` and decides which blocks stick.
 
     position : co-moving x_i = U_i − vτ − e_i; velocity : U_i'; stuck : whether each block sticks
     time : τ of the state; a continued run starts its clock here
 
     Positions and velocities are in the units of `Model`; e_i is its `sliding_offset`. `Trajectory.final` also keeps the
-    last step of its run, which `simulate(model, initial=run.final)` repeats. States, events and crossings of a split
-    run are thus those of the whole run, bit for bit, also from a state that was copied or pickled.
+    last step of its run, which `simulate(model, initial=run.final)` repeats. A run in two parts therefore has the same
+    states, events and crossings as the whole run, bit for bit, even if the state was copied or pickled.
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -185,7 +190,7 @@ class ChainState:
     velocity: np.ndarray
     stuck: np.ndarray
     time: float = 0.0
-    # The solver of the run and the start of its last step. They belong to this state alone: `replace` drops them.
+    # The solver of the run and the start of its last step. They are valid for this state only: `replace` drops them.
     last_step: Any = field(default=None, init=False, repr=False)
 
     def __repr__(self) -> str:

@@ -1,6 +1,6 @@
-"""The units in which a chain is about as fast, as long and as strong as the paper's, where all of them are 1.
+"""Units in which the times, lengths and forces of a chain are about those of the paper's chain, whose units are all 1.
 
-Times, lengths and tolerances that suit the paper's chain suit any other one in these units.
+Times, lengths and tolerances that suit the paper's chain suit any other chain if they are given in these units.
 """
 
 from __future__ import annotations
@@ -14,14 +14,14 @@ import numpy as np
 if TYPE_CHECKING:
     from burridge_knopoff.model.chain import Chain
 
-# These put 1 amid what counts as 1, between numbers that a chain would be given.
-_OF_TIME = math.sqrt(1.5)
-_OF_SIZE = math.sqrt(2.0)
+# With these factors the unit is 1 for a range of chains around the paper's, whose ends lie between round numbers.
+_TIME_FACTOR = math.sqrt(1.5)
+_SIZE_FACTOR = math.sqrt(2.0)
 
 
 @dataclass(frozen=True)
 class OwnUnits:
-    """Units of time, length and force, powers of 2: a chain in other units of these gives the same results to the bit.
+    """Units of time, length and force. They are powers of 2, so that rescaled chains give the same results to the bit.
 
     >>> from burridge_knopoff import Chain
     >>> slow = Chain(3, coupling=2.0**-20, pulling=tuple(2.0**-20 * n for n in (1, 2, 1)))
@@ -47,7 +47,7 @@ class OwnUnits:
 
     @property
     def slope(self) -> float:
-        """The unit of the slope of a friction law, and so of a."""
+        """The unit of the slope of a friction law, and thus of a."""
         return self.time / self.length
 
     def state(self, blocks: int) -> np.ndarray:
@@ -56,18 +56,18 @@ class OwnUnits:
 
 
 def own_units_of(chain: Chain) -> OwnUnits:
-    """Return the units of a chain, from how far static friction displaces it and how fast it would then come back.
+    """Return the units of a chain, from its displacement by static friction and the acceleration when it is released.
 
-    However stiff the springs between blocks are, these are the length and the time of the slowest motion.
+    These are the length and the time of the slowest motion, however stiff the springs between blocks are.
     """
     threshold, mass = chain.thresholds, chain.masses
     displacement = float(threshold @ np.abs(chain.sliding_offset(1.0))) / float(threshold.sum())
     acceleration = float(threshold.sum()) / float(mass.sum())
-    time = math.ldexp(1.0, math.frexp(_OF_TIME * displacement / acceleration)[1] // 2)
-    length = time * time * _power(acceleration)
-    return OwnUnits(time, length, _power(float(threshold.mean())))
+    time = math.ldexp(1.0, math.frexp(_TIME_FACTOR * displacement / acceleration)[1] // 2)
+    length = time * time * _nearest_power_of_two(acceleration)
+    return OwnUnits(time, length, _nearest_power_of_two(float(threshold.mean())))
 
 
-def _power(size: float) -> float:
-    """Return the power of 2 nearest to a number, by their ratio."""
-    return math.ldexp(1.0, math.frexp(_OF_SIZE * size)[1] - 1)
+def _nearest_power_of_two(size: float) -> float:
+    """Return the power of 2 nearest to a number on a logarithmic scale."""
+    return math.ldexp(1.0, math.frexp(_SIZE_FACTOR * size)[1] - 1)

@@ -1,8 +1,8 @@
 """The parameters of a model: every number that a study may vary, by its name.
 
-They are a and the law's own numbers, the driver velocity v, and the numbers of the chain: of all its springs or blocks
-(`mass`), or of one of them (`mass[3]`). Blocks are numbered from 1. Springs are too: spring i of a row or a ring joins
-blocks i and i + 1, and the last one of a ring joins the last block to the first.
+They are a and the other parameters of the law, the driver velocity v, and the parameters of the chain, either of all
+its springs or blocks (`mass`) or of one of them (`mass[3]`). Blocks and springs are numbered from 1. Spring i of a row
+or a ring joins blocks i and i + 1; the last spring of a ring joins the last block to the first.
 """
 
 from __future__ import annotations
@@ -12,119 +12,120 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-from burridge_knopoff.model.chain import BLOCK_NUMBERS, NEIGHBOURS, SPRING_NUMBERS
+from burridge_knopoff.model.chain import BLOCK_PARAMETERS, NEIGHBOURS, SPRING_PARAMETERS
 from burridge_knopoff.values import full_key, real_number, refusal
 
 if TYPE_CHECKING:
     from burridge_knopoff.model.chain import Chain
     from burridge_knopoff.model.model import Model
 
-#: Parameters of the chain, and the range of each number.
-CHAIN = {**SPRING_NUMBERS, **BLOCK_NUMBERS}
+#: Parameters of the chain, with their ranges.
+CHAIN_PARAMETERS = {**SPRING_PARAMETERS, **BLOCK_PARAMETERS}
 
 ONE = "one number for the whole chain"
 
-_SINGLE = re.compile(rf"({'|'.join(CHAIN)})\[(0|[1-9][0-9]*)\]")
+_INDEXED_NAME = re.compile(rf"({'|'.join(CHAIN_PARAMETERS)})\[(0|[1-9][0-9]*)\]")
 
 
-def names_of(model: Model) -> tuple[str, ...]:
-    """Return the names of the parameters of a model: those of its law, of the driver and of the whole chain."""
-    return ("a", *model.law.numbers, "v", *CHAIN)
+def parameter_names(model: Model) -> tuple[str, ...]:
+    """Return the names of the parameters of the law, the driver and the whole chain."""
+    return ("a", *model.law.parameters, "v", *CHAIN_PARAMETERS)
 
 
-def words_of(model: Model) -> str:
-    """Return the names of the parameters of a model for a message."""
-    return f"{' | '.join(names_of(model))}, or one block or spring, as mass[1]"
+def format_parameter_names(model: Model) -> str:
+    """Return the names of the parameters of a model, for a message."""
+    return f"{' | '.join(parameter_names(model))}, or one block or spring, such as mass[1]"
 
 
-def single_of(name: Any) -> tuple[str, int] | None:
-    """Return the key of the chain and the number, from 1, of the spring or block that a name such as `mass[3]` means.
+def parse_indexed_name(name: Any) -> tuple[str, int] | None:
+    """Return the key and the number of the spring or block, from 1, of a name such as `mass[3]`.
 
-    None for any other name.
+    Returns None for any other name.
     """
-    found = _SINGLE.fullmatch(name) if isinstance(name, str) else None
+    found = _INDEXED_NAME.fullmatch(name) if isinstance(name, str) else None
     return (found[1], int(found[2])) if found else None
 
 
 def plain_name(name: str) -> str:
-    """Return the name of a parameter in letters, digits and underscores, as dimensions and file names have it.
+    """Return the name of a parameter with letters, digits and underscores only, for dimensions and file names.
 
     >>> from burridge_knopoff.model.parameters import plain_name
     >>> plain_name("mass[3]"), plain_name("sigma")
     ('mass_3', 'sigma')
     """
-    single = single_of(name)
+    single = parse_indexed_name(name)
     return f"{single[0]}_{single[1]}" if single else name
 
 
-def value_of(model: Model, name: str) -> float:
+def parameter_value(model: Model, name: str) -> float:
     """Return the value of a parameter.
 
-    Raises ValueError, one line, if the model has no parameter of this name, or several numbers in its place.
+    Raises ValueError, one line, if the model has no parameter of this name, or several values for it.
     """
-    given = _given(model, name)
+    given = _stored_value(model, name)
     number = real_number(given)
     if number != number:
         raise refusal(name, given, ONE)
     return number
 
 
-def at(model: Model, parameters: Mapping[str, float]) -> Model:
+def set_parameters(model: Model, parameters: Mapping[str, float]) -> Model:
     """Return the same model at other values of some of its parameters.
 
-    `pulling` may be a number in place of `neighbours`. A number for one spring or block, as `mass[3]`, makes the chain
-    have one for each; it takes precedence over one for all. Raises ValueError, one line, for a name that is no
-    parameter of the model, a value out of range, and a parameter for the whole chain that has a number for each spring
-    or block.
+    `pulling` may be a number in place of `neighbours`. A value for one spring or block, such as `mass[3]`, takes
+    precedence over a value for all of them. Raises ValueError, one line, for a name that is not a parameter of the
+    model, a value out of range, and a parameter of the whole chain that has several values.
     """
     changes: dict[str, dict[str, Any]] = {"law": {}, "chain": {}, "single": {}, "driver": {}}
     for name, value in parameters.items():
-        given = _given(model, name)
+        given = _stored_value(model, name)
         if not isinstance(given, float) and given != NEIGHBOURS:
             raise refusal(name, given, ONE)
         if real_number(value) != real_number(value):
             raise refusal(name, value, "a number")
-        single = single_of(name)
-        part = "single" if single else "driver" if name == "v" else "chain" if name in CHAIN else "law"
-        changes[part][name] = CHAIN[single[0]].form(value, name) if single else value
+        single = parse_indexed_name(name)
+        part = "single" if single else "driver" if name == "v" else "chain" if name in CHAIN_PARAMETERS else "law"
+        changes[part][name] = CHAIN_PARAMETERS[single[0]].form(value, name) if single else value
     own: dict[str, Any] = {**changes["driver"]}
     if changes["law"]:
         own["law"] = model.law.at(changes["law"].pop("a", None), **changes["law"])
     if changes["chain"] or changes["single"]:
-        own["chain"] = _with_singles(replace(model.chain, **changes["chain"]), changes["single"])
+        own["chain"] = _set_indexed_parameters(replace(model.chain, **changes["chain"]), changes["single"])
     return replace(model, **own)
 
 
-def _with_singles(chain: Chain, values: Mapping[str, float]) -> Chain:
-    """Return a chain at other values of the numbers of some springs and blocks."""
+def _set_indexed_parameters(chain: Chain, values: Mapping[str, float]) -> Chain:
+    """Return a chain with other values at some springs and blocks."""
     numbers: dict[str, Any] = {}
     for name, value in values.items():
-        key, number = single_of(name)  # type: ignore[misc]
-        numbers.setdefault(key, chain.numbers_of(key).tolist())[number - 1] = value
+        key, number = parse_indexed_name(name)  # type: ignore[misc]
+        numbers.setdefault(key, chain.parameter_values(key).tolist())[number - 1] = value
     return replace(chain, **numbers) if numbers else chain
 
 
-def _given(model: Model, name: str) -> Any:
-    """Return a parameter in the form in which the model has it."""
-    single = single_of(name)
+def _stored_value(model: Model, name: str) -> Any:
+    """Return a parameter as the model stores it: a number, several numbers or a word."""
+    single = parse_indexed_name(name)
     if single:
-        return _single(model.chain, name, *single)
-    names = names_of(model)
+        return _indexed_value(model.chain, name, *single)
+    names = parameter_names(model)
     if name not in names:
-        raise ValueError(f"{full_key('', name)}: not a parameter of this model, expected {words_of(model)}")
+        raise ValueError(
+            f"{full_key('', name)}: not a parameter of this model, expected {format_parameter_names(model)}"
+        )
     if names.count(name) > 1:
-        raise ValueError(f"{name}: got a number of the law {model.law.name} and one of the model, expected one of them")
-    if name in CHAIN:
+        raise ValueError(f"{name}: got a parameter of both the law {model.law.name} and the model, expected only one")
+    if name in CHAIN_PARAMETERS:
         return getattr(model.chain, name)
-    return {"a": model.a, "v": model.v, **model.law.numbers}[name]
+    return {"a": model.a, "v": model.v, **model.law.parameters}[name]
 
 
-def _single(chain: Chain, name: str, key: str, number: int) -> float:
-    """Return the number of one spring or block, by its name and the parts of it."""
-    count, of = chain.count_of(key), "spring" if key in SPRING_NUMBERS else "block"
-    if key in SPRING_NUMBERS and chain.is_network:
-        raise ValueError(f"{name}: got one spring of a network, expected {key}: only rows and rings number them")
+def _indexed_value(chain: Chain, name: str, key: str, number: int) -> float:
+    """Return the value at one spring or block; `key` and `number` are the parts of its name."""
+    count, of = chain.parameter_count(key), "spring" if key in SPRING_PARAMETERS else "block"
+    if key in SPRING_PARAMETERS and chain.is_network:
+        raise ValueError(f"{name}: got one spring of a network, expected {key}: only rows and rings number springs")
     if not 1 <= number <= count:
-        allowed = f"1 to {count}" if count else "none: a single block has no neighbour"
+        allowed = f"1 to {count}" if count else "none, as a single block has no neighbour"
         raise ValueError(f"{name}: got {of} {number}, expected {allowed}")
-    return float(chain.numbers_of(key)[number - 1])
+    return float(chain.parameter_values(key)[number - 1])

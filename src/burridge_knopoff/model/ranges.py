@@ -1,7 +1,7 @@
-"""Ranges: the allowed values of a setting. A range converts a value to its form or refuses it, and describes itself.
+"""Ranges: the allowed values of a setting. A range converts a value to its form or rejects it, and describes itself.
 
-Form: 3 becomes 3.0 where a number need not be whole, a list becomes a tuple, and NumPy's types become Python's. A
-refusal is a ValueError of one line, `key: got X, expected Y`. The key is that of the part at fault, such as
+In its form a value has Python's types: 3 becomes 3.0 if the number need not be whole, and a list becomes a tuple. A
+rejected value raises a ValueError of one line, `key: got X, expected Y`, with the key of the part at fault, such as
 `initial.minus.position[1]`.
 """
 
@@ -16,7 +16,7 @@ import numpy as np
 
 from burridge_knopoff.values import full_key, real_number, refusal, scalar
 
-#: Stands for no limit: numbers still have to be finite.
+#: Means no limit, except that numbers must be finite.
 HUGE = 1e300
 
 
@@ -24,14 +24,14 @@ class Range:
     """The allowed values of a setting; `str(range)` describes them."""
 
     def form(self, value: Any, key: str) -> Any:
-        """Return a value in its form; raises ValueError, one line, if it is out of range."""
+        """Return a value in its form. Raises ValueError, one line, if it is out of range."""
         fitting = self._fit(value, key)
         if fitting is None:
             raise refusal(key, value, self)
         return fitting
 
     def _fit(self, value: Any, key: str) -> Any:
-        """Return a value in its form, or None if it is out of range; raises ValueError if a part of it is."""
+        """Return a value in its form, or None if it is out of range. Raises ValueError if a part of it is."""
         raise NotImplementedError
 
 
@@ -55,21 +55,21 @@ class Number(Range):
         return number if fits else None
 
     def __str__(self) -> str:
-        return f"{'0 or ' * self.or_zero}a {limited('number', self.least, self.most, self.above)}"
+        return f"{'0 or ' * self.or_zero}a {describe_limits('number', self.least, self.most, self.above)}"
 
 
-def limited(noun: str, least: float, most: float, above: bool = False) -> str:
+def describe_limits(noun: str, least: float, most: float, above: bool = False) -> str:
     """Describe a number and its limits; `above`: the lower limit is excluded."""
     if least <= -HUGE:
-        return f"finite {noun}" if most >= HUGE else f"{noun} of at most {_plain(most)}"
+        return f"finite {noun}" if most >= HUGE else f"{noun} of at most {_format_limit(most)}"
     if most >= HUGE:
-        return f"{noun} {'above' if above else 'of at least'} {_plain(least)}"
+        return f"{noun} {'above' if above else 'of at least'} {_format_limit(least)}"
     if above:
-        return f"{noun} above {_plain(least)} and at most {_plain(most)}"
-    return f"{noun} between {_plain(least)} and {_plain(most)}"
+        return f"{noun} above {_format_limit(least)} and at most {_format_limit(most)}"
+    return f"{noun} between {_format_limit(least)} and {_format_limit(most)}"
 
 
-def _plain(limit: float) -> str:
+def _format_limit(limit: float) -> str:
     return str(limit) if isinstance(limit, int) else f"{limit:g}"
 
 
@@ -82,7 +82,7 @@ class Whole(Number):
         return int(value) if is_whole else None
 
     def __str__(self) -> str:
-        return f"a {limited('whole number', self.least, self.most)}"
+        return f"a {describe_limits('whole number', self.least, self.most)}"
 
 
 @dataclass(eq=False, repr=False)
@@ -196,6 +196,6 @@ class Either(Range):
         return " or ".join(map(str, self.ranges))
 
 
-#: Shares and tolerances.
+#: Fractions and tolerances.
 SHARE = Number(0.0, 1.0)
 TOLERANCE = Number(0.0, 1.0, above=True)

@@ -1,4 +1,4 @@
-"""Initial states drawn at random from a stated box, with a fixed seed, and confidence intervals of their fractions."""
+"""Random initial states in a box, with a fixed seed, and confidence intervals for fractions of them."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from burridge_knopoff.model.ranges import Interval, Number, Whole
 POSITIONS = (-1.5, 1.5)
 VELOCITIES = (0.0, 0.2)
 
-#: Ranges of what a box and a sample are given by.
+#: Ranges of the box and of the number of states.
 POSITION = Interval(COORDINATE)
 VELOCITY = Interval(Number(0.0, 1e6))
 SAMPLES = Whole(1, 100_000)
@@ -24,7 +24,7 @@ CONFIDENCE = 0.95
 
 
 def seed_at(seed: int, a: float) -> list[int]:
-    """Return a seed of samples that are drawn anew at each a: those of neighbours are not wrong together."""
+    """Return a seed for independent samples at each a, so that errors at neighbouring values are uncorrelated."""
     return [seed, int(np.float64(a).view(np.uint64))]
 
 
@@ -35,7 +35,8 @@ def sample_states(
 
     position, velocity : (low, high) of every U_i(0) and every U_i'(0)
     seed : one number, or several
-    The first states of a longer sample are those of a shorter one.
+
+    A larger sample begins with the states of a smaller one.
     """
     generator = np.random.default_rng([*np.atleast_1d(seed).tolist(), blocks])
     unit = generator.random((count, 2, blocks))
@@ -45,7 +46,7 @@ def sample_states(
     return states[:, 0], states[:, 1]
 
 
-def sampled_states(
+def sample_initial_states(
     blocks: int, count: int, position: Sequence[float], velocity: Sequence[float], seed: int | Sequence[int]
 ) -> list[InitialState]:
     """Return the states of `sample_states` one by one, named state1, state2, …"""
@@ -55,8 +56,8 @@ def sampled_states(
     ]
 
 
-def most_states(width: float) -> int:
-    """Return how many states give any fraction a confidence interval of that half width."""
+def required_samples(width: float) -> int:
+    """Return the number of states with which the confidence interval of any fraction has at most this half-width."""
     count = 0 if width >= 0.5 else math.ceil(0.5 / width)
     while count and half_width(count // 2, count) > width:
         count = math.ceil(1.01 * count)
@@ -64,7 +65,7 @@ def most_states(width: float) -> int:
 
 
 def half_width(hits: int, count: int) -> float:
-    """Return half the width of the confidence interval of hits/count; 0.5 for no trials."""
+    """Return the half-width of the confidence interval of hits/count; 0.5 for no trials."""
     _, low, high = fraction_interval(hits, count)
     return 0.5 * (high - low) if count else 0.5
 
@@ -77,8 +78,8 @@ def fraction_interval(hits: int, count: int) -> tuple[float, float, float]:
     """
     if count == 0:
         return np.nan, np.nan, np.nan
-    # Imported only here: it would be a fifth of the start of every `snakemake`, which reads claims and counts nothing.
-    # `scipy.stats` has it too, and takes more than half a second.
+    # Imported here because the import takes a fifth of the start of every `snakemake`, which computes no interval.
+    # `scipy.stats`, which has the same function, takes more than half a second.
     import scipy.special
 
     z = float(scipy.special.ndtri(0.5 + 0.5 * CONFIDENCE))

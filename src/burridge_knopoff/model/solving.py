@@ -12,43 +12,43 @@ if TYPE_CHECKING:
     from burridge_knopoff.model.chain import Chain
 
 #: Rows and rings of up to this many blocks are solved by elimination.
-ELIMINATED = 1024
-#: Corrections of a solution at most; each one gains several digits.
+ELIMINATION_LIMIT = 1024
+#: Maximum number of corrections of a solution; each one adds several digits.
 _CORRECTIONS = 20
-#: Relative error at which a solution is right in twice the digits of a double.
-_ENOUGH = 1e-31
+#: Relative error at which a solution is correct to twice the precision of a double.
+_TOLERANCE = 1e-31
 _SPLITTER = 2.0**27 + 1.0
 
 
 def static_displacement(chain: Chain) -> np.ndarray:
     """Return x with K x = threshold, shape (blocks,), as symmetric to the bit as the chain."""
-    if chain.is_network or chain.blocks > ELIMINATED:
+    if chain.is_network or chain.blocks > ELIMINATION_LIMIT:
         return nearest_solution(chain.sparse_stiffness, chain.thresholds)
-    solve = ring_eliminated if chain.ends == "ring" else eliminated
-    found = solve(chain.diagonal, chain.after, chain.thresholds.copy())
+    solve = solve_ring if chain.ends == "ring" else solve_tridiagonal
+    found = solve(chain.diagonal, chain.coupling_to_next, chain.thresholds.copy())
     if chain.ends == "ring":
-        # Make it periodic to the bit, like the ring, so that a periodic state stays periodic.
+        # The solution is made periodic to the bit, as the ring is, so that a periodic state stays periodic.
         period = _period(chain)
         found = np.tile(found[:period], chain.blocks // period)
     if chain.is_mirror_symmetric:
-        # Make it mirror-symmetric to the bit, like the chain.
+        # The solution is made mirror-symmetric to the bit, as the chain is.
         found = 0.5 * (found + found[::-1])
     return found
 
 
 def _period(ring: Chain) -> int:
     """Return the smallest shift along a ring that leaves springs and thresholds unchanged, in blocks."""
-    values = np.array([ring.before, ring.driving, ring.thresholds])
+    values = np.array([ring.coupling_to_previous, ring.driving, ring.thresholds])
     return next(shift for shift in range(1, ring.blocks + 1) if np.array_equal(values, np.roll(values, shift, axis=1)))
 
 
-def eliminated(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
+def solve_tridiagonal(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
     """Solve a tridiagonal system by elimination; changes `load`.
 
     strength : of the spring from each block to the next one, shape (blocks,)
 
-    Not by LAPACK: the last bit of LAPACK's result depends on the memory addresses of its arguments, so that all numbers
-    of a study would change with the folder it runs in.
+    LAPACK is not used because the last bit of its result depends on the memory addresses of its arguments: all results
+    of a study would change with the folder in which it runs.
     """
     pivot = diagonal.copy()
     for i in range(1, len(load)):
@@ -59,23 +59,23 @@ def eliminated(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> 
     return load
 
 
-def ring_eliminated(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
-    """Solve the system of a ring, a tridiagonal one with corners; strength[-1] is that of the corners."""
+def solve_ring(diagonal: np.ndarray, strength: np.ndarray, load: np.ndarray) -> np.ndarray:
+    """Solve the system of a ring, which is tridiagonal except for its corners, of strength strength[-1]."""
     # The corners are a rank-one update: the Sherman-Morrison formula.
     pivot, corner = diagonal.copy(), np.zeros(len(load))
     for end in (0, -1):
         pivot[end] += strength[-1]
         corner[end] += 1.0
-    load = eliminated(pivot, strength, load)
-    other = eliminated(pivot, strength, corner)
+    load = solve_tridiagonal(pivot, strength, load)
+    other = solve_tridiagonal(pivot, strength, corner)
     return load + strength[-1] * other * (load[0] + load[-1]) / (1.0 - strength[-1] * (other[0] + other[-1]))
 
 
 def nearest_solution(matrix: csr_array, load: np.ndarray) -> np.ndarray:
     """Return the doubles nearest to the exact solution of a sparse, positive definite system.
 
-    SuperLU solves it, and iterative refinement in twice the precision makes the result independent of the rounding of
-    SuperLU, which differs from run to run, and as symmetric as the system.
+    The rounding errors of SuperLU differ from run to run. Iterative refinement in twice the precision makes the result
+    independent of them, and as symmetric as the system.
 
     Reference: N. J. Higham, Accuracy and Stability of Numerical Algorithms (2002), chapter 12.
     """
@@ -91,7 +91,7 @@ def nearest_solution(matrix: csr_array, load: np.ndarray) -> np.ndarray:
             break
         last, low = size, low + change
         high, low = _sum(high, low)
-        if size <= _ENOUGH * float(np.abs(high).max()):
+        if size <= _TOLERANCE * float(np.abs(high).max()):
             break
     return high
 
@@ -117,7 +117,7 @@ def _product(one: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray
 def _residual(matrix: csr_array, load: np.ndarray, high: np.ndarray, low: np.ndarray) -> np.ndarray:
     """Return load − K (high + low), to twice the precision of a double.
 
-    The terms of each row are cut into parts whose sums are exact, so that their order does not count (S. M. Rump,
+    The terms of each row are split into parts whose sums are exact, so that their order does not matter (S. M. Rump,
     T. Ogita and S. Oishi, SIAM J. Sci. Comput. 31 (2008) 189).
     """
     start, count = matrix.indptr[:-1], np.diff(matrix.indptr)

@@ -22,7 +22,7 @@ _LINES = (
     f"lines `block block strength` or `block block strength damping`, with blocks from 1 to {MAXIMUM_BLOCKS}, "
     f"strength {STRENGTH} and damping {DAMPING}"
 )
-_STATED = re.compile(r"(?s:(.+))@([0-9a-f]{16})")
+_NAME_WITH_DIGEST = re.compile(r"(?s:(.+))@([0-9a-f]{16})")
 
 
 class Neighbours(NamedTuple):
@@ -46,7 +46,7 @@ class Neighbours(NamedTuple):
         return np.repeat(np.arange(len(self.start) - 1), np.diff(self.start))
 
 
-def _listed(index: np.ndarray, strength: np.ndarray, damping: np.ndarray) -> Neighbours:
+def _compress(index: np.ndarray, strength: np.ndarray, damping: np.ndarray) -> Neighbours:
     """Return neighbours from tables with a row for each block; entries of strength 0 are left out."""
     joined = strength > 0.0
     start = np.concatenate([[0], np.cumsum(joined.sum(axis=1))])
@@ -54,25 +54,27 @@ def _listed(index: np.ndarray, strength: np.ndarray, damping: np.ndarray) -> Nei
     return Neighbours(*map(read_only_copy, (start.astype(np.int64), index[joined].astype(np.int64), *numbers)))
 
 
-def along(strength: np.ndarray, damping: np.ndarray) -> Neighbours:
-    """Return the neighbours in a row or a ring: the previous block, then the next one.
+def row_neighbours(strength: np.ndarray, damping: np.ndarray) -> Neighbours:
+    """Return the neighbours in a row or a ring: the previous block, then the next.
 
     strength, damping : of the springs and dashpots to the previous block, shape (blocks,), 0 at an open end
     """
     block = np.arange(len(strength))
     numbers = (np.stack([values, np.roll(values, -1)], axis=1) for values in (strength, damping))
-    return _listed(np.stack([np.roll(block, 1), np.roll(block, -1)], axis=1), *numbers)
+    return _compress(np.stack([np.roll(block, 1), np.roll(block, -1)], axis=1), *numbers)
 
 
-def of_grid(columns: int, rows: int, strength: float, damping: float) -> Neighbours:
+def grid_neighbours(columns: int, rows: int, strength: float, damping: float) -> Neighbours:
     """Return the neighbours in a grid with open edges: left, right, down, up; block number is ix + columns * iy."""
     block = np.arange(columns * rows)
     ix, iy = block % columns, block // columns
     joined = np.stack([ix > 0, ix < columns - 1, iy > 0, iy < rows - 1], axis=1)
-    return _listed(block[:, None] + np.array([-1, 1, -columns, columns]), strength * joined, damping * joined)
+    return _compress(block[:, None] + np.array([-1, 1, -columns, columns]), strength * joined, damping * joined)
 
 
-def of_edges(one: np.ndarray, other: np.ndarray, strength: np.ndarray, damping: np.ndarray, blocks: int) -> Neighbours:
+def network_neighbours(
+    one: np.ndarray, other: np.ndarray, strength: np.ndarray, damping: np.ndarray, blocks: int
+) -> Neighbours:
     """Return the neighbours in a network, in ascending order; one, other : the blocks (0 …) that each spring joins."""
     block, index = np.concatenate([one, other]), np.concatenate([other, one])
     order = np.lexsort((index, block))
@@ -84,8 +86,8 @@ def of_edges(one: np.ndarray, other: np.ndarray, strength: np.ndarray, damping: 
 class SpringsFile(Range):
     """The name of a file of springs. Its form ends with a digest of the content: `faults.txt@0123456789abcdef`.
 
-    The digest makes a changed file another value, so that results made with the old one are out of date. A name that
-    has a digest already is not read before its springs are needed.
+    With the digest a changed file is a different value, so that results of the old file are out of date. A file whose
+    name already has a digest is not read until its springs are needed.
     """
 
     def _fit(self, value: Any, key: str) -> str | None:
@@ -98,19 +100,19 @@ class SpringsFile(Range):
 
 
 def has_digest(springs: str) -> bool:
-    """Tell whether a name of a file of springs ends with the digest of its content."""
-    return _STATED.fullmatch(springs) is not None
+    """Return whether the name of a file of springs ends with the digest of its content."""
+    return _NAME_WITH_DIGEST.fullmatch(springs) is not None
 
 
 @lru_cache(maxsize=4)
 def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Return the springs of a file: the blocks (0 …) that each one joins, its strength and its dashpot.
+    """Return the springs of a file: the two blocks (0 …) that each spring joins, its strength and its dashpot.
 
     springs : name of the file and digest, as `SpringsFile` returns it
 
-    Raises ValueError, one line, if the file cannot be read, has other content, or is no list of springs.
+    Raises ValueError, one line, if the file cannot be read, has other content, or is not a list of springs.
     """
-    path, digest = _STATED.fullmatch(springs).groups()  # type: ignore[union-attr]
+    path, digest = _NAME_WITH_DIGEST.fullmatch(springs).groups()  # type: ignore[union-attr]
     content = _content(path)
     if _digest(content) != digest:
         raise ValueError(f"chain.springs: got {path} with the digest {_digest(content)}, expected {digest}")
@@ -120,9 +122,9 @@ def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
             warnings.simplefilter("ignore", UserWarning)
             table = np.loadtxt(content.decode().splitlines(), ndmin=2)
     except ValueError as error:
-        raise _refused(path, str(error).split(";")[0].rstrip(".")) from None
+        raise _file_error(path, str(error).split(";")[0].rstrip(".")) from None
     if not table.size or table.shape[1] not in (3, 4):
-        raise _refused(path, f"{table.shape[1] if table.size else 0} columns")
+        raise _file_error(path, f"{table.shape[1] if table.size else 0} columns")
     blocks, strength = table[:, :2], table[:, 2]
     damping = table[:, 3] if table.shape[1] == 4 else np.zeros(len(table))
     pair = np.sort(blocks, axis=1)
@@ -139,7 +141,7 @@ def read_edges(springs: str) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.nda
     ):
         if wrong.any():
             row = table[np.flatnonzero(wrong)[0]]
-            raise _refused(path, f"{' '.join(f'{value:g}' for value in row)}{reason}")
+            raise _file_error(path, f"{' '.join(f'{value:g}' for value in row)}{reason}")
     one, other = blocks.T.astype(np.int64) - 1
     return read_only_copy(one), read_only_copy(other), read_only_copy(strength), read_only_copy(damping)
 
@@ -155,5 +157,5 @@ def _digest(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()[:16]
 
 
-def _refused(path: str, given: str) -> ValueError:
+def _file_error(path: str, given: str) -> ValueError:
     return ValueError(f"chain.springs: {path}: got {given}, expected {_LINES}")

@@ -1,9 +1,9 @@
-"""Do the mirror blocks of a chain synchronize? Sampled initial states are watched, and symmetric motion is perturbed.
+"""Synchronization of the mirror blocks of a chain, from random initial states and from perturbed symmetric motion.
 
-Blocks i and j = N + 1 − i are mirror blocks. The distance of a pair is J_i = sqrt((U_i' − U_j')² + (U_i − U_j)²), J of
-the paper for the end blocks; the mirror distance is the largest of them. For odd N the middle block belongs to no pair.
-All of this is for chains that are their own mirror images; others are refused. `summaries.chains` writes what is
-found to files, and `figures.chains` draws it.
+Blocks i and j = N + 1 − i are mirror blocks. The distance of a pair is J_i = sqrt((U_i' − U_j')² + (U_i − U_j)²), which
+is the paper's J for the end blocks; the mirror distance is the largest of these distances. For odd N the middle block
+belongs to no pair. The chain must be its own mirror image. `summaries.chains` writes the results to files, and
+`figures.chains` draws them.
 """
 
 from __future__ import annotations
@@ -37,41 +37,43 @@ class Outcome(IntEnum):
     SYNCHRONIZED = 1
 
 
-# Time between two looks at the distances; no multiple of the period of the synchronous motion, about 5.6.
+# Time between two checks of the distances; not a multiple of the period of the synchronized motion, about 5.6.
 INTERVAL = 20.0
 
-# The distance still falls if its maximum over a quarter of the run is below this share of that over the quarter before.
-FALLING = 0.5
+# The distance still falls if its maximum over a quarter of the run, divided by that over the quarter before, is below
+# this.
+DECREASE = 0.5
 
-# Motion that stays nearer to symmetric motion than this, for v = 0.1, is judged by the transverse exponent there.
-NEAR = 0.01
+# Motion closer than this to symmetric motion, for v = 0.1, is judged by the transverse exponent of the symmetric
+# motion.
+NEAR_SYMMETRY = 0.01
 STANDARD_ERRORS = 3.0
 
-# Symmetric motion is made symmetric again, and its perturbation scaled to length 1, after this time at most, in the
-# chain's own unit, as the times below are.
+# Longest time after which the motion is made symmetric again and its perturbation rescaled to length 1. This time and
+# those below are in the chain's own unit.
 RENEWAL = 10.0
 
-# Time for a perturbation to turn into the direction that grows most, where the motion itself has settled.
+# Time in which a perturbation aligns with the direction of fastest growth, if the motion itself has settled.
 ALIGNMENT = 200.0
 BATCHES = 5
 
-# A batch holds such a time at least, about two periods of synchronous motion: less shows nothing of its own scatter.
+# A batch lasts at least RENEWAL, about two periods of the synchronized motion: shorter batches underestimate the error.
 SHORTEST_WINDOW = BATCHES * RENEWAL
 
 
 @dataclass(frozen=True)
 class Fate:
-    """What became of a state.
+    """The fate of a state.
 
-    outcome : synchronized, the mirror distance has reached the synchronization distance and the transverse exponent
-        of the motion there is negative; undetermined, that exponent is not negative; or at the time limit the distance
-        still falls, or is small and the transverse exponent is not positive beyond its error; or the run failed; else
-        not synchronized
-    time : when the synchronization distance was reached, NaN if it was not
-    distance, mean_distance : largest and mean mirror distance in the last quarter of the time limit; at `time`, if it
-        was reached
-    pairs : number of pairs below the synchronization threshold in the last quarter; all of them, if synchronized
-    transverse_exponent : of the symmetric motion that was reached or is near
+    outcome : synchronized if the mirror distance reached the synchronization distance and the transverse exponent of
+        the motion there is negative. Undetermined if this exponent is not negative; if at the time limit the distance
+        still falls, or is small while the transverse exponent is not positive beyond its error; or if the run failed.
+        Otherwise not synchronized
+    time : time at which the synchronization distance was reached, NaN if it was not
+    distance, mean_distance : largest and mean mirror distance in the last quarter of the time limit, or the distance at
+        `time`
+    pairs : number of pairs below the synchronization threshold in the last quarter; all pairs if synchronized
+    transverse_exponent : exponent of the symmetric motion that was reached or approached
     """
 
     outcome: Outcome
@@ -83,14 +85,14 @@ class Fate:
 
 
 def window_range(chain: Chain) -> Number:
-    """Return the windows over which a transverse exponent of a chain has an error."""
+    """Return the range of windows for which the transverse exponent of a chain has an error."""
     return Number(SHORTEST_WINDOW * chain.own_units.time, LONGEST)
 
 
 def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate:
-    """Watch a state until it has synchronized or the time limit is over.
+    """Watch a state until it has synchronized or the time limit is reached.
 
-    runner : `Runner(model)`, for any number of states
+    runner : `Runner(model)`, which can be used for many states
 
     Raises ValueError if the chain is not its own mirror image.
     """
@@ -111,9 +113,9 @@ def watch_state(runner: Runner, start: ChainState, watch: Watch = WATCH) -> Fate
             return Fate(outcome, check * INTERVAL, nearest, nearest, len(distances), exponent)
     quarter = len(history) // 4
     last, before = np.array(history[-quarter:]), np.array(history[-2 * quarter : -quarter])
-    undetermined = last.max() < FALLING * before.max()
+    undetermined = last.max() < DECREASE * before.max()
     exponent = math.nan
-    if last.max() < NEAR * model.scale:
+    if last.max() < NEAR_SYMMETRY * model.scale:
         exponent, error = transverse_exponent(model, runner.state(), *_times(model, watch))
         undetermined |= not exponent > STANDARD_ERRORS * error
     return Fate(
@@ -130,18 +132,18 @@ def transverse_exponent(
 ) -> tuple[float, float]:
     """Return the largest transverse Lyapunov exponent of the mirror-symmetric motion from a state, and its error.
 
-    The state is made symmetric, and an antisymmetric perturbation is carried along exactly (see `kernel.tangent`). The
-    exponent is its mean rate of growth over the window, which begins after a time of alignment. Negative: mirror blocks
-    that are near each other synchronize. NaN if the run fails, −∞ if the perturbation vanishes. Raises ValueError if
-    the chain is not its own mirror image, and for times that are not allowed.
+    The state is made symmetric, and an antisymmetric perturbation is propagated exactly (see `kernel/tangent.h`). The
+    exponent is its mean growth rate over the window, which begins after the alignment time. If it is negative, mirror
+    blocks that are close to each other synchronize. It is NaN if the run fails, and −∞ if the perturbation vanishes.
+    Raises ValueError if the chain is not its own mirror image, and for times that are not allowed.
 
-    Two things go into the error: the scatter of BATCHES equal batches, and what the length of the perturbation owes to
-    the phases at which the window begins and ends. If a batch lasts about a whole number of periods all of them have
-    the same share of that, and their scatter shows nothing of it.
+    The error combines the standard error of BATCHES equal batches and the effect of the phases at which the window
+    begins and ends. If a batch lasts about a whole number of periods, this effect is the same in all batches and does
+    not contribute to their scatter.
 
-    model, state : any state of a motion, as `Model.begin` and `Orbit.reference` are
-    alignment, window : in units of 1/ω, as the exponent is in units of ω; by default 200 and 2500, and the window 50 at
-        least, times as much as the chain is slower than the paper's: `Chain.own_units`
+    model, state : any state of a motion, such as that of `Model.begin` or `PeriodicOrbit.reference`
+    alignment, window : times in units of 1/ω, as the exponent is in units of ω; by default 200 and 2500, multiplied by
+        the time unit of the chain (`Chain.own_units`), and the window is at least 50 of these units
 
     >>> from burridge_knopoff import Chain, InitialState, Model, law_of, transverse_exponent
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -158,7 +160,7 @@ def transverse_exponent(
     own = model.chain.own_units.state(blocks)[:, None]
     check_state(model, state)
     index = np.arange(2 * blocks)
-    # A direction of no special symmetry but this one.
+    # A direction without special symmetry, except antisymmetry.
     perturbation = _antisymmetric(np.cos(1.0 + 2.3 * index)[:, None])
     runner = Runner(model, perturbations=perturbation * own)
     renewal = RENEWAL * unit
@@ -172,16 +174,16 @@ def transverse_exponent(
             return -math.inf, math.nan
         perturbation /= length
         runner.carry(perturbation * own)
-        after = runner.after(state, alignment / before if step < 0 else window / steps)
+        after = runner.state_after(state, alignment / before if step < 0 else window / steps)
         if after is None:
             return math.nan, math.nan
-        # Rounding grows where symmetric motion is unstable; it is taken away before it counts.
+        # Rounding errors grow if the symmetric motion is unstable; they are removed before they matter.
         state = symmetrized(after)
         perturbation = _antisymmetric(runner.perturbations / own)
         if step >= 0:
             growth[step] = 0.5 * math.log(max(math.fsum(perturbation[:, 0] ** 2), 1e-300))
     rate = growth.reshape(BATCHES, -1).sum(axis=1) / (window / BATCHES)
-    # What is left of the growth so far without its trend changes with the phase; the window has that of two instants.
+    # The deviation of the growth from its trend depends on the phase; the window has the deviations at both ends.
     by_phase = np.cumsum(growth - growth.mean()).std() * math.sqrt(2.0) / window
     return float(rate.mean()), math.hypot(rate.std(ddof=1) / math.sqrt(BATCHES), by_phase)
 
@@ -189,16 +191,17 @@ def transverse_exponent(
 def watch_chain(
     models: Sequence[Model], grid: Sequence[float], sample: Sample = SAMPLE, watch: Watch = WATCH
 ) -> dict[str, np.ndarray]:
-    """Watch all sampled states of a chain under each law at each a of a grid.
+    """Watch all states of a sample under each law at each a of a grid.
 
-    models : one for each law, at any a, all of the same number of blocks
-    sample : drawn anew at each a, for all laws alike: laws are compared from the same states, and neighbouring values
-        of a do not err together
+    models : one for each law, at any a, all with the same number of blocks
+    sample : independent at each a, the same for all laws, so that the laws are compared from the same states and errors
+        at neighbouring values of a are uncorrelated
 
-    Returns arrays of shape (models, grid, states): the fields of `Fate`; of shape (models, grid, symmetric samples):
-    `symmetric_exponent` and its error, the largest transverse exponent of symmetric motion after a quarter of the time
-    limit, over another quarter; and of shape (models, grid): `lyapunov_exponent`, the largest one of the first state in
-    the second half of the time limit, and its error. Raises ValueError if the chain is not its own mirror image.
+    Returns arrays. Shape (models, grid, states): the fields of `Fate`. Shape (models, grid, symmetric samples):
+    `symmetric_exponent`, the largest transverse exponent of symmetric motion over the second quarter of the time limit,
+    and `symmetric_error`. Shape (models, grid): `lyapunov_exponent`, the largest Lyapunov exponent of the first state
+    over the second half of the time limit, and `lyapunov_error`. Raises ValueError if the chain is not its own mirror
+    image.
     """
     shape = (len(models), len(grid))
     results: dict[str, np.ndarray] = {
@@ -208,7 +211,7 @@ def watch_chain(
     }
     for i, of_law in enumerate(models):
         for j, a in enumerate(grid):
-            model, initial = of_law.at(a), sample.initial(of_law.blocks, a)
+            model, initial = of_law.at(a), sample.initial_states(of_law.blocks, a)
             runner = Runner(model)
             for k, state in enumerate(initial):
                 fate = watch_state(runner, model.begin(state, sample.start), watch)
@@ -234,17 +237,17 @@ def _lyapunov_exponent(model: Model, initial: InitialState, start: str, watch: W
 
 
 def _times(model: Model, watch: Watch) -> tuple[float, float]:
-    """Return the time of alignment, and a quarter of the time limit or the shortest window with an error."""
+    """Return the alignment time, and a quarter of the time limit or the shortest window that gives an error."""
     unit = model.chain.own_units.time
     return ALIGNMENT * unit, max(watch.quarter, SHORTEST_WINDOW * unit)
 
 
 def _check_mirror(model: Model) -> None:
     if not model.chain.is_mirror_symmetric:
-        raise ValueError("chain: expected one that is its own mirror image: only such a chain has mirror blocks")
+        raise ValueError("chain: expected a chain that is its own mirror image: only such a chain has mirror blocks")
 
 
 def _antisymmetric(perturbation: np.ndarray) -> np.ndarray:
-    """Return the part of a perturbation, shape (2 blocks, 1), that changes its sign in the mirror."""
+    """Return the part of a perturbation, shape (2 blocks, 1), that changes its sign under reflection."""
     tables = perturbation.reshape(2, -1)
     return (0.5 * (tables - tables[:, ::-1])).reshape(-1, 1)

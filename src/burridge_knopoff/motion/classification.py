@@ -1,7 +1,8 @@
-"""What kind of motion a trajectory has settled on, in windows as long as it takes to tell a torus from weak chaos.
+"""The kind of motion on which a trajectory has settled, in windows long enough to distinguish a torus from weak chaos.
 
-Most kinds show in the usual window. What may be a torus takes more, rung by rung: a closed orbit to which it is locked,
-the growth of perturbations in a longer window, exponents in one that is longer still, and in the longest one.
+Most kinds are decided in the usual window. Motion that may lie on a torus takes more tests: a search for a periodic
+orbit to which it is locked, the growth of perturbations in a longer window, and exponents in two windows that are
+longer still.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.kind import CHAOS, MotionKind, chaotic_kind, closed_kind, judged_distance
+from burridge_knopoff.motion.kind import CHAOS, MotionKind, chaotic_kind, periodic_orbit_kind, synchronization_distance
 from burridge_knopoff.motion.observables import SteadyMotion, observe, run_options
 from burridge_knopoff.motion.phase_locking import locked_orbit
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near
@@ -21,25 +22,26 @@ from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.running.simulation import run
 
-#: Error of ⟨J⟩ of an attractor that is followed once more, beyond its standard errors, for v = 0.1.
-SAME_MEAN = 1e-3
+#: Difference of ⟨J⟩ between two runs on the same attractor beyond their standard errors, for v = 0.1.
+MEAN_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
 class Classifier:
-    """Measures settled motion and tells its kind.
+    """Measures settled motion and determines its kind.
 
-    transient : in which perturbations turn into the directions of the exponents
-    window : the usual one; the others are given in units of it
+    transient : time in which perturbations align with the directions of the exponents
+    window : the usual window; the other windows are given in units of it
     settings : the thresholds, for v = 0.1
-    growth_window : on a torus perturbations grow in proportion to time at most, and the logarithm of what they gain in
-        this window hardly exceeds the share `regular_growth` of what that makes; in chaos it grows with the window.
-        Below that share the motion is regular, above `chaotic_growth` chaotic. In between longer windows decide; with 0
-        they always do. Of 583 tori and locked tori one gained more than 3.6, 18 on an orbit longer than the window; of
-        53 chaotic motions with exponents below 0.002 four gained less than 1.4, all with exponents below 2.2e-4
-    longer_window : an exponent of 0.001 is beyond its error in it. In one four times longer closed orbits that hardly
-        attract have not closed
-    longest_window : exponents of 3e-5 are beyond their error in it
+    growth_window : window in which the growth of perturbations is tested; 0 skips this test. On a torus perturbations
+        grow at most in proportion to time, and the logarithm of their growth rarely exceeds `regular_growth` times the
+        logarithm for linear growth. In chaos it is proportional to the window. The motion is regular below the first
+        limit and chaotic above `chaotic_growth`; in between longer windows decide. Of 583 tori and locked tori only one
+        gained more than 3.6: 18, on an orbit longer than the window. Of 53 chaotic motions with exponents below 0.002
+        four gained less than 1.4, all with exponents below 2.2e-4
+    longer_window : window in which an exponent of 0.001 exceeds its error. Even in a window four times as long, some
+        weakly attracting periodic orbits do not repeat
+    longest_window : window in which an exponent of 3e-5 exceeds its error
     """
 
     model: Model
@@ -53,22 +55,23 @@ class Classifier:
     longest_window: float = 100.0
 
     def measure(self, start: ChainState) -> SteadyMotion | None:
-        """Measure the motion from a state that has settled; None if it does not complete or hardly ever stops.
+        """Measure the motion from a settled state; None if the run does not complete or has too few stops.
 
-        Where it turns out to be on its way to another motion, its kind is left open and `left_for` is set.
+        If the motion proves to be a transient, its kind remains undecided and `left_for` is a state of the later
+        motion.
         """
         usual = self._observe(start, self.window)
-        if usual is None or not usual.is_open:
+        if usual is None or not usual.can_be_periodic:
             return usual
-        for rung in (self._locked, self._long_orbit, self._by_growth):
-            told = rung(usual, start)
-            if told is not None:
-                return told
-        return self._by_exponents(usual, start)
+        for test in (self._classify_as_locked, self._classify_as_long_orbit, self._classify_by_growth):
+            found = test(usual, start)
+            if found is not None:
+                return found
+        return self._classify_by_exponents(usual, start)
 
     @property
-    def _at_speed(self) -> MotionSettings:
-        return self.settings.at_speed(self.model.v)
+    def _scaled_settings(self) -> MotionSettings:
+        return self.settings.scaled_to_velocity(self.model.v)
 
     def _observe(
         self,
@@ -77,105 +80,109 @@ class Classifier:
         settings: MotionSettings | None = None,
         mean_distance: float | None = None,
     ) -> SteadyMotion | None:
-        return observe(self.model, start, self.transient, window, settings or self._at_speed, mean_distance)
+        return observe(self.model, start, self.transient, window, settings or self._scaled_settings, mean_distance)
 
-    def _locked(self, usual: SteadyMotion, _: ChainState) -> SteadyMotion | None:
-        """Tell the motion by the closed orbit to which it is locked; None if none is found."""
+    def _classify_as_locked(self, usual: SteadyMotion, _: ChainState) -> SteadyMotion | None:
+        """Return the motion on the periodic orbit to which it is locked; None if no such orbit is found."""
         orbit = locked_orbit(self.model, usual.returns, usual.recurrence)
-        return None if orbit is None else self._unless_left(self._on_orbit(usual, orbit), usual, orbit.reference)
+        return (
+            None if orbit is None else self._mark_if_left(self._motion_on_orbit(usual, orbit), usual, orbit.reference)
+        )
 
-    def _long_orbit(self, usual: SteadyMotion, _: ChainState) -> SteadyMotion | None:
-        """Return a motion that attracts as a closed orbit does and is longer than the window as it is."""
+    def _classify_as_long_orbit(self, usual: SteadyMotion, _: ChainState) -> SteadyMotion | None:
+        """Return the motion unchanged if its exponents are those of a periodic orbit longer than the window."""
         return usual if math.isinf(usual.period) else None
 
-    def _by_growth(self, usual: SteadyMotion, start: ChainState) -> SteadyMotion | None:
-        """Tell motion far from synchrony by the growth of two perturbations; None where that leaves it open."""
+    def _classify_by_growth(self, usual: SteadyMotion, start: ChainState) -> SteadyMotion | None:
+        """Decide motion far from synchrony by the growth of two perturbations; None if the growth is inconclusive."""
         if not self.growth_window or self._known_distance(usual) is None:
             return None
         window = self.growth_window * self.window
-        seen = observe(self.model, start, self.transient, window, self._at_speed, usual.mean_distance, exponents=2)
-        if seen is None or not seen.is_open:
+        seen = observe(
+            self.model, start, self.transient, window, self._scaled_settings, usual.mean_distance, exponents=2
+        )
+        if seen is None or not seen.can_be_periodic:
             return None
         growth = seen.exponent[0] * window
         exponent = np.concatenate([seen.exponent, usual.exponent[2:]])
         if growth >= self.chaotic_growth:
-            return replace(usual, kind=self._chaos(usual), exponent=exponent)
+            return replace(usual, kind=self._chaos_kind(usual), exponent=exponent)
         if growth > self.regular_growth * np.log1p(window / self.transient):
             return None
         if self._has_drifted(usual, seen):
             return replace(usual, left_for=seen.state())
         return replace(usual, kind=MotionKind.QUASIPERIODIC, period=seen.period, exponent=exponent)
 
-    def _by_exponents(self, usual: SteadyMotion, start: ChainState) -> SteadyMotion:
-        """Tell the motion by its exponents in the longer window, and if need be in the longest one.
+    def _classify_by_exponents(self, usual: SteadyMotion, start: ChainState) -> SteadyMotion:
+        """Decide the motion by its exponents in the longer window and, if necessary, in the longest.
 
-        The longer window shows smaller exponents, which are judged by thresholds smaller by the root of the ratio of
+        The longer window resolves smaller exponents. Their thresholds are divided by the square root of the ratio of
         the windows.
         """
         window = self.longer_window * self.window
-        scaled = self._at_speed.scaled(self.longer_window**-0.5)
+        scaled = self._scaled_settings.scaled_by(self.longer_window**-0.5)
         longer = self._observe(start, window, scaled, self._known_distance(usual))
         found, last = usual, usual.state()
         if longer is not None:
             last = longer.state()
             if longer.kind not in CHAOS and self._has_drifted(usual, longer):
                 return replace(usual, left_for=last)
-            # The returns stay those of the usual window: their number decides how attractors are told apart.
-            told = {name: getattr(longer, name) for name in ("kind", "section_period", "period", "exponent")}
-            found = replace(usual, **told)
-            orbit = locked_orbit(self.model, longer.returns, longer.recurrence) if found.is_open else None
+            # The returns remain those of the usual window, since their number affects how attractors are distinguished.
+            changed = {name: getattr(longer, name) for name in ("kind", "section_period", "period", "exponent")}
+            found = replace(usual, **changed)
+            orbit = locked_orbit(self.model, longer.returns, longer.recurrence) if found.can_be_periodic else None
             if orbit is not None:
-                return self._unless_left(self._on_orbit(found, orbit), usual, orbit.reference)
-        if not found.is_open or math.isinf(found.period):
-            return self._unless_left(found, usual, last)
+                return self._mark_if_left(self._motion_on_orbit(found, orbit), usual, orbit.reference)
+        if not found.can_be_periodic or math.isinf(found.period):
+            return self._mark_if_left(found, usual, last)
         if found.exponent[0] * window <= self.regular_growth * np.log1p(window / self.transient):
             return found
-        return self._in_longest_window(found, last)
+        return self._classify_in_longest_window(found, last)
 
-    def _in_longest_window(self, found: SteadyMotion, start: ChainState) -> SteadyMotion:
-        """Return the motion with its exponents in the longest window, as chaos if the largest is beyond its error."""
-        settings = self._at_speed
+    def _classify_in_longest_window(self, found: SteadyMotion, start: ChainState) -> SteadyMotion:
+        """Return the motion with its exponents in the longest window; chaos if the largest one exceeds its error."""
+        settings = self._scaled_settings
         options = replace(run_options(self.transient, self.longest_window * self.window, settings), events="none")
         trajectory = run(self.model, start, options, section_only=True)
         if trajectory.status != "completed":
             return found
         exponent, error = trajectory.lyapunov_exponent, trajectory.lyapunov_error
-        # Errors alone decide: they hold what growth in proportion to time looks like.
+        # No threshold is needed: the errors include linear growth.
         chaotic = exponent[0] > settings.standard_errors * error[0]
-        return replace(found, kind=self._chaos(found) if chaotic else found.kind, exponent=exponent)
+        return replace(found, kind=self._chaos_kind(found) if chaotic else found.kind, exponent=exponent)
 
-    def _unless_left(self, found: SteadyMotion, usual: SteadyMotion, last: ChainState) -> SteadyMotion:
-        """Return the motion, or where its ⟨J⟩ is another one from the last state on, as being on its way there."""
+    def _mark_if_left(self, found: SteadyMotion, usual: SteadyMotion, last: ChainState) -> SteadyMotion:
+        """Return the motion, marked as a transient if ⟨J⟩ after its last state differs."""
         if found.kind in CHAOS:
             return found
         later = self._observe(last, self.window)
-        return replace(usual, left_for=last) if later is not None and self._differ(found, later) else found
+        return replace(usual, left_for=last) if later is not None and self._has_other_mean(found, later) else found
 
     def _known_distance(self, usual: SteadyMotion) -> float | None:
-        """Return ⟨J⟩ where it is certain to be far from synchrony: the usual window is part of the longer one."""
-        far = usual.mean_distance / self.longer_window > self._at_speed.synchronization_threshold
+        """Return ⟨J⟩ if it is certain to exceed the threshold of synchrony in the longer window too, otherwise None."""
+        far = usual.mean_distance / self.longer_window > self._scaled_settings.synchronization_threshold
         return usual.mean_distance if far else None
 
     def _has_drifted(self, usual: SteadyMotion, longer: SteadyMotion) -> bool:
-        """Tell whether the last returns of a longer window lie elsewhere than those of the usual one."""
+        """Return whether the last returns of a longer window lie elsewhere than those of the usual window."""
         if usual.block != longer.block:
             return False
-        reach = max(SAME_MEAN * self.model.scale, SPACINGS * usual.spacing)
+        reach = max(MEAN_TOLERANCE * self.model.scale, SPACINGS * usual.spacing)
         return not is_near(longer.returns[-len(usual.returns) :], usual.returns, reach)
 
-    def _differ(self, one: SteadyMotion, other: SteadyMotion) -> bool:
-        """Tell whether ⟨J⟩ of two motions differs beyond its errors."""
+    def _has_other_mean(self, one: SteadyMotion, other: SteadyMotion) -> bool:
+        """Return whether ⟨J⟩ of two motions differs by more than its errors."""
         error = float(np.hypot(one.mean_distance_error, other.mean_distance_error))
-        allowed = self._at_speed.standard_errors * error + SAME_MEAN * self.model.scale
+        allowed = self._scaled_settings.standard_errors * error + MEAN_TOLERANCE * self.model.scale
         return abs(one.mean_distance - other.mean_distance) > allowed
 
-    def _on_orbit(self, motion: SteadyMotion, orbit: PeriodicOrbit) -> SteadyMotion:
-        """Return a motion that is locked to a closed orbit as motion on that; its multiplier gives an exponent."""
-        mean = judged_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
+    def _motion_on_orbit(self, motion: SteadyMotion, orbit: PeriodicOrbit) -> SteadyMotion:
+        """Return a motion that is locked to a periodic orbit with kind, period and exponents of this orbit."""
+        mean = synchronization_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
         rate = np.log(np.abs(multipliers(orbit).whole[0])) / orbit.period
-        kind = closed_kind(mean, orbit.period, self._at_speed)
+        kind = periodic_orbit_kind(mean, orbit.period, self._scaled_settings)
         return replace(motion, kind=kind, period=orbit.period, exponent=np.array([0.0, rate, *motion.exponent[2:]]))
 
-    def _chaos(self, motion: SteadyMotion) -> MotionKind:
-        mean = judged_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
-        return chaotic_kind(mean, self._at_speed)
+    def _chaos_kind(self, motion: SteadyMotion) -> MotionKind:
+        mean = synchronization_distance(motion.mean_distance, self.model.chain.is_mirror_symmetric)
+        return chaotic_kind(mean, self._scaled_settings)

@@ -1,7 +1,7 @@
 """The frequency of each block: that of the strongest line in the spectrum of its velocity.
 
-Blocks that are locked to each other have frequencies in a ratio of whole numbers, and keep it when their masses,
-springs or thresholds are made to differ. On a torus the strongest line of a block is one of its modes.
+Blocks that are locked to each other have frequencies in a ratio of whole numbers, and keep this ratio when their
+masses, springs or thresholds are made different. On a torus the strongest line of a block is that of one mode.
 """
 
 from __future__ import annotations
@@ -20,26 +20,26 @@ from burridge_knopoff.running.runner import check_state
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
 
-# The spectrum is sampled this many times finer than its resolution, so that a parabola fits the top of a peak.
+# The spectrum is sampled more finely than its resolution by this factor, so that a parabola fits the top of a peak.
 PADDING = 8
 
-# Time between two samples of a velocity, in units of what resolves the motion: the spectrum then reaches six times the
-# frequency of the fastest mode.
+# Sampling interval of a velocity, in units of the interval that resolves the motion: the spectrum then extends to six
+# times the frequency of the fastest mode.
 SPACING = 2.0
 
-# A velocity that varies by no more than this share of its modulus is constant: the rest is rounding.
+# A velocity whose relative variation is at most this is constant: the variation is rounding.
 ROUNDING = 1e-10
 
 
 def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0) -> tuple[np.ndarray, np.ndarray]:
     """Return the frequency of each block of a motion, and its error, in cycles per unit time, each of shape (blocks,).
 
-    model, state : of a motion that has settled, as `Trajectory.final` or `PeriodicOrbit.reference`
-    duration : for which it is observed, in units of 1/ω
+    model, state : a state of settled motion, such as `Trajectory.final` or `PeriodicOrbit.reference`
+    duration : time of observation, in units of 1/ω
 
-    The frequency is that of the strongest line in the spectrum of U', refined by the phase of this line in both halves
-    of the time. NaN for a block whose velocity is constant. The error is the difference of the frequencies in both
-    halves: that of the whole is smaller, on a periodic orbit or a torus by orders of magnitude.
+    The frequency is that of the strongest line in the spectrum of U', refined by the phases of this line in the two
+    halves of the time. It is NaN for a block whose velocity is constant. The error is the difference between the
+    frequencies in the two halves; the true error is smaller, on a periodic orbit or a torus by orders of magnitude.
 
     Raises ValueError, one line, for a duration or a state that is not allowed.
 
@@ -59,13 +59,14 @@ def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0)
     check_state(model, state)
     count = 2 * math.ceil(0.5 * duration / (SPACING * longest_spacing(model.chain)))
     if 2 * count * model.blocks > MOST_NUMBERS:
-        raise refusal("duration", duration, f"a shorter one: {model.blocks} blocks are kept at {count} instants")
+        raise refusal("duration", duration, f"a shorter one: {model.blocks} blocks are stored at {count} times")
     start = (state.position[None], state.velocity[None], state.stuck[None].astype(bool))
     velocity = new_ensemble(model).run(*start, np.linspace(0.0, duration, count + 1).tolist())["velocity"][0]
     first = np.array([leading_frequency(one, duration) for one in velocity.T])
     interval = duration / count
     whole, *halves = (
-        np.array([_advance(one, found * interval) for one, found in zip(part.T, first, strict=True)]) / interval
+        np.array([_frequency_offset(one, found * interval) for one, found in zip(part.T, first, strict=True)])
+        / interval
         for part in (velocity, velocity[: count // 2], velocity[count // 2 :])
     )
     return first + whole, np.abs(halves[0] - halves[1])
@@ -91,8 +92,8 @@ def leading_frequency(values: np.ndarray, duration: float) -> float:
     return float(frequency[top] + 0.5 * (left - right) / (left - 2.0 * middle + right) * frequency[1])
 
 
-def _advance(values: np.ndarray, frequency: float) -> float:
-    """Return by how much a line is above a frequency, both in cycles per sample, by its phases in both halves.
+def _frequency_offset(values: np.ndarray, frequency: float) -> float:
+    """Return the offset of a line from a frequency, in cycles per sample, from its phases in the two halves.
 
     The weight suppresses other lines faster than any power of the number of samples.
     """
@@ -107,5 +108,5 @@ def _advance(values: np.ndarray, frequency: float) -> float:
 
 
 def is_constant(values: np.ndarray) -> bool:
-    """Return whether values differ by rounding only."""
+    """Return whether values are equal up to rounding."""
     return bool(np.ptp(values) <= ROUNDING * np.abs(values).max())

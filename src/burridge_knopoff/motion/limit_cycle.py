@@ -1,4 +1,4 @@
-"""The periodic orbit that a motion has settled on, from one state of it: when it returns, and whether in a mirror."""
+"""The periodic orbit on which a motion has settled, found from its close returns to a state or to its mirror image."""
 
 from __future__ import annotations
 
@@ -20,32 +20,33 @@ from burridge_knopoff.running.settings import DURATION
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of
 
-#: Distances, for v = 0.1 in the chain's own units, within which a state has to return for Newton's method to begin from
-#: it, one after another.
+#: Distances, for v = 0.1 in the chain's own units, within which the motion must return to a state for Newton's method
+#: to start there; they are tried in this order.
 CLOSENESS = (1e-9, 1e-7, 1e-5, 1e-4, 1e-3)
 
-#: Time, in the chain's own unit, for which returns are looked for: longer orbits, as locked tori may have, are not
-#: found; and how much farther than it returned the motion may still be from the orbit in the end.
+#: Time, in the chain's own unit, in which a return is sought: longer orbits, such as those of some locked tori, are not
+#: found. The final distance of the motion from the orbit may exceed the distance of the return by the second number.
 WINDOW = 8000.0
-FARTHER = 30.0
+MAX_RELATIVE_DISTANCE = 30.0
 
-# Share of the time to the next stop of a block after which a stop of the other one may be a return in a mirror, as that
-# takes half of a period: where they all but stop together it is none.
-SOONEST = 0.1
+# A mirror-image return takes half of a period. A stop of the mirror block earlier than this fraction of the time to the
+# next stop of the block is not such a return: the two blocks stop almost together.
+MIN_MIRROR_TIME = 0.1
 
 
 def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: float | None = None) -> PeriodicOrbit:
-    """Return the periodic orbit on which a motion that has settled lies; the shortest return that closes it.
+    """Return the periodic orbit with the shortest period on which a settled motion lies.
 
-    model, state : of the motion
-    settling, window : times, in units of 1/ω, that it is left to settle first, and in which it has to return; the
-        latter is by default 8000, times as much as the chain is slower than the paper's: `Chain.own_units`
+    model, state : a state of the motion
+    settling, window : times, in units of 1/ω, for the motion to settle first, and within which it must return. The
+        default window is 8000, multiplied by the time unit of the chain (`Chain.own_units`)
 
-    It lies on an orbit that attracts if it comes nearer in the window, on one that does not, such as synchrony from
-    equal states, only if it never leaves it: in chaos a motion passes by one unstable orbit after another.
+    The motion lies on an attracting orbit if it approaches the orbit within the window. It lies on an unstable orbit,
+    such as synchrony from equal states, only if it never leaves it, since chaotic motion passes near many unstable
+    orbits.
 
-    Raises OrbitError if the motion does not return within the window, or to no periodic orbit on which it lies,
-    ValueError for a time or a state that is not allowed.
+    Raises OrbitError if the motion does not return within the window or lies on no periodic orbit, and ValueError for a
+    time or a state that is not allowed.
 
     >>> from burridge_knopoff import Chain, Model, limit_cycle, law_of, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -60,13 +61,13 @@ def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: 
 
 
 def orbit_of_motion(model: Model, state: ChainState, settling: float, window: float) -> PeriodicOrbit:
-    """Return the same as `limit_cycle`, for times of any length."""
+    """Return the same as `limit_cycle`, without limits on the times."""
     runner = Runner(model, keep_events=True, events_from=settling)
     runner.begin(state, 0.0)
     if runner.run(settling + window) != Status.COMPLETED:
         raise OrbitError(f"a = {model.a!r}: the run ends at τ = {runner.clock!r}, before {settling + window!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
-    found = orbit_of_events(model, times, values, _stays)
+    found = orbit_of_events(model, times, values, _is_on_orbit)
     if found is None:
         raise OrbitError(f"a = {model.a:.12g}: no periodic orbit found within {window:g}")
     return found
@@ -78,25 +79,25 @@ def orbit_of_events(
     values: np.ndarray,
     accepted: Callable[[PeriodicOrbit, float, float, float], bool],
 ) -> PeriodicOrbit | None:
-    """Return the shortest periodic orbit on which a motion lies, by its events as the kernel keeps them; None if none.
+    """Return the shortest periodic orbit on which a motion lies, from its events as the kernel stores them, or None.
 
-    accepted : takes an orbit, the distances of the first and of the last turn of the motion from it, and the one within
-        which the motion returned, all for v = 0.1 in the chain's own units, and returns whether the motion lies on it
+    accepted : takes an orbit, the distances of the first and the last cycle of the motion from the orbit, and the
+        distance of the return, all for v = 0.1 in the chain's own units; returns whether the motion lies on the orbit
     """
-    for start, time, symmetry, size in _returns(model, times, values):
+    for start, time, symmetry, size in _close_returns(model, times, values):
         try:
             found = find_periodic_orbit(model, start, time, symmetry)
         except OrbitError:
             continue
-        if accepted(found, *_distances(found, values), size):
+        if accepted(found, *_cycle_distances(found, values), size):
             return minimal_form(found, CLOSENESS[0])
     return None
 
 
-def _returns(
+def _close_returns(
     model: Model, times: np.ndarray, values: np.ndarray
 ) -> Iterator[tuple[ChainState, float, Symmetry, float]]:
-    """Yield a state, after which time it returns, how, and how closely: the closest first, then the shortest."""
+    """Yield a state, the time of its return, the symmetry and the distance: closest returns first, then shortest."""
     stops = values[:, 1] == 0
     if not stops.any():
         return
@@ -111,7 +112,7 @@ def _returns(
         if np.abs((state - state[order]) / scale).max() <= CLOSENESS[0]:
             repeated = [(time, Symmetry.SYNCHRONIZED, at) for time, _, at in repeated]
         else:
-            soonest = begun + SOONEST * (times[own[1:2]] - begun).sum()
+            soonest = begun + MIN_MIRROR_TIME * (times[own[1:2]] - begun).sum()
             mirrored = np.flatnonzero(stops & (values[:, 0] == other) & (times > soonest))
             repeated += [(times[k] - begun, Symmetry.SYMMETRIC, values[k, 2:][order]) for k in mirrored]
     repeated.sort(key=lambda item: item[0])
@@ -122,22 +123,26 @@ def _returns(
                 break
 
 
-def _stays(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:
-    """Return whether a motion stays on an orbit, or comes closer to it if the orbit attracts."""
+def _is_on_orbit(orbit: PeriodicOrbit, first: float, last: float, size: float) -> bool:
+    """Return whether a motion stays on an orbit, or approaches it if the orbit attracts."""
     return last <= (
-        CLOSENESS[0] if multipliers(orbit).unstable_count else max(CLOSENESS[0], min(first, FARTHER * size))
+        CLOSENESS[0]
+        if multipliers(orbit).unstable_count
+        else max(CLOSENESS[0], min(first, MAX_RELATIVE_DISTANCE * size))
     )
 
 
-def _distances(orbit: PeriodicOrbit, values: np.ndarray) -> tuple[float, float]:
-    """Return how far the first and the last turn of a motion are from an orbit, by the events of the motion."""
+def _cycle_distances(orbit: PeriodicOrbit, values: np.ndarray) -> tuple[float, float]:
+    """Return the distances of the first and the last cycle of a motion from an orbit, by the events of the motion."""
     block = int(np.flatnonzero(orbit.stop_counts)[0]) + 1
     around, _ = flow(orbit.model, orbit.reference, orbit.period)
-    own, seen = (_stops(events, block) / orbit.model.state_scale for events in (around.log.events.values(), values))
-    first, last = (distance(turn, own, share=1.0) for turn in (seen[: len(own)], seen[-len(own) :]))
+    own, seen = (
+        _states_at_stops(events, block) / orbit.model.state_scale for events in (around.log.events.values(), values)
+    )
+    first, last = (distance(cycle, own, share=1.0) for cycle in (seen[: len(own)], seen[-len(own) :]))
     return first, last
 
 
-def _stops(values: np.ndarray, block: int) -> np.ndarray:
+def _states_at_stops(values: np.ndarray, block: int) -> np.ndarray:
     """Return the states at the stops of one block, from 1, shape (stops, 2 blocks)."""
     return values[(values[:, 0] == block) & (values[:, 1] == 0), 2:]

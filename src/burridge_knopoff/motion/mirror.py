@@ -1,4 +1,4 @@
-"""Mirror blocks of a state: how far they are apart, and the state next to it in which they are not."""
+"""Mirror blocks of a state: their distances, and the nearest mirror-symmetric state."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ def pair_distances(state: ChainState) -> np.ndarray:
 
 
 def symmetrized(state: ChainState) -> ChainState:
-    """Return the mirror-symmetric state next to this one; a block sticks if it or its mirror block does."""
+    """Return the nearest mirror-symmetric state; a block sticks if it or its mirror block sticks."""
     stuck = state.stuck | state.stuck[::-1]
     velocity = 0.5 * (state.velocity + state.velocity[::-1])
     return ChainState(0.5 * (state.position + state.position[::-1]), np.where(stuck, 0.0, velocity), stuck)

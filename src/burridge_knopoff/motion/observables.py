@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.kind import CHAOS, Motion, MotionKind, judged_distance, motion_of
+from burridge_knopoff.motion.kind import CHAOS, Motion, MotionKind, motion_of_completed_run, synchronization_distance
 from burridge_knopoff.motion.phase_locking import recurrence
 from burridge_knopoff.motion.section_returns import Returns, returns_of, state_of
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near, spacing_of
@@ -24,13 +24,13 @@ class SteadyMotion:
     """A settled motion with its observables.
 
     mean_distance, mean_distance_error : ⟨J⟩ and its standard error
-    stop_rate : stops of each block in a unit of time, shape (blocks,)
-    kind, section_period, period : see `Motion`; the period also of a closed orbit to which the motion is locked
-    exponent : Lyapunov exponents, the largest first
+    stop_rate : stops of each block per unit of time, shape (blocks,)
+    kind, section_period, period : see `Motion`; if the motion is locked, `period` is that of the periodic orbit
+    exponent : Lyapunov exponents in descending order
 
     returns, mirror_returns, spacing, block, mirror_block : see `Returns`
-    recurrence : see `locking.recurrence`
-    left_for : a state on the other motion that this one came to in a longer time; None if it stayed
+    recurrence : see `phase_locking.recurrence`
+    left_for : a state of the later motion if this motion proved to be a transient, otherwise None
 
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, law_of
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -62,7 +62,7 @@ class SteadyMotion:
 
     @property
     def words(self) -> str:
-        """Kind of motion, period of a closed orbit, ⟨J⟩ and Lyapunov exponents, in a line."""
+        """Kind of motion, period of a periodic orbit, ⟨J⟩ and Lyapunov exponents, in one line."""
         period = f", period {self.period:.6g}" if math.isfinite(self.period) else ""
         exponents = ", ".join(f"{value:.4f}" for value in self.exponent)
         return f"{self.kind.words}{period}, <J> = {self.mean_distance:.6g}, exponents {exponents}"
@@ -71,9 +71,9 @@ class SteadyMotion:
         return f"<SteadyMotion: {self.words}>"
 
     @property
-    def is_open(self) -> bool:
-        """Whether the motion may be a closed orbit of which one has seen too little."""
-        return Motion(self.kind, period=self.period).is_open
+    def can_be_periodic(self) -> bool:
+        """Whether the motion may be periodic although no repetition was observed."""
+        return Motion(self.kind, period=self.period).can_be_periodic
 
     def mirrored(self) -> SteadyMotion:
         """Return the motion seen from the other end of the chain."""
@@ -87,12 +87,12 @@ class SteadyMotion:
         )
 
     def symmetrized(self) -> SteadyMotion:
-        """Return the motion with the returns of its mirror image added: all of a set that is its own mirror image."""
+        """Return the motion together with the returns of its mirror image, for a set that is its own mirror image."""
         both = np.concatenate([self.returns, self.mirror_returns])
-        return self.with_returns(both, both if len(self.mirror_returns) else self.mirror_returns)
+        return self.replace_returns(both, both if len(self.mirror_returns) else self.mirror_returns)
 
-    def with_returns(self, returns: np.ndarray, mirror_returns: np.ndarray) -> SteadyMotion:
-        """Return the motion with these returns, and these of its mirror image."""
+    def replace_returns(self, returns: np.ndarray, mirror_returns: np.ndarray) -> SteadyMotion:
+        """Return the motion with other returns, and other returns of its mirror image."""
         return replace(self, returns=returns, mirror_returns=mirror_returns, spacing=spacing_of(returns))
 
     def state(self) -> ChainState:
@@ -124,11 +124,12 @@ def observe(
     mean_distance: float | None = None,
     exponents: int = EXPONENTS,
 ) -> SteadyMotion | None:
-    """Observe the motion from a state in one window; None if it does not complete or hardly ever stops.
+    """Observe the motion from a state in one window; None if the run does not complete or has too few stops.
 
-    transient : in which the perturbations turn into the directions of the exponents
-    settings : for the speed of the driver, see `MotionSettings.at_speed`
-    mean_distance : ⟨J⟩ if it is known, instead of being measured; exponents : how many are computed
+    transient : time in which perturbations align with the directions of the exponents
+    settings : scaled to the driver velocity, see `MotionSettings.scaled_to_velocity`
+    mean_distance : ⟨J⟩ if it is known; otherwise it is measured
+    exponents : number of exponents to compute
     """
     known = mean_distance is not None
     options = run_options(transient, window, settings, exponents)
@@ -145,8 +146,8 @@ def observe(
     found = returns_of(model, window, block, states)
     if found is None:
         return None
-    mean = judged_distance(mean_distance, model.chain.is_mirror_symmetric)
-    told = motion_of(vars(trajectory), mean, settings)
+    mean = synchronization_distance(mean_distance, model.chain.is_mirror_symmetric)
+    motion = motion_of_completed_run(vars(trajectory), mean, settings)
     return SteadyMotion(
         returns=found.returns,
         mirror_returns=found.mirror_returns,
@@ -154,9 +155,9 @@ def observe(
         mean_distance=mean_distance,
         mean_distance_error=trajectory.mean_distance_error,
         stop_rate=np.bincount(block, minlength=model.blocks + 1)[1:] / window,
-        kind=told.kind,
-        section_period=told.section_period,
-        period=told.period,
+        kind=motion.kind,
+        section_period=motion.section_period,
+        period=motion.period,
         exponent=trajectory.lyapunov_exponent,
         block=found.block,
         mirror_block=found.mirror_block,
@@ -164,16 +165,16 @@ def observe(
     )
 
 
-def lies_on(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
-    """Tell whether a settled motion lies on an attractor, as far as that is resolved.
+def is_on_attractor(found: Returns, attractor: SteadyMotion, resolution: float, tolerance: float) -> bool:
+    """Return whether a settled motion lies on an attractor, within the resolution.
 
-    A closed orbit may lie in the midst of a chaotic attractor, but not on it, unless that is so thin that it looks like
-    one itself.
+    A periodic orbit may be embedded in a chaotic attractor, but is not part of the attractor, unless the attractor is
+    so thin that it looks like a periodic orbit.
 
-    resolution : distance below which attractors are not told apart
-    tolerance : distance within which the returns of closed orbits repeat
+    resolution : distance below which attractors are not distinguished
+    tolerance : distance within which the returns of periodic orbits repeat
     """
     chaotic = attractor.kind in CHAOS and attractor.spacing > tolerance
-    if found.block != attractor.block or (found.repeats(tolerance) and chaotic):
+    if found.block != attractor.block or (found.is_periodic(tolerance) and chaotic):
         return False
     return is_near(found.returns, attractor.returns, max(resolution, SPACINGS * attractor.spacing))

@@ -1,8 +1,8 @@
-"""Whether what looks like a torus is locked: the closed orbit that it drifts to, too slowly for that to be seen.
+"""Locking of motion that looks like a torus: the periodic orbit to which it drifts, too slowly for a repetition.
 
-On a locked torus a trajectory comes back to where it was far more closely after a turn of the closed orbit than after
-any shorter time: it has only drifted along a little. From there Newton's method finds the orbit, however slowly it
-attracts. That it attracts this trajectory its last turns show: each is nearer to the orbit than the one before.
+On a locked torus a trajectory returns much more closely after one period of the periodic orbit than after any shorter
+time, because it drifts only a little in one period. From such a return Newton's method finds the orbit, however weakly
+it attracts. The orbit attracts this trajectory if each of the last cycles is closer to the orbit than the one before.
 
 Reference: Y. A. Kuznetsov, "Elements of Applied Bifurcation Theory" (Springer 2004), Section 7.3 (phase locking).
 """
@@ -19,33 +19,34 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 
-# Turns of an orbit that have to fit into a window at least, and that have to come nearer and nearer at most.
-FEWEST_TURNS = 2
-MOST_TURNS = 4
+# Smallest number of cycles of an orbit in a window, and largest number of cycles that are tested for their approach.
+MIN_CYCLES = 2
+MAX_CYCLES = 4
 
-# A torus may be locked if its motion was nearer to its last return, by this factor, than at any later time.
-MUCH_NEARER = 0.1
+# A torus may be locked if one earlier return was closer to the last return, by this factor, than all returns in
+# between.
+RECURRENCE_RATIO = 0.1
 
-# It is locked to a stable orbit that it approaches, and lies no farther from, for v = 0.1.
-LOCKED = 0.03
+# Largest distance of the last cycle from the stable orbit to which the motion is locked, for v = 0.1.
+MAX_LOCKED_DISTANCE = 0.03
 
 
 def recurrence(times: np.ndarray, returns: np.ndarray) -> float:
-    """Return how long before its last return a motion was nearest to it; 0 if that tells nothing.
+    """Return the time from the closest earlier return to the last return, or 0 if it does not suggest locking.
 
     times, returns : of the motion, shapes (n,) and (n, 2 blocks)
 
-    It tells that the motion may be locked if it was not nearly as near at any later time.
+    The motion may be locked if no return in between was nearly as close to the last return.
     """
     away = times[-1] - times[:-1]
     apart = np.abs(returns[:-1] - returns[-1]).max(axis=1)
-    often = away <= (times[-1] - times[0]) / FEWEST_TURNS
+    often = away <= (times[-1] - times[0]) / MIN_CYCLES
     away, apart = away[often], apart[often]
     if not len(away):
         return 0.0
     nearest = int(apart.argmin())
     shorter = apart[away < away[nearest]].min(initial=np.inf)
-    return float(away[nearest]) if apart[nearest] <= MUCH_NEARER * shorter else 0.0
+    return float(away[nearest]) if apart[nearest] <= RECURRENCE_RATIO * shorter else 0.0
 
 
 def locked_orbit(model: Model, returns: np.ndarray, time: float) -> PeriodicOrbit | None:
@@ -59,16 +60,16 @@ def locked_orbit(model: Model, returns: np.ndarray, time: float) -> PeriodicOrbi
         orbit = find_periodic_orbit(model, state_of(returns[-1]), time, Symmetry.ASYMMETRIC)
     except OrbitError:
         return None
-    return orbit if multipliers(orbit).unstable_count == 0 and _approaches(returns, orbit) else None
+    return orbit if multipliers(orbit).unstable_count == 0 and _is_approaching(returns, orbit) else None
 
 
-def _approaches(returns: np.ndarray, orbit: PeriodicOrbit) -> bool:
-    """Tell whether returns come nearer to a stable orbit with each turn."""
+def _is_approaching(returns: np.ndarray, orbit: PeriodicOrbit) -> bool:
+    """Return whether returns approach a stable orbit with each cycle."""
     around = visit(orbit.model, orbit.reference, 0.0, orbit.period)
     if around is None:
         return False
     count = len(around.returns)
-    last = [returns[-count * (k + 1) : len(returns) - count * k] for k in range(min(len(returns) // count, MOST_TURNS))]
-    away = [distance(turn, around.returns) for turn in last]
-    near = len(away) >= FEWEST_TURNS and away[0] <= LOCKED * orbit.model.scale
+    last = [returns[-count * (k + 1) : len(returns) - count * k] for k in range(min(len(returns) // count, MAX_CYCLES))]
+    away = [distance(cycle, around.returns) for cycle in last]
+    near = len(away) >= MIN_CYCLES and away[0] <= MAX_LOCKED_DISTANCE * orbit.model.scale
     return near and bool((np.diff(away) > 0.0).all())

@@ -1,9 +1,9 @@
-"""The rotation number of motion that is its own mirror image: turns of the end blocks for one turn of the middle block.
+"""The rotation number of motion that is its own mirror image: cycles of the end blocks per cycle of the middle block.
 
-By symmetry both end blocks of such motion have one frequency, whether or not it is locked. What can lock is the ratio
-of its two oscillations: that of the distance between the end blocks, which is antisymmetric, and that of the middle
-block, which is symmetric. On a torus the ratio changes with a. Where the torus is locked it is a ratio of whole
-numbers, the same throughout a tongue: a plateau.
+By symmetry both end blocks of such motion have the same frequency, whether or not it is locked. The ratio of the two
+oscillations can lock: the oscillation of the distance between the end blocks, which is antisymmetric, and that of the
+middle block, which is symmetric. On a torus the ratio changes with a. If the torus is locked, the ratio is rational and
+constant throughout a tongue: a plateau.
 
 References: R. S. MacKay and C. Tresser, Physica D 19 (1986) 206 (rotation numbers); S. Das, Y. Saiki, E. Sander and
 J. A. Yorke, Nonlinearity 30 (2017) 4111 (weighted averages, which converge faster than any power on a torus).
@@ -19,16 +19,17 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.ensemble import new_ensemble
 
-# Turns of less than this from one sample to the next have one sense only; an oscillation that passes through its centre
-# has larger ones, and no phase.
-LARGEST_TURN = 0.5 * math.pi
+# Phase changes below this between successive samples have an unambiguous sign. An oscillation that passes through its
+# centre has larger changes, and no phase.
+MAX_PHASE_STEP = 0.5 * math.pi
 
 
 def rotation_number(model: Model, start: ChainState, duration: float) -> tuple[float, float]:
-    """Return the rotation number of the motion from a state on, and its error; NaN where an oscillation has no phase.
+    """Return the rotation number of the motion from a state, and its error; NaN if an oscillation has no phase.
 
-    The phases are those of x_1 − x_N + i(U_1' − U_N') and of x_m + i(U_m' − v), m the middle block, or both middle ones
-    together. The error is the difference between both halves of the time, each of which is less exact than the whole.
+    The phases are those of x_1 − x_N + i(U_1' − U_N') and of x_m + i(U_m' − v), with m the middle block, or the sum of
+    both middle blocks. The error is the difference between the two halves of the time, which are less accurate than the
+    whole.
     """
     count = 2 * math.ceil(0.5 * duration / longest_spacing(model.chain))
     state = (start.position[None], start.velocity[None], start.stuck[None].astype(bool))
@@ -37,16 +38,17 @@ def rotation_number(model: Model, start: ChainState, duration: float) -> tuple[f
     middle = states[:, [(model.blocks - 1) // 2, model.blocks // 2]].sum(axis=1)
     oscillations = np.stack([states[:, 0] - states[:, -1], middle])
     with np.errstate(divide="ignore", invalid="ignore"):
-        turns = np.angle(oscillations[:, 1:] / oscillations[:, :-1])
-    if not (np.abs(turns) <= LARGEST_TURN).all():
+        phase_steps = np.angle(oscillations[:, 1:] / oscillations[:, :-1])
+    if not (np.abs(phase_steps) <= MAX_PHASE_STEP).all():
         return math.nan, math.nan
-    whole, first, second = (_ratio(part) for part in (turns, turns[:, : count // 2], turns[:, count // 2 :]))
+    halves = phase_steps[:, : count // 2], phase_steps[:, count // 2 :]
+    whole, first, second = map(_rate_ratio, (phase_steps, *halves))
     return whole, abs(first - second)
 
 
-def _ratio(turns: np.ndarray) -> float:
-    """Return the ratio of the mean rates of two phases from what they turn by in equal steps, shape (2, n)."""
-    time = (np.arange(turns.shape[1]) + 0.5) / turns.shape[1]
+def _rate_ratio(phase_steps: np.ndarray) -> float:
+    """Return the ratio of the mean rates of two phases from their changes in equal time steps, shape (2, n)."""
+    time = (np.arange(phase_steps.shape[1]) + 0.5) / phase_steps.shape[1]
     weight = np.exp(-1.0 / (time * (1.0 - time)))
-    ends, middle = (turns * weight).sum(axis=1)
+    ends, middle = (phase_steps * weight).sum(axis=1)
     return float(ends / middle) if middle else math.nan

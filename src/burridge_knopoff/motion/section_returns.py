@@ -1,4 +1,4 @@
-"""Where a trajectory returns to: its states at the stops of one block, a set that can be compared with another."""
+"""Returns of a trajectory to a section: its states at the stops of one block, as a set to compare with other sets."""
 
 from __future__ import annotations
 
@@ -8,23 +8,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.period import orbit_length, sections
+from burridge_knopoff.motion.period import orbit_length, section_blocks
 from burridge_knopoff.motion.set_distance import SPACINGS, distance, spacing_of
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
 # A velocity of this modulus is rounding.
-STANDING = 1e-14
+ZERO_VELOCITY = 1e-14
 
-# Closed orbits drift by less than the resolution over this once they have converged, since they attract exponentially;
-# other sets fill up so slowly that the resolution itself must do.
-CLOSED_DRIFT = 100.0
+# A converged periodic orbit drifts by less than the resolution divided by this, since it attracts exponentially. Other
+# sets fill so slowly that the resolution itself is the limit.
+PERIODIC_DRIFT = 100.0
 
-# Fewer returns than this show no set.
-FEWEST_RETURNS = 8
+# Smallest number of returns that represent a set.
+MIN_RETURNS = 8
 
-# Share in all stops by which a pair of mirror blocks differs at most between two parts of one motion.
-SAME_STOPS = 0.03
+# Largest difference between two parts of one motion in the fraction of all stops made by a pair of mirror blocks.
+STOP_SHARE_TOLERANCE = 0.03
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,13 +32,13 @@ class Returns:
     """The returns of a trajectory in a window after a transient.
 
     returns : states at the stops of one block, shape (n, 2 blocks), positions x_i and velocities U_i'
-    mirror_returns : those of the mirrored motion; none, shape (0, 2 blocks), where the chain has no mirror image
+    mirror_returns : returns of the mirrored motion; shape (0, 2 blocks) if the chain has no mirror image
     spacing : distance (largest difference of a coordinate) between neighbouring returns
     drift : distance between the returns of the first and of the second half of the window
     stop_count : stops of each block in the window, shape (blocks,)
-    window : how long the motion was seen
-    block, mirror_block : the block of these returns, the outermost one that stops regularly, and that of the mirrored
-        motion: the same if both of the pair stop
+    window : duration of the window
+    block, mirror_block : the block of these returns, the outermost block that stops regularly, and that of the mirrored
+        motion; they are equal if both blocks of the pair stop
     """
 
     returns: np.ndarray
@@ -50,18 +50,18 @@ class Returns:
     block: int = 1
     mirror_block: int = 1
 
-    def closed(self, tolerance: float) -> bool:
-        """Tell whether the returns are as near to each other as those of a closed orbit."""
+    def has_periodic_spacing(self, tolerance: float) -> bool:
+        """Return whether neighbouring returns are as close as those of a periodic orbit."""
         return self.spacing <= tolerance
 
-    def repeats(self, tolerance: float) -> bool:
-        """Tell whether the returns also come round one after the other, which thin chaos does not."""
+    def is_periodic(self, tolerance: float) -> bool:
+        """Return whether the returns also repeat in order, unlike those of a thin chaotic set."""
         longest = len(self.returns)
-        return self.closed(tolerance) and orbit_length(self.returns, tolerance, longest) < longest
+        return self.has_periodic_spacing(tolerance) and orbit_length(self.returns, tolerance, longest) < longest
 
-    def settled(self, tolerance: float, resolution: float) -> bool:
-        """Tell whether both halves of the window show the same set."""
-        allowed = resolution / CLOSED_DRIFT if self.closed(tolerance) else resolution
+    def is_settled(self, tolerance: float, resolution: float) -> bool:
+        """Return whether both halves of the window contain the same set."""
+        allowed = resolution / PERIODIC_DRIFT if self.has_periodic_spacing(tolerance) else resolution
         return self.drift <= max(allowed, SPACINGS * self.spacing)
 
     def state(self) -> ChainState:
@@ -70,15 +70,15 @@ class Returns:
 
 
 def state_of(state: np.ndarray) -> ChainState:
-    """Return the instant of one return, shape (2 blocks,): a block without velocity sticks there."""
+    """Return the state of one return, shape (2 blocks,), in which a block without velocity sticks."""
     position, velocity = np.split(state, 2)
-    # Another block that stops at the same instant may have been left a rounding of velocity, of either sign.
-    stuck = np.abs(velocity) <= STANDING
+    # Rounding may leave a velocity of either sign to another block that stops at the same instant.
+    stuck = np.abs(velocity) <= ZERO_VELOCITY
     return ChainState(position.copy(), np.where(stuck, 0.0, velocity), stuck)
 
 
 def visit(model: Model, start: ChainState, transient: float, window: float) -> Returns | None:
-    """Follow a trajectory and return where it returns to; None if it does not complete or hardly ever stops."""
+    """Follow a trajectory and return its returns in a window; None if it does not complete or has too few stops."""
     runner = Runner(model, events_from=transient, keep_events=True, stops_only=True)
     runner.begin(start, 0.0)
     if runner.run(transient + window) != Status.COMPLETED:
@@ -90,12 +90,13 @@ def visit(model: Model, start: ChainState, transient: float, window: float) -> R
 def returns_of(
     model: Model, window: float, block: np.ndarray, states: Callable[[np.ndarray], np.ndarray]
 ) -> Returns | None:
-    """Return the returns among a window's stops; None if there are too few.
+    """Return the returns among the stops in a window; None if there are too few.
 
-    block : that stops, 1 … N, shape (stops,); states : gives the states at those that a mask of this shape chooses
+    block : the block of each stop, 1 … N, shape (stops,)
+    states : function that takes a mask of this shape and returns the states at the selected stops
     """
     stop_count = np.bincount(block.astype(int), minlength=model.blocks + 1)[1:]
-    section, mirror_section = sections(stop_count)
+    section, mirror_section = section_blocks(stop_count)
     returns = states(block == section)
     mirror_returns = returns[:0]
     fewest = len(returns)
@@ -103,7 +104,7 @@ def returns_of(
         position, velocity = np.split(states(block == model.blocks + 1 - mirror_section), 2, axis=1)
         mirror_returns = np.concatenate([position[:, ::-1], velocity[:, ::-1]], axis=1)
         fewest = min(fewest, len(mirror_returns))
-    if fewest < FEWEST_RETURNS:
+    if fewest < MIN_RETURNS:
         return None
     first, second = np.array_split(returns, 2)
     return Returns(
@@ -118,10 +119,10 @@ def returns_of(
     )
 
 
-def stops_alike(first: np.ndarray, second: np.ndarray) -> bool:
-    """Tell whether each pair of mirror blocks has the same share of all stops in two motions.
+def has_same_stop_shares(first: np.ndarray, second: np.ndarray) -> bool:
+    """Return whether each pair of mirror blocks makes the same fraction of all stops in two motions.
 
-    first, second : stops of each block, in any time, shape (blocks,)
+    first, second : number of stops of each block, in any time, shape (blocks,)
     """
     shares = [(stops + stops[::-1]) / stops.sum() for stops in (first, second)]
-    return bool(np.abs(np.subtract(*shares)).max() <= SAME_STOPS)
+    return bool(np.abs(np.subtract(*shares)).max() <= STOP_SHARE_TOLERANCE)

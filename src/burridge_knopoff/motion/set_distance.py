@@ -1,4 +1,4 @@
-"""How near sets of returns, shape (n, 2 blocks), are to each other, by the largest difference of a coordinate."""
+"""Distances between sets of returns, shape (n, 2 blocks), in the largest difference of a coordinate."""
 
 from __future__ import annotations
 
@@ -7,48 +7,47 @@ import math
 import numpy as np
 from scipy.spatial import cKDTree
 
-#: Share of the returns that must lie near another set: a few may lie where the other has a gap.
+#: Fraction of the returns that must lie near another set: a few may lie in gaps of the other set.
 NEAR_SHARE = 0.95
-#: Sets are one if they are no farther apart than this many times the distance between neighbours within them, which
-#: varies from place to place.
+#: Two sets are the same if their distance is at most this many times the spacing within them, which is not uniform.
 SPACINGS = 3.0
 
 
 def distance(
     first: np.ndarray, second: np.ndarray | cKDTree, share: float = NEAR_SHARE, bound: float = np.inf
 ) -> float:
-    """Return how far the returns of the first set lie from the second: the distance within which that share does.
+    """Return the distance from the second set within which the fraction `share` of the first set lies.
 
-    bound : what is farther may be given as infinitely far: neighbours beyond it are hardly looked for
+    bound : distances beyond it may be returned as infinite, which makes the search for neighbours faster
     """
     tree = second if isinstance(second, cKDTree) else cKDTree(second)
-    nearest = _nearest(first, tree, bound)
+    nearest = _nearest_distances(first, tree, bound)
     near = int(np.count_nonzero(np.isfinite(nearest)))
-    # The quantile lies between two of the sorted distances; only where the bound parts these does their size matter.
+    # The quantile lies between two of the sorted distances. If the bound lies between these, both are needed.
     below = math.floor(share * (len(first) - 1)) + 1
     if near < below:
         return np.inf
-    return float(np.quantile(_nearest(first, tree, np.inf) if near == below < len(first) else nearest, share))
+    return float(np.quantile(_nearest_distances(first, tree, np.inf) if near == below < len(first) else nearest, share))
 
 
 def is_near(first: np.ndarray, second: np.ndarray, limit: float, share: float = NEAR_SHARE) -> bool:
-    """Tell whether `distance(first, second)` is at most the limit."""
+    """Return whether `distance(first, second)` is at most the limit."""
     return distance(first, second, share, limit) <= limit
 
 
-def least_distance(first: np.ndarray, second: np.ndarray, bound: float = np.inf) -> float:
-    """Return the distance between the two nearest returns of two sets; infinite if it is beyond the bound."""
-    return float(_nearest(first, cKDTree(second), bound).min())
+def minimum_distance(first: np.ndarray, second: np.ndarray, bound: float = np.inf) -> float:
+    """Return the distance between the two closest returns of two sets; infinite if it exceeds the bound."""
+    return float(_nearest_distances(first, cKDTree(second), bound).min())
 
 
-def _nearest(first: np.ndarray, tree: cKDTree, bound: float) -> np.ndarray:
-    """Return how far each of the first returns is from the nearest in a tree; infinite beyond the bound."""
-    # The tree leaves out what lies just at the bound. Where two sets are far apart it hardly looks.
+def _nearest_distances(first: np.ndarray, tree: cKDTree, bound: float) -> np.ndarray:
+    """Return the distance of each return from the nearest point of a tree; infinite beyond the bound."""
+    # The tree excludes points exactly at the bound. If two sets are far apart, the search is fast.
     nearest, _ = tree.query(first, p=np.inf, distance_upper_bound=np.nextafter(bound, np.inf))
     return nearest
 
 
 def spacing_of(returns: np.ndarray, share: float = NEAR_SHARE) -> float:
-    """Return the distance within which that share of the returns have a neighbour, shape (n, 2 blocks)."""
+    """Return the distance within which the fraction `share` of the returns, shape (n, 2 blocks), have a neighbour."""
     nearest, _ = cKDTree(returns).query(returns, k=2, p=np.inf)
     return float(np.quantile(nearest[:, 1], share))

@@ -1,7 +1,7 @@
-"""The synchronized orbit of a chain that is its own mirror image: the one on which mirror blocks move as one.
+"""The synchronized orbit of a chain that is its own mirror image: the orbit on which mirror blocks move identically.
 
-A run from rest stays mirror-symmetric to the bit, and ends on it at moderate a; from there it is continued, whether it
-is stable or not.
+A run from rest stays mirror-symmetric to the bit and settles on this orbit at moderate a. From there the orbit is
+continued, whether it is stable or not.
 """
 
 from __future__ import annotations
@@ -22,24 +22,24 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of
 
-# A run from rest has settled after this time, in the chain's own unit, at the friction parameters that orbits are
-# continued from, and returns within the other one.
+# At the friction parameters SEEDS, a run from rest has settled after SETTLING and repeats within LONGEST_PERIOD, both
+# in the chain's own unit of time.
 SETTLING = 4000.0
 LONGEST_PERIOD = 500.0
 SEEDS = (0.05, 0.1, 0.02, 0.2)
 
-# Turns of the run from which the orbit of one turn is looked for.
-TURNS = 8
+# Number of cycles of the run in which an orbit of one cycle is sought.
+CYCLES = 8
 
 
 def synchronized_orbit(model: Model) -> PeriodicOrbit:
     """Return the synchronized orbit of a model, whether it is stable or not.
 
-    model : of any number of blocks; the chain has to be its own mirror image
+    model : with any number of blocks; the chain must be its own mirror image
 
     Raises OrbitError, a ValueError, if it is not, or if no orbit is found.
 
-    docs/synchronization.md derives where that of three blocks is stable.
+    docs/synchronization.md derives where the orbit of three blocks is stable.
 
     >>> from burridge_knopoff import Chain, Model, law_of, multipliers, synchronized_orbit
     >>> model = Model(Chain(3), law_of("linearized", 0.08))
@@ -57,12 +57,12 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
 
     model : at any a
 
-    Raises OrbitError if its chain is not its own mirror image, or if no orbit is found to begin with.
+    Raises OrbitError if its chain is not its own mirror image, or if no orbit is found at any of the SEEDS.
     """
     if not model.chain.is_mirror_symmetric:
-        raise OrbitError("chain: got one that is not its own mirror image, expected one in which blocks move as one")
+        raise OrbitError("chain: got a chain that is not its own mirror image, expected one that is")
     seeds = [a_unit(model.chain) * a for a in SEEDS]
-    for find in (_of_one_turn, _settled):
+    for find in (_single_cycle_orbit, _settled_orbit):
         for a in seeds:
             try:
                 return KnownOrbits(find(model_at(model, a)))
@@ -71,22 +71,22 @@ def synchronized_orbits(model: Model) -> KnownOrbits:
     raise OrbitError(f"v = {model.v!r}: no synchronized periodic orbit at a = {', '.join(map(repr, seeds))}")
 
 
-def _rest(model: Model) -> ChainState:
+def _state_at_rest(model: Model) -> ChainState:
     return ChainState(np.zeros(model.blocks), np.zeros(model.blocks), np.ones(model.blocks, dtype=bool))
 
 
-def _of_one_turn(model: Model) -> PeriodicOrbit:
-    """Return the orbit on which the end blocks stop once in a period, from the last turns of a run from rest.
+def _single_cycle_orbit(model: Model) -> PeriodicOrbit:
+    """Return the orbit on which the end blocks stop once per period, from the last cycles of a run from rest.
 
-    The run itself may end on another synchronous motion, of several turns.
+    The run itself may settle on another synchronized motion, with several stops per period.
     """
     unit_of_time = model.chain.own_units.time
     runner = Runner(model, keep_events=True, events_from=SETTLING * unit_of_time, stops_only=True)
-    runner.begin(_rest(model))
+    runner.begin(_state_at_rest(model))
     if runner.run((SETTLING + LONGEST_PERIOD) * unit_of_time) != Status.COMPLETED:
         raise OrbitError(f"a = {model.a!r}: the run from rest ends at τ = {runner.clock!r}")
     times, values = runner.log.events.times(), runner.log.events.values()
-    own = np.flatnonzero(values[:, 0] == 1)[-TURNS - 1 :]
+    own = np.flatnonzero(values[:, 0] == 1)[-CYCLES - 1 :]
     for first, second in pairwise(own.tolist()):
         try:
             found = find_periodic_orbit(
@@ -96,10 +96,10 @@ def _of_one_turn(model: Model) -> PeriodicOrbit:
             continue
         if found.stop_counts[0] == 1:
             return found
-    raise OrbitError(f"a = {model.a!r}: no synchronized orbit of one turn")
+    raise OrbitError(f"a = {model.a!r}: no synchronized orbit with one stop per period")
 
 
-def _settled(model: Model) -> PeriodicOrbit:
+def _settled_orbit(model: Model) -> PeriodicOrbit:
     """Return the orbit on which a run from rest settles."""
     unit_of_time = model.chain.own_units.time
-    return orbit_of_motion(model, _rest(model), SETTLING * unit_of_time, LONGEST_PERIOD * unit_of_time)
+    return orbit_of_motion(model, _state_at_rest(model), SETTLING * unit_of_time, LONGEST_PERIOD * unit_of_time)

@@ -14,7 +14,7 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 
 # Difference of ⟨J⟩, for v = 0.1, within which an orbit between two neighbours on a branch may belong to the branch.
-SAME_MEAN = 1e-3
+MEAN_TOLERANCE = 1e-3
 
 # Orbits closer than this to the previous one along a branch are not drawn.
 CLOSE = 1e-5
@@ -97,7 +97,7 @@ class BranchSegment:
             return False
         # Near a grazing ⟨J⟩ changes as a square root.
         means = [other.mean_distance for other in near]
-        margin = max(means) - min(means) + SAME_MEAN * orbit.model.scale
+        margin = max(means) - min(means) + MEAN_TOLERANCE * orbit.model.scale
         return min(means) - margin <= orbit.mean_distance <= max(means) + margin
 
     @cached_property

@@ -43,7 +43,7 @@ def state_after(runner: Runner, start: ChainState, time: float) -> ChainState:
 
     Raises OrbitError if the run does not complete.
     """
-    end = runner.after(start, time)
+    end = runner.state_after(start, time)
     if end is None:
         raise OrbitError(f"the run ends at τ = {runner.clock!r}, before {time!r}")
     return end

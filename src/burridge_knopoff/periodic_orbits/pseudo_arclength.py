@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.parameters import at, value_of
+from burridge_knopoff.model.parameters import parameter_value, set_parameters
 from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, rate
 from burridge_knopoff.periodic_orbits.grazing_distances import GrazingDistances, grazing_distances
@@ -104,7 +104,7 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
 
     Raises ValueError, one line, if the model has no parameter of this name with a single value.
     """
-    value = value_of(orbit.model, parameter)
+    value = parameter_value(orbit.model, parameter)
     if parameter == "a":
         return line_along_a(orbit.model.chain)
     units = orbit.model.chain.own_units
@@ -112,7 +112,7 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
     size, change = abs(value) or 1.0, 0.0
     for step in (PART * size, -PART * size):
         try:
-            model = at(orbit.model, {parameter: value + step})
+            model = set_parameters(orbit.model, {parameter: value + step})
             larger = model.v / orbit.model.v
             start = ChainState(
                 larger * orbit.reference.position, larger * orbit.reference.velocity, orbit.reference.stuck

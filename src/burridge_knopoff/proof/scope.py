@@ -21,7 +21,7 @@ def is_linearized(model: Model) -> bool:
 
 def is_covered(model: Model) -> bool:
     """Return whether the proofs cover a model: its chain, law, v and contact; a does not matter."""
-    springs = model.chain.is_like(Chain(3))
+    springs = model.chain.is_equivalent_to(Chain(3))
     if is_linearized(model):
         return bool(springs and (model.contact == "one_sided" or model.v <= LARGEST_V))
     return bool(springs and model.law.formula == Nonlinear.formula and model.v == NONLINEAR_V)

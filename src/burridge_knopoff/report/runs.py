@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.motion.kind import Motion, MotionKind, words_of
+from burridge_knopoff.motion.kind import Motion, MotionKind, format_motion
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.report.numbers import exact
-from burridge_knopoff.running.status import ENDS, Status
+from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.study import Study
@@ -77,7 +77,7 @@ def embedded_runs(
         "simulate": [[_halves(commands, law, initial) for initial in study.initial] for law in study.laws],
         "arguments": shlex.join(commands.arguments),
         "results": f"results/{study.name}",
-        "statuses": list(ENDS.values()),
+        "statuses": list(STATUS_WORDS.values()),
     }
 
 
@@ -87,10 +87,10 @@ def _nested(values: np.ndarray) -> Any:
 
 def _kind_texts(study: Study, agreement: xarray.Dataset, lyapunov: xarray.Dataset) -> Any:
     """Return kinds of motion in words, in nested lists."""
-    settings = MotionSettings(**study.config["motion"]).at_speed(study.config["v"])
+    settings = MotionSettings(**study.config["motion"]).scaled_to_velocity(study.config["v"])
     kind, period, points = agreement["kind"].values, agreement["period"].values, lyapunov["section_period"].values
     texts = [
-        words_of(Motion(MotionKind(one), count, time), settings)
+        format_motion(Motion(MotionKind(one), count, time), settings)
         for one, count, time in zip(kind.flat, points.flat, period.flat, strict=True)
     ]
     return np.array(texts, dtype=object).reshape(kind.shape).tolist()
@@ -134,5 +134,5 @@ def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, agreement: x
                     what = f"kind of motion undetermined{f': {SLIDING}' if sliding else ''}"
                     undetermined.append({**run, "what": what})
                 else:
-                    failed.append({**run, "what": f"did not complete: {ENDS[status]}"})
+                    failed.append({**run, "what": f"did not complete: {STATUS_WORDS[status]}"})
     return [*failed, *undetermined]

@@ -1,1 +1,1 @@
-"""Runs: settings, the solver that moves a model, and the resulting trajectory."""
+"""Runs: settings, the solver that integrates a model, and the resulting trajectory."""

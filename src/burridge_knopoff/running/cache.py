@@ -1,7 +1,7 @@
 """Cache of the results of long calls in a folder. A run that was killed or extended computes only what is missing.
 
-The key of a result is everything that decides it: the code of the function and of the modules it imports, the versions
-of NumPy and SciPy, and the values of the arguments.
+The key of a result contains everything on which it depends: the code of the function and of the modules it imports, the
+versions of NumPy and SciPy, and the values of the arguments.
 """
 
 from __future__ import annotations
@@ -25,13 +25,13 @@ from burridge_knopoff.running.packing import pack, unpack
 _DIGIT = "[0-9a-f]"
 
 
-def kept(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, Path, bool]:
+def cached_call(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, Path, bool]:
     """Return the result of a call, its file in the cache, and whether the result was read from there.
 
     A file that is damaged or holds another result is ignored. Raises OSError, one line, if the file cannot be written.
     """
     digest = hashlib.sha256(f"{np.__version__} {scipy.__version__}".encode())
-    for part in _parts([function, *items]):
+    for part in _key_parts([function, *items]):
         digest.update(part)
     path = folder / digest.hexdigest()[:32]
     about = {"kept": path.name}
@@ -45,10 +45,10 @@ def kept(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, 
     return result, path, False
 
 
-def forget(folder: Path, asked: Collection[Path]) -> None:
-    """Delete the cached results in the subfolders of a folder, except the files in `asked`; other files stay.
+def delete_unused(folder: Path, asked: Collection[Path]) -> None:
+    """Delete the cached results in the subfolders of a folder, except the files in `asked`. Other files are kept.
 
-    Neighbouring caches of other settings, whose folders are named by 16 hexadecimal digits, are deleted too.
+    Caches of other settings in neighbouring folders, which are named by 16 hexadecimal digits, are deleted as well.
     """
     result = f"*/{32 * _DIGIT}"
     for path in (*folder.glob(result), *folder.parent.glob(f"{16 * _DIGIT}/{result}")):
@@ -56,8 +56,8 @@ def forget(folder: Path, asked: Collection[Path]) -> None:
             path.unlink(missing_ok=True)
 
 
-def _parts(value: Any) -> Iterator[bytes]:
-    """Yield bytes that are equal for equal values and only for these, however the values share objects."""
+def _key_parts(value: Any) -> Iterator[bytes]:
+    """Yield bytes that are equal for equal values only, even if parts of a value are the same object."""
     match value:
         case np.ndarray():
             yield f"{value.dtype}{value.shape}".encode()
@@ -65,15 +65,15 @@ def _parts(value: Any) -> Iterator[bytes]:
         case list() | tuple():
             yield f"{len(value)} items".encode()
             for item in value:
-                yield from _parts(item)
+                yield from _key_parts(item)
         case partial():
-            yield from _parts([value.func, *value.args, *sorted(value.keywords.items())])
+            yield from _key_parts([value.func, *value.args, *sorted(value.keywords.items())])
         case FunctionType() | BuiltinFunctionType():
             yield f"{value.__qualname__} {source_fingerprint(value.__module__)}".encode()
         case _ if is_dataclass(value):
             yield type(value).__qualname__.encode()
             for item in fields(value):
-                yield from _parts(getattr(value, item.name))
+                yield from _key_parts(getattr(value, item.name))
         case _:
             # The comma separates: 12 and 3 are not 1 and 23.
             yield f"{value!r},".encode()

@@ -1,4 +1,4 @@
-"""The `bk simulate` command of a run. It names every setting that decides the result, each once."""
+"""The `bk simulate` command of a run. It gives every setting on which the result depends, each once."""
 
 from __future__ import annotations
 
@@ -13,40 +13,40 @@ from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
 
-#: Options of the chain, with the field of `Chain` that each one sets.
+#: Options of the chain: each sets the field of `Chain` of the same name.
 CHAIN_OPTIONS = tuple(name for name in fields_of(Chain) if name != "blocks")
 
 
 def simulate_command(model: Model, initial: InitialState, settings: Settings) -> str:
-    """Return the command that repeats this run, quoted for a shell; settings with their default are left out."""
-    words = ["bk", "simulate", *_law(model.law), "--a", repr(model.law.a)]
-    words += [*_changed(model.chain), *_changed(model), "--initial", initial.name]
+    """Return the command that repeats this run, quoted for a shell. Settings with default values are omitted."""
+    words = ["bk", "simulate", *_law_options(model.law), "--a", repr(model.law.a)]
+    words += [*_changed_options(model.chain), *_changed_options(model), "--initial", initial.name]
     if model.chain.springs or (initial.blocks != model.blocks and not model.chain.grid):
         words += ["--blocks", f"{model.blocks}"]
-    words += [f"--{key}={_text(getattr(initial, key))}" for key in fields_of(InitialState)]
-    words += _changed(settings)
+    words += [f"--{key}={_format_value(getattr(initial, key))}" for key in fields_of(InitialState)]
+    words += _changed_options(settings)
     return shlex.join(words)
 
 
-def _law(law: Law) -> Iterator[str]:
-    """Yield the options of a law: a built-in name or a formula, its own name, and the numbers that matter."""
+def _law_options(law: Law) -> Iterator[str]:
+    """Yield the options of a law: a built-in name or a formula, its own name, and parameters without default value."""
     kind = next((name for name, built_in in LAWS.items() if type(law) is built_in), "")
     usual = law.defaults if kind else {}
     yield from ("--law", kind) if kind else (f"--formula={law.formula}",)
     if law.name != (kind or "formula"):
         yield from ("--law-name", law.name)
-    for key, value in law.numbers.items():
+    for key, value in law.parameters.items():
         if value != usual.get(key):
             yield from ("--number", f"{key}={value!r}")
 
 
-def _changed(part: Any) -> Iterator[str]:
+def _changed_options(part: Any) -> Iterator[str]:
     for key, field in fields_of(type(part)).items():
         value = getattr(part, key)
-        # The initial state or the springs tell the number of blocks.
+        # The initial state or the springs give the number of blocks.
         if value is not None and value != field.default and key != "blocks":
-            yield from (f"--{key.replace('_', '-')}", _text(value))
+            yield from (f"--{key.replace('_', '-')}", _format_value(value))
 
 
-def _text(value: Any) -> str:
+def _format_value(value: Any) -> str:
     return ",".join(map(repr, value)) if isinstance(value, tuple) else str(value)

@@ -9,5 +9,5 @@ from burridge_knopoff.running.runner import EVENTS_PER_BLOCK_AND_UNIT
 
 
 def new_ensemble(model: Model) -> Ensemble:
-    """Return an ensemble that moves many trajectories of a model at once; one thread at a time may use it."""
+    """Return an ensemble that integrates many trajectories of a model at once. Only one thread at a time may use it."""
     return Ensemble(kernel_model(model), EVENTS_PER_BLOCK_AND_UNIT * model.blocks)

@@ -1,4 +1,4 @@
-"""A model as the kernel reads it."""
+"""Conversion of a model to the form that the kernel reads."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         slope=law.tape.slope,
         linear=law.is_linear,
         rate=-float(law.slope(0.0)),
-        steepest=law.steepest,
+        steepest=law.steepest_slope,
         v=v,
         symmetric=model.contact == "symmetric",
     )

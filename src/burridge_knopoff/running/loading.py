@@ -1,11 +1,11 @@
-"""How the driver loads a chain."""
+"""Steady and quasi-static loading of a chain by the driver."""
 
 from __future__ import annotations
 
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.ranges import OneOf
 
-#: steady: the driver moves at the velocity v | quasistatic: it stands while any block slips
+#: steady: the driver moves at velocity v | quasistatic: the driver stops while any block slips
 LOADINGS = ("steady", "quasistatic")
 
 
@@ -18,9 +18,9 @@ def is_quasistatic(loading: str, model: Model, solver: str) -> bool:
         return False
     if float(model.law(0.0)) >= 1.0:
         raise ValueError(
-            f"loading: got 'quasistatic', expected steady: friction of the law {model.law.name} does not drop as slip "
-            "begins, and a block at its threshold would stay there"
+            f"loading: got 'quasistatic', expected steady: friction of the law {model.law.name} does not drop at the "
+            "start of a slip, so a block at its threshold would never move"
         )
     if solver != "series":
-        raise ValueError(f"loading: got 'quasistatic', expected steady with the solver {solver}; series does both")
+        raise ValueError(f"loading: got 'quasistatic', expected steady with the solver {solver}; series allows both")
     return True

@@ -2,7 +2,7 @@
 
 Unlike a pickle, the file runs no code when it is read. Supported are None, booleans, numbers, texts, bytes,
 enumerations, lists, tuples, mappings, NumPy arrays and numbers, and objects by their attributes. An array or object
-that occurs in several places is a single object again after reading.
+that occurs several times is read as a single object.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ def pack(value: Any) -> bytes:
     # Keep the objects: an address identifies an object only while the object exists.
     known: dict[int, tuple[Any, int]] = {}
 
-    def packed(value: Any) -> Any:
+    def pack_value(value: Any) -> Any:
         if type(value) in _PLAIN:
             return value
         match value:
@@ -37,40 +37,44 @@ def pack(value: Any) -> bytes:
             case np.generic():
                 return ["number", value.dtype.str, value.tobytes().hex()]
         if type(value) in (list, tuple):
-            return [type(value).__name__, *map(packed, value)]
+            return [type(value).__name__, *map(pack_value, value)]
         if type(value) is dict:
-            return ["dict", *([packed(key), packed(item)] for key, item in value.items())]
+            return ["dict", *([pack_value(key), pack_value(item)] for key, item in value.items())]
         if id(value) not in known:
-            item = array(value) if isinstance(value, np.ndarray) else attributes(value)
+            item = pack_array(value) if isinstance(value, np.ndarray) else pack_attributes(value)
             known[id(value)] = value, len(objects)
             objects.append(item)
         return ["object", known[id(value)][1]]
 
-    def array(value: np.ndarray) -> Any:
+    def pack_array(value: np.ndarray) -> Any:
         if value.dtype.hasobject:
-            raise TypeError(f"an array of objects cannot be kept: {value.dtype}")
+            raise TypeError(f"an array of objects cannot be packed: {value.dtype}")
         order: Literal["F", "C"] = "F" if value.flags.f_contiguous and not value.flags.c_contiguous else "C"
         arrays.append(value.tobytes(order))
         return ["array", value.dtype.str, list(value.shape), order]
 
-    def attributes(value: Any) -> Any:
-        return ["attributes", _name(type(value)), {name: packed(item) for name, item in own_attributes(value).items()}]
+    def pack_attributes(value: Any) -> Any:
+        return [
+            "attributes",
+            _name(type(value)),
+            {name: pack_value(item) for name, item in own_attributes(value).items()},
+        ]
 
-    top = packed(value)
+    top = pack_value(value)
     return json.dumps([top, objects], separators=(",", ":")).encode() + b"\n" + b"".join(arrays)
 
 
 def unpack(content: bytes) -> Any:
-    """Return the value written by `pack`; raises ValueError, LookupError or AttributeError for other content.
+    """Return the value written by `pack`. Raises ValueError, LookupError or AttributeError for other content.
 
-    The classes of objects have to be in modules that have been imported.
+    The modules that define the classes of objects must have been imported.
     """
     line, _, data = content.partition(b"\n")
     top, packed_objects = json.loads(line)
     objects: list[Any] = []
     place = 0
 
-    def unpacked(item: Any) -> Any:
+    def unpack_value(item: Any) -> Any:
         if not isinstance(item, list):
             return item
         kind, *parts = item
@@ -82,9 +86,9 @@ def unpack(content: bytes) -> Any:
             case "number":
                 return np.frombuffer(bytes.fromhex(parts[1]), parts[0])[0]
             case "list" | "tuple":
-                return (list if kind == "list" else tuple)(map(unpacked, parts))
+                return (list if kind == "list" else tuple)(map(unpack_value, parts))
             case "dict":
-                return {unpacked(key): unpacked(value) for key, value in parts}
+                return {unpack_value(key): unpack_value(value) for key, value in parts}
         return objects[parts[0]]
 
     for kind, *parts in packed_objects:
@@ -96,9 +100,9 @@ def unpack(content: bytes) -> Any:
             objects.append(values.reshape(shape, order=order).copy(order="K"))
         else:
             value = object.__new__(_class(parts[0]))
-            vars(value).update({name: unpacked(item) for name, item in parts[1].items()})
+            vars(value).update({name: unpack_value(item) for name, item in parts[1].items()})
             objects.append(value)
-    return unpacked(top)
+    return unpack_value(top)
 
 
 def _name(kind: type) -> str:

@@ -1,4 +1,4 @@
-"""Work shared among processes; the results do not depend on the number of processes."""
+"""Parallel work in processes. The results do not depend on the number of processes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from multiprocessing.connection import Connection, wait
 from pathlib import Path
 from typing import Any, TypeVar
 
-from burridge_knopoff.running.cache import forget, kept
+from burridge_knopoff.running.cache import cached_call, delete_unused
 
 _LOG = logging.getLogger(__name__)
 
@@ -28,11 +28,12 @@ _T = TypeVar("_T")
 _R = TypeVar("_R")
 
 
-class Shared:
-    """Carries functions out for many items, in several processes at once if there is a pool of them.
+class ParallelMap:
+    """Applies functions to many items, in parallel if there is a pool of processes.
 
-    pool : None if this process does all the work; folder : see `shared_out`
-    Function, items and results have to be picklable. A call must not rely on what another call has changed.
+    pool : None if this process does all the work; folder : see `parallel_map`
+
+    Functions, items and results must be picklable. A call must not rely on the side effects of another call.
     """
 
     def __init__(self, pool: Executor | None, folder: str | Path | None) -> None:
@@ -42,44 +43,45 @@ class Shared:
         self._last = ""
 
     def __call__(self, what: str, function: Callable[..., Any], *items: Sequence[Any]) -> list[Any]:
-        """Return the results of a function for each item of one or several sequences, in their order.
+        """Return the results of a function for the items of one or several sequences, in order.
 
-        Logs how long the calls took, in seconds; calls in a row with the same `what` are logged together.
+        The time of the calls is logged in seconds; successive calls with the same `what` are logged together.
         """
         call = partial(_timed, self._begin(what), function)
-        return list(map(self._ended, self._pool.map(call, *items) if self._pool else map(call, *items)))
+        return list(map(self._record, self._pool.map(call, *items) if self._pool else map(call, *items)))
 
-    def and_on(
+    def work_through(
         self,
         what: str,
         function: Callable[[_T], _R],
         items: Iterable[tuple[_K, _T]],
-        more: Callable[[_K, _T, _R], Iterable[tuple[_K, _T]]],
+        successors: Callable[[_K, _T, _R], Iterable[tuple[_K, _T]]],
     ) -> None:
-        """Carry a function out for some items, and on for those that its results lead to, each as soon as it is known.
+        """Apply a function to items, and to the further items that follow from its results, as soon as they are known.
 
-        items : with a name each; more : takes name, item and result and returns what comes of them, in any order
+        items : pairs of a name and an item
+        successors : takes name, item and result, in any order of the items, and returns further pairs
         """
         call = partial(_timed, self._begin(what), function)
         if self._pool is None:
             todo = deque(items)
             while todo:
                 name, item = todo.popleft()
-                todo.extend(more(name, item, self._ended(call(item))))
+                todo.extend(successors(name, item, self._record(call(item))))
             return
         running = {self._pool.submit(call, item): (name, item) for name, item in items}
         try:
             while running:
                 for future in wait_for(running, return_when=FIRST_COMPLETED).done:
                     known = running.pop(future)
-                    for name, item in more(*known, self._ended(future.result())):
+                    for name, item in successors(*known, self._record(future.result())):
                         running[self._pool.submit(call, item)] = name, item
         finally:
             for future in running:
                 future.cancel()
 
     def log(self, what: str = "") -> None:
-        """Log the calls that were last carried out, unless they are the same as those to come."""
+        """Log the last calls, unless the next calls have the same description `what`."""
         if what != self._last:
             _log(self._last, self._taken)
             self._taken.clear()
@@ -89,7 +91,7 @@ class Shared:
         self.log(what)
         return Path(self._folder, what) if self._folder else None
 
-    def _ended(self, call: tuple[Any, float, Path | None, bool]) -> Any:
+    def _record(self, call: tuple[Any, float, Path | None, bool]) -> Any:
         result, seconds, path, was_read = call
         if path:
             self.asked.add(path)
@@ -98,31 +100,31 @@ class Shared:
 
 
 @contextmanager
-def shared_out(processes: int, folder: str | Path | None = None) -> Iterator[Shared]:
-    """Yield what carries functions out for many items in several processes at once.
+def parallel_map(processes: int, folder: str | Path | None = None) -> Iterator[ParallelMap]:
+    """Yield a `ParallelMap`, which applies functions to many items in several processes at once.
 
     On macOS this process does all the work.
 
-    folder : cache of the results for later runs, see `running.cache`; None for no cache. Cached results that no call
-        has asked for are deleted at the end
+    folder : cache of the results for later runs, see `running.cache`; None for no cache. Cached results that were not
+        used by any call are deleted at the end
     """
-    # macOS forbids fork once libraries have threads, and a fresh interpreter would run the caller's script again.
+    # macOS does not allow fork once libraries have threads, and a new interpreter would run the caller's script again.
     if processes == 1 or sys.platform == "darwin":
-        yield (each := Shared(None, folder))
+        yield (apply := ParallelMap(None, folder))
     else:
         context = get_context("fork")
-        told, tell = context.Pipe(duplex=False)
-        with told, tell, ProcessPoolExecutor(processes, context, _end_with_parent, (told,)) as pool:
-            each = Shared(pool, folder)
+        receiver, sender = context.Pipe(duplex=False)
+        with receiver, sender, ProcessPoolExecutor(processes, context, _end_with_parent, (receiver,)) as pool:
+            apply = ParallelMap(pool, folder)
             try:
-                yield each
+                yield apply
             except KeyboardInterrupt:
-                # Nobody reads it: all of them see it.
-                tell.send_bytes(b"end")
+                # The message is never received, so that all processes see it.
+                sender.send_bytes(b"end")
                 raise
-    each.log()
+    apply.log()
     if folder:
-        forget(Path(folder), each.asked)
+        delete_unused(Path(folder), apply.asked)
 
 
 def _log(what: str, taken: Sequence[tuple[float, bool]]) -> None:
@@ -130,23 +132,23 @@ def _log(what: str, taken: Sequence[tuple[float, bool]]) -> None:
     if taken:
         seconds, was_read = zip(*taken, strict=True)
         text = f"{what}: {len(taken)}, {sum(seconds):.1f} s, the longest {max(seconds):.1f} s"
-        _LOG.info("%s", text + f"; {sum(was_read)} kept from a run before" * any(was_read))
+        _LOG.info("%s", text + f"; {sum(was_read)} from the cache" * any(was_read))
 
 
 def _timed(folder: Path | None, function: Callable[..., Any], *items: Any) -> tuple[Any, float, Path | None, bool]:
-    """Return the result of a call, the seconds it took, its file in the cache, and whether it was read from there."""
+    """Return the result of a call, its time in seconds, its file in the cache, and whether it was read from there."""
     begin = time.perf_counter()
-    result, path, was_read = kept(folder, function, *items) if folder else (function(*items), None, False)
+    result, path, was_read = cached_call(folder, function, *items) if folder else (function(*items), None, False)
     return result, time.perf_counter() - begin, path, was_read
 
 
-def _end_with_parent(told: Connection) -> None:
-    """End this process when the process that shares the work out is killed, or interrupted by Ctrl-C."""
+def _end_with_parent(receiver: Connection) -> None:
+    """End this process when the parent process is killed, or interrupted by Ctrl-C."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     parent = parent_process()
 
     def end() -> None:
-        wait([told] if parent is None else [told, parent.sentinel])
+        wait([receiver] if parent is None else [receiver, parent.sentinel])
         os._exit(1)
 
     threading.Thread(target=end, daemon=True).start()

@@ -1,4 +1,4 @@
-"""The runner: a solver of one model that starts from an instant, integrates, and reports how the run ended."""
+"""The runner: a solver of one model that starts from a state, integrates, and reports how the run ended."""
 
 from __future__ import annotations
 
@@ -19,17 +19,17 @@ from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_array, real_number, refusal
 
 #: Solvers with a fixed step.
-STEPPING = ("rk4", "euler")
+FIXED_STEP_SOLVERS = ("rk4", "euler")
 
-# Real motion stays far below: a slip of a block takes about one time unit or longer.
+# Real motion stays far below this rate: a slip of a block takes about one time unit or longer.
 EVENTS_PER_BLOCK_AND_UNIT = 1000
 STEP_LIMIT = 10**10
 
-#: Runs that are best carried out together: enough for full lanes, few enough to stay in the processor's cache.
-TOGETHER = 64
+#: Number of runs that are best carried out in lockstep: enough to fill the lanes, few enough for the processor's cache.
+LOCKSTEP_RUNS = 64
 
-# Velocity, as a share of 1, of the driver's or of the fastest block's, that rounding may leave a block at the instant
-# at which it stops, together with another one. It has either sign, and the block stops at once.
+# Velocity of either sign that rounding may leave to a block when it stops at the same instant as another block. It is
+# relative to the largest of 1, the driver velocity and the speed of the fastest block.
 ROUNDING = 1e-12
 
 
@@ -38,20 +38,20 @@ class Runner:
 
     solver : series, map (closed form), rk4, or euler for comparison (explicit)
     step : time step of rk4 and euler
-    events_from : time from which events are kept with the state; earlier events have time, block and kind only
-    keep_events : whether events are kept; otherwise they are only counted
-    stops_only : whether only the stops from `events_from` on are kept
+    events_from : time from which events are stored with the state; earlier events have time, block and kind only
+    keep_events : whether events are stored; otherwise they are only counted
+    stops_only : whether only the stops after `events_from` are stored
     observer : measures the run; without it nothing is measured
     exponents : perturbations from which Lyapunov exponents are computed
-    perturbations : tangent vectors to carry along unchanged by the solver, columns of shape (2 blocks, vectors)
-    groups : whether blocks that slip together move in groups of their own; None for whatever is faster
+    perturbations : tangent vectors to propagate without orthonormalisation, columns of shape (2 blocks, vectors)
+    groups : whether sets of blocks that slip together are integrated separately; None for whichever is faster
     catalogue : records slip events
-    loading : steady, or quasistatic, for the solver series without an observer. Quasi-static, times of states and of
-        `run` are of the loading clock τ, the displacement of the driver over v. The slip clock of events runs while
-        blocks slip. Exponents are rates in the loading clock.
+    loading : steady, or quasistatic (with the solver series and without an observer). Under quasi-static loading the
+        times of states and of `run` are those of the loading clock τ, the displacement of the driver divided by v; the
+        slip clock of events runs while blocks slip; exponents are rates per unit of the loading clock
 
-    Raises ValueError if the solver needs a closed form and the model has none, and for quasi-static loading of friction
-    that does not drop as slip begins: a block at its threshold would stay there.
+    Raises ValueError if the solver needs a closed form and the model has none, and for quasi-static loading if friction
+    does not drop at the start of a slip: a block at its threshold would never move.
     """
 
     def __init__(
@@ -73,14 +73,14 @@ class Runner:
         instance_of(model, Model, "model")
         if solver == "map" and not model.has_closed_form:
             raise ValueError(
-                "solver: got 'map', expected series | rk4: map needs a closed form, that is a linear friction law, not "
-                "too steep, in a uniform chain with open ends and without dashpots"
+                "solver: got 'map', expected series | rk4: map needs a closed form, a friction law that is linear and "
+                "not too steep, in a uniform chain with open ends and without dashpots"
             )
         quasistatic = is_quasistatic(loading, model, solver)
         self.model = model
-        # These decide the steps: a continued run repeats the steps of the whole run only if they are equal.
-        stepping = solver in STEPPING
-        self.solver = model, solver, step if stepping else None, loading
+        # A continued run repeats the steps of the whole run only if these are equal.
+        stepping = solver in FIXED_STEP_SOLVERS
+        self.step_key = model, solver, step if stepping else None, loading
         blocks = model.blocks
         rate_limit = EVENTS_PER_BLOCK_AND_UNIT * blocks
         self.log = EventLog(blocks, events_from, keep_events, rate_limit, stops_only, MOST_NUMBERS)
@@ -113,15 +113,16 @@ class Runner:
             self.carry(perturbations)
 
     def begin(self, at: ChainState, clock: float | None = None) -> None:
-        """Start from an instant.
+        """Start from a state.
 
-        clock : the time τ at which the run starts; that of the instant, whose last step is then repeated, by default
+        clock : time τ at which the run starts. By default it is the time of the state, and the run first repeats the
+            last step before this state
 
         Raises ValueError as `check_state` does.
         """
         check_state(self.model, at)
         self._place(at, at.time if clock is None else clock)
-        if clock is None and at.last_step is not None and at.last_step[0] == self.solver:
+        if clock is None and at.last_step is not None and at.last_step[0] == self.step_key:
             self.kernel.resume(at.last_step[1], at.time)
 
     def _place(self, at: ChainState, clock: float) -> None:
@@ -129,15 +130,15 @@ class Runner:
         self.kernel.begin(position, velocity, np.asarray(at.stuck, dtype=bool), clock)
 
     def final(self, status: Status = Status.COMPLETED) -> ChainState:
-        """Return the state at the end of a run; from that of a completed one a run continues with the same steps."""
+        """Return the state at the end of a run. If the run completed, another run can continue with the same steps."""
         at = replace(self.state(), time=self.clock)
         if status != Status.COMPLETED:
             return at
-        object.__setattr__(at, "last_step", (self.solver, self.kernel.mark()))
+        object.__setattr__(at, "last_step", (self.step_key, self.kernel.mark()))
         return at
 
     def carry(self, perturbations: np.ndarray) -> None:
-        """Carry the columns of a matrix (2 blocks, vectors) along from now on, without orthonormalising them."""
+        """Propagate the columns of a matrix (2 blocks, vectors) from now on, without orthonormalising them."""
         self.exponents.carry(np.ascontiguousarray(perturbations, dtype=float))
 
     def run(self, until: float | None = None, halting_block: int = -1) -> Status:
@@ -145,18 +146,18 @@ class Runner:
 
         halting_block : halt at each stop of this block; the next call continues from there
 
-        Raises ValueError if `rk4` or `euler` is given either argument, since they only integrate the observer's window,
-        and if the run would keep more than MOST_NUMBERS numbers.
+        Raises ValueError if the solver is rk4 or euler and an argument is given, since these solvers integrate only
+        over the observer's window, and if the run would store more than MOST_NUMBERS numbers.
         """
         if isinstance(self.kernel, Run):
             self.kernel.halting_block = halting_block
             self.kernel.end = self.observer.end if until is None else until
         elif until is not None or halting_block >= 0:
-            raise ValueError(f"solver: got {self.solver[1]!r}, expected series | map for a run to a time or a stop")
-        return self.ended(self.kernel.run())
+            raise ValueError(f"solver: got {self.step_key[1]!r}, expected series | map for a run to a time or a stop")
+        return self.status_of(self.kernel.run())
 
-    def ended(self, how: int) -> Status:
-        """Return the status of a run that has ended so; raises ValueError as `run` does."""
+    def status_of(self, how: int) -> Status:
+        """Return the status for the number with which the kernel ended a run. Raises ValueError as `run` does."""
         status = Status(how)
         for key, table, remedy in (
             ("catalogue", self.catalogue, "a shorter window, or none of the profiles"),
@@ -165,14 +166,14 @@ class Runner:
             ("window", self.observer.crossings, "a shorter one"),
         ):
             if table is not None and table.full:
-                most = f"{MOST_NUMBERS:.0e} numbers to keep by τ = {self.clock:.6g}"
+                most = f"{MOST_NUMBERS:.0e} numbers to store by τ = {self.clock:.6g}"
                 raise ValueError(f"{key}: got more than {most}, expected {remedy}")
         return status
 
-    def after(self, at: ChainState, time: float) -> ChainState | None:
-        """Return the state a given time after an instant, or None if the run fails; the clock starts at 0.
+    def state_after(self, at: ChainState, time: float) -> ChainState | None:
+        """Return the state after a given time, or None if the run fails. The clock starts at 0.
 
-        at : of the model's number of blocks; Newton's method comes by states that no motion has, which are not refused
+        at : the initial state. It may be one that no motion reaches, since Newton's method passes through such states
         """
         _check_blocks(self.model, at)
         self._place(at, 0.0)
@@ -185,24 +186,25 @@ class Runner:
 
     @property
     def clock(self) -> float:
-        """The present time τ, quasi-static that of the loading clock."""
+        """The present time τ; under quasi-static loading, the time of the loading clock."""
         return self.kernel.clock
 
     @property
     def perturbations(self) -> np.ndarray:
-        """The perturbations carried along, columns of shape (2 blocks, vectors)."""
+        """The propagated perturbations, columns of shape (2 blocks, vectors)."""
         return self.exponents.matrix()
 
     def events(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return time, block (0 …) and kind (0 stop, 1 start) of the events kept."""
+        """Return time, block (0 …) and kind (0 stop, 1 start) of the stored events."""
         values = self.log.events.values()
         return self.log.events.times(), values[:, 0].astype(int) - 1, values[:, 1].astype(int)
 
 
 def run_together(runners: Sequence[Runner]) -> list[int]:
-    """Integrate several runs to the ends of their observers' windows, and return how each ended, for `ended`.
+    """Integrate several runs to the ends of their observers' windows; return the numbers for `Runner.status_of`.
 
-    Each gives what it gives alone, to the bit; those of models that differ only in numbers take less time together.
+    Each run gives the same results as alone, to the bit. Runs of models that differ only in parameters are faster
+    together.
     """
     kernels = [runner.kernel for runner in runners]
     for runner, kernel in zip(runners, kernels, strict=True):
@@ -213,10 +215,10 @@ def run_together(runners: Sequence[Runner]) -> list[int]:
 
 
 def check_state(model: Model, at: ChainState) -> None:
-    """Check that a motion of a model may be in a state.
+    """Check that a state is possible in a model.
 
-    Raises ValueError, one line, for another number of blocks, for numbers that are not finite, for a block that sticks
-    and moves, and for one that slips backward under one-sided contact.
+    Raises ValueError, one line, for another number of blocks, for numbers that are not finite, for a stuck block with a
+    velocity, and for a block that slips backward under one-sided contact.
     """
     _check_blocks(model, at)
     position, velocity = real_array(at.position, "state.position"), real_array(at.velocity, "state.velocity")
@@ -227,7 +229,7 @@ def check_state(model: Model, at: ChainState) -> None:
         raise refusal("state.time", at.time, "a finite number")
     moving = np.flatnonzero(np.asarray(at.stuck, dtype=bool) & (velocity != 0.0))
     if len(moving):
-        raise refusal(f"state.velocity[{moving[0]}]", velocity[moving[0]], "0, as this block sticks")
+        raise refusal(f"state.velocity[{moving[0]}]", velocity[moving[0]], "0 because this block sticks")
     model.check_directions(velocity, "state.velocity", ROUNDING * max(1.0, model.v, np.abs(velocity).max()))
 
 
@@ -245,7 +247,7 @@ def new_observer(
     section_only: bool = False,
     section: Section = SUM,
 ) -> Observer:
-    """Return the observer of a run: J averaged over batches, J and states at given times; see `Observer`."""
+    """Return the observer of a run: J averaged over batches, and J and states at given times; see `Observer`."""
     apart = float(model.sliding_offset[-1] - model.sliding_offset[0])
     times = [np.asarray(values, dtype=float) for values in (edge, distance_time, trajectory_time)]
     return Observer(model.blocks, apart, times[0], times[1], times[2], section_only, section.block, MOST_NUMBERS)

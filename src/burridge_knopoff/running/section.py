@@ -16,11 +16,11 @@ SECTION_KEYS = Keys(
     {
         "of": Field(
             OneOf(("sum", "block")),
-            "sum: W is the sum of the positions x_i = U_i - v tau - e_i of all blocks, as in the paper | block: x_n of "
-            "one block, for motion in which the sum never crosses 0",
+            "sum: W is the sum of the positions x_i = U_i - v tau - e_i of all blocks, as in the paper | block: W is "
+            "x_n of one block, for motion in which the sum never crosses 0",
             "sum",
         ),
-        "block": Field(Whole(0, MAXIMUM_BLOCKS), "number n of that block, from 1; 0 with of: sum", 0),
+        "block": Field(Whole(0, MAXIMUM_BLOCKS), "number n of this block, from 1; 0 with of: sum", 0),
     }
 )
 
@@ -29,8 +29,8 @@ SECTION_KEYS = Keys(
 class Section:
     """The choice of W in the section W = 0.
 
-    of : sum, W is the sum of the co-moving positions x_i of all blocks; or block, W is x_n of one block
-    block : number n of that block, from 1; 0 with sum
+    of : "sum", W is the sum of the co-moving positions x_i of all blocks; or "block", W is x_n of one block
+    block : number n of this block, from 1; 0 with "sum"
 
     Raises ValueError, one line, for anything out of range.
 
@@ -59,7 +59,7 @@ class Section:
 
 
 class SectionRange(Range):
-    """A section: a `Section`, its keys, or a word as on a command line."""
+    """A section: a `Section`, its keys, or a word as on the command line."""
 
     def _fit(self, value: Any, key: str) -> Section | None:
         if isinstance(value, Section):

@@ -1,4 +1,4 @@
-"""The settings of a run, besides the model and the initial state."""
+"""The settings of a run, in addition to the model and the initial state."""
 
 from __future__ import annotations
 
@@ -23,20 +23,20 @@ DURATION = Number(0.0, LONGEST)
 TIME = Number(0.0, LONGEST, above=True)
 INTERVAL = Number(1e-6, LONGEST)
 
-#: Limit on the number of rk4 steps times the number of blocks: about an hour of work.
+#: Limit on the number of rk4 steps times the number of blocks: about an hour of computing time.
 MOST_STEPS = 1e10
 
 #: Default number of Lyapunov exponents of a run; a single block has only two.
 DEFAULT_EXPONENTS = 3
 
-#: Limit on rk4's step times the highest frequency: ⟨J⟩ of the paper's runs then agrees with `series` within 5e-4.
+#: Limit on the step of rk4 times the highest rate: ⟨J⟩ of the paper's runs then agrees with `series` within 5e-4.
 LONGEST_STEP = 0.25
 
 
 def check_step(step: float, longest: float, duration: float, chain: Chain) -> None:
-    """Raise ValueError if a fixed step is too long for a chain, or makes too many steps in a time.
+    """Raise ValueError if a fixed step is too long for a chain, or too short for a duration.
 
-    longest : step times the highest rate of the chain
+    longest : limit on the step times the highest rate of the chain
     """
     if step > (longest := longest / chain.highest_rate):
         raise refusal("step", step, f"at most {longest:.3g} in this chain: longer steps miss events")
@@ -65,18 +65,19 @@ class Settings:
     batches: Annotated[
         int,
         Whole(2, 10_000),
-        "equal batches of the window, for the standard error of <J>; each should last 1000 or more in chaotic motion",
+        "number of equal batches of the window, for the standard error of <J>; in chaotic motion each should last 1000 "
+        "or more",
     ] = 7
     sampling: Annotated[float, INTERVAL, "sampling interval of J"] = 5.0
     trajectory: Annotated[
-        float, DURATION, "length of the final part of the run whose positions and velocities are recorded"
+        float, DURATION, "length of the final part of the run in which positions and velocities are recorded"
     ] = 30.0
     trajectory_sampling: Annotated[float, INTERVAL, "sampling interval of these positions and velocities"] = 0.05
     events: Annotated[
         str,
         OneOf(EVENTS),
-        "window: all events, with the states of all blocks in the last event_window | all: all events with states | "
-        "none: no events",
+        "window: all events, those in the last event_window with states | all: all events with states "
+        "| none: no events",
     ] = "window"
     event_window: Annotated[
         float, DURATION, "length of the final part of the window whose events are recorded with states"
@@ -87,10 +88,10 @@ class Settings:
     lyapunov_exponents: Annotated[
         int,
         Whole(0, 2 * MAXIMUM_BLOCKS),
-        "number of Lyapunov exponents, largest first, at most two a block; rk4 computes none",
+        "number of Lyapunov exponents, the largest ones, at most two per block; rk4 computes none",
     ] = DEFAULT_EXPONENTS
     lyapunov_alignment: Annotated[
-        float, DURATION, "time before the window in which perturbations align with the fastest-growing directions"
+        float, DURATION, "time before the window in which perturbations align with the directions of fastest growth"
     ] = 1000.0
 
     def __post_init__(self) -> None:
@@ -103,27 +104,27 @@ class Settings:
                 raise refusal(key, getattr(self, key), "at most 1e7 samples in a run")
 
     def check_chain(self, chain: Chain) -> None:
-        """Raise ValueError if the settings do not fit the chain or exceed what a run can compute or hold."""
+        """Raise ValueError if the settings do not fit the chain or exceed the limits of a run."""
         blocks = chain.blocks
         if self.lyapunov_exponents > max(2 * blocks, DEFAULT_EXPONENTS):
-            raise refusal("lyapunov_exponents", self.lyapunov_exponents, f"at most {2 * blocks}, two a block")
+            raise refusal("lyapunov_exponents", self.lyapunov_exponents, f"at most {2 * blocks}, two per block")
         if 2.0 * blocks * self.lyapunov_exponents > MOST_NUMBERS:
             allowed = f"at most {MOST_NUMBERS / (2.0 * blocks):.3g} with {blocks} blocks"
             raise refusal("lyapunov_exponents", self.lyapunov_exponents, allowed)
         self.section.check_chain(chain)
         if self.solver == "rk4":
             check_step(self.step, LONGEST_STEP, self.duration, chain)
-        # The number of events is not known beforehand. Their tables have the same limit; a run that reaches it ends.
+        # The number of events is not known in advance. Their tables have the same limit; a run that reaches it ends.
         numbers = (2.0 * blocks + 1.0) * min(self.trajectory, self.duration) / self.trajectory_sampling
         if numbers > MOST_NUMBERS:
-            allowed = f"the run would keep {numbers:.1e} numbers for it, at most {MOST_NUMBERS:.0e}"
+            allowed = f"an interval with at most {MOST_NUMBERS:.0e} numbers to store, not {numbers:.1e}"
             raise refusal("trajectory_sampling", self.trajectory_sampling, allowed)
 
-    def exponents_of(self, chain: Chain) -> int:
+    def exponent_count(self, chain: Chain) -> int:
         """Return the number of Lyapunov exponents that are computed."""
         return min(self.lyapunov_exponents, 2 * chain.blocks)
 
     @property
     def duration(self) -> float:
-        """End of the run."""
+        """Duration of the run."""
         return self.transient + self.window

@@ -1,4 +1,4 @@
-"""One run of a model: from an initial state to a trajectory with a readable status."""
+"""One run of a model: from an initial state to a trajectory."""
 
 from __future__ import annotations
 
@@ -26,20 +26,20 @@ def run(
 ) -> Trajectory:
     """Run one simulation of a model and return its trajectory.
 
-    initial : initial state, or an instant of an earlier motion. From an instant the clock starts at its time, and
-        `start` is ignored
-    section_only : leave out ⟨J⟩ and the least friction and spring force (NaN), which takes an eighth of the time
-    stops_only : keep only the stops in the event window and no other events, which halves the memory
+    initial : initial state, or a state of an earlier run. In the second case the clock starts at the time of the state,
+        and `start` is ignored
+    section_only : omit ⟨J⟩ and the least friction and spring force (NaN), which take an eighth of the time
+    stops_only : store only the stops in the event window and no other events, which halves the memory
 
     Raises ValueError, one line, for anything that the model or the solver does not allow.
     """
-    made = prepare(model, initial, settings, section_only=section_only, stops_only=stops_only)
-    return made.result(made.runner.run())
+    prepared = prepare(model, initial, settings, section_only=section_only, stops_only=stops_only)
+    return prepared.result(prepared.runner.run())
 
 
 @dataclass(frozen=True, eq=False)
-class Prepared:
-    """A run that has not begun. runner : its solver, at the instant `begun`"""
+class PreparedRun:
+    """A run that has not started. runner : its solver, in the state `begun`"""
 
     model: Model
     initial: InitialState
@@ -48,7 +48,7 @@ class Prepared:
     begun: ChainState
 
     def result(self, status: Status) -> Trajectory:
-        """Return the trajectory, when the run has ended so."""
+        """Return the trajectory after the run has ended with a status."""
         return collect(self.model, self.initial, self.settings, self.runner, self.begun, status)
 
 
@@ -59,8 +59,8 @@ def prepare(
     *,
     section_only: bool = False,
     stops_only: bool = False,
-) -> Prepared:
-    """Return a run that has not begun; parameters and errors are those of `run`."""
+) -> PreparedRun:
+    """Return a run that has not started; parameters and errors are those of `run`."""
     settings = Settings() if settings is None else settings
     settings.check_chain(model.chain)
     if isinstance(initial, ChainState):
@@ -70,11 +70,11 @@ def prepare(
         begun = model.begin(initial, settings.start)
     runner = _runner(model, settings, begun.time, section_only, stops_only)
     runner.begin(begun)
-    return Prepared(model, initial, settings, runner, begun)
+    return PreparedRun(model, initial, settings, runner, begun)
 
 
 def _runner(model: Model, settings: Settings, time: float, section_only: bool, stops_only: bool) -> Runner:
-    """Return a solver for a run that starts at a time, with the observers that the settings ask for."""
+    """Return a solver for a run that starts at a given time, with an observer according to the settings."""
     duration = settings.duration
     end = time + duration
     edge = time + settings.transient + settings.window * np.arange(settings.batches + 1) / settings.batches
@@ -84,7 +84,7 @@ def _runner(model: Model, settings: Settings, time: float, section_only: bool, s
     count = math.floor(trajectory / settings.trajectory_sampling + 1e-9)
     trajectory_time = end - settings.trajectory_sampling * np.arange(count, -1, -1)
     aligned = time + max(0.0, settings.transient - settings.lyapunov_alignment)
-    exponents = Exponents(model.blocks, settings.exponents_of(model.chain), aligned, edge)
+    exponents = Exponents(model.blocks, settings.exponent_count(model.chain), aligned, edge)
     return Runner(
         model,
         settings.solver,

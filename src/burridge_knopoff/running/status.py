@@ -1,10 +1,10 @@
-"""How a run ended, in the numbers of the kernel; readers of results need no compiled kernel for it."""
+"""The status of a run, with the numbers of the kernel. Reading results does not require the compiled kernel."""
 
 from enum import IntEnum
 
 
 class Status(IntEnum):
-    """HALTED: at a stop of the halting block. FULL: too much to keep. The others also occur in files."""
+    """HALTED: at a stop of the halting block. FULL: too many numbers to store. The others also occur in files."""
 
     HALTED = -2
     FULL = -1
@@ -14,8 +14,8 @@ class Status(IntEnum):
     DIVERGED = 3
 
 
-#: The words for the status numbers in files.
-ENDS = {int(status): status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED}
+#: The meanings of the status numbers in files.
+STATUS_WORDS = {int(status): status.name.lower() for status in sorted(Status) if status >= Status.COMPLETED}
 
-#: Exit code of a command that wrote its results although its run did not complete.
+#: Exit code of a command whose run did not complete; its results are still written.
 EXIT_CODE = 3

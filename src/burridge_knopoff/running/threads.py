@@ -1,4 +1,4 @@
-"""Work shared among threads; the results do not depend on the number of threads."""
+"""Parallel work in threads. The results do not depend on the number of threads."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from burridge_knopoff.kernel._core import StopFlag
 _T = TypeVar("_T")
 
 
-def in_threads(threads: int, function: Callable[..., _T], *items: Iterable[Any]) -> list[_T]:
-    """Return the results of a function for each item of one or several sequences, in their order.
+def map_in_threads(threads: int, function: Callable[..., _T], *items: Iterable[Any]) -> list[_T]:
+    """Return the results of a function for the items of one or several sequences, in order.
 
-    The kernel releases Python's global lock while it runs, so that threads use all cores. An error of one call, or
-    Ctrl-C, ends the others within about 0.1 s.
+    The kernel releases Python's global lock while it runs, so that threads use all cores. An error in one call, or
+    Ctrl-C, ends the other calls within about 0.1 s.
     """
     if threads == 1:
         return list(map(function, *items))
@@ -29,7 +29,7 @@ def in_threads(threads: int, function: Callable[..., _T], *items: Iterable[Any])
 
 
 def _join(pool: ThreadPoolExecutor) -> None:
-    """Wait until all threads have ended, however often Ctrl-C is pressed meanwhile."""
+    """Wait until all threads have ended, even if Ctrl-C is pressed again."""
     while True:
         try:
             return pool.shutdown(cancel_futures=True)

@@ -1,4 +1,4 @@
-"""The result of a run: observables with errors, named as in the point files."""
+"""The result of a run: observables with errors, named as in point files."""
 
 from __future__ import annotations
 
@@ -17,20 +17,19 @@ from burridge_knopoff.running.status import Status
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """Result of a run: model, initial state, settings, status, and observables; arrays have the names of point files.
+    """Result of a run: model, initial state, settings, status, and observables. Arrays have the names of point files.
 
-    `final` is the state at the end. `simulate(model, initial=run.final)` continues from it on the same clock, and both
-    runs together have the events and crossings of one long run, bit for bit. `initially_slipping` says which blocks
-    slip at the beginning, before the first event. The slips of a block are this one and those that begin at its
-    starts.
+    `final` is the state at the end. `simulate(model, initial=run.final)` continues from it on the same clock, and the
+    two runs together have the events and crossings of one long run, bit for bit. `initially_slipping` is true for the
+    blocks that slip at the beginning. A block has this slip, if it is true, and one slip from each of its starts.
 
     Positions are U − vτ (relative to the driver) and velocities are U', as in the paper's figures.
 
     Times are in units of 1/ω. Shapes: `initially_slipping` (blocks,); `time`, `distance` (samples,); `event_time`,
     `event_block`, `event_kind` (events,), `event_position`, `event_velocity` (events, blocks), and likewise
     `earlier_event_…` for events without states; `crossing_…` (crossings,); `trajectory_time` (times,), `position`,
-    `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,); `batch_…` have batches as their first
-    dimension. docs/data.md describes each. Averages are NaN unless `status` is completed.
+    `velocity` (times, blocks); `lyapunov_exponent` and its error (exponents,). The first dimension of `batch_…` is the
+    batch. docs/data.md describes each array. Averages are NaN unless `status` is completed.
 
     >>> from burridge_knopoff import simulate
     >>> run = simulate("linearized", 0.08, "plus", transient=0, window=20, events="all")
@@ -87,7 +86,7 @@ class Trajectory:
 def collect(
     model: Model, initial: InitialState, settings: Settings, runner: Runner, begun: ChainState, status: Status
 ) -> Trajectory:
-    """Return the trajectory of a run that started at an instant."""
+    """Return the trajectory of a run that started in the state `begun` and ended with a status."""
     measured = runner.observer.results()
     n = model.blocks
     offset = model.sliding_offset
@@ -101,7 +100,7 @@ def collect(
     lyapunov = _exponents(runner, settings, completed)
     speed = measured["highest_speed"]
     force = measured["lowest_force"]
-    least_friction = [math.nan if np.isnan(u) else model.law.least(u) for u in (np.fmax(*speed), speed[1])]
+    least_friction = [math.nan if np.isnan(u) else model.law.least_friction(u) for u in (np.fmax(*speed), speed[1])]
     least_force = [float(value) for value in (np.fmin(*force), force[1])]
     return Trajectory(
         model=model,
@@ -142,14 +141,14 @@ def collect(
 
 
 def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str, Any]:
-    """Return the Lyapunov exponents, the largest first, their errors and batch values; NaN for those not computed.
+    """Return the Lyapunov exponents in descending order, their errors and batch values; NaN for those not computed.
 
-    For chaos the standard error of the batches is right; it falls as the square root of the window. In regular motion
-    a perturbation may grow as a power of time. If it grows linearly, then after an alignment A and over a window T it
-    gains ln(1 + T/(1 + A)), which a run of this length cannot tell from an exponent of that over T. The error includes
-    both.
+    For chaos the standard error of the batches is appropriate; it falls as one over the square root of the window. In
+    regular motion a perturbation may grow as a power of time. Linear growth after an alignment time A gains
+    ln(1 + T/(1 + A)) in a window T, which in a run of this length cannot be distinguished from an exponent of this
+    value divided by T. The error includes both.
     """
-    count = settings.exponents_of(runner.model.chain)
+    count = settings.exponent_count(runner.model.chain)
     batch = np.full((settings.batches, count), np.nan)
     mean = np.full(count, np.nan)
     error = np.full(count, np.nan)
@@ -168,7 +167,7 @@ def _exponents(runner: Runner, settings: Settings, completed: bool) -> dict[str,
             alignment = min(settings.lyapunov_alignment, settings.transient)
             resolution = math.log1p(duration.sum() / (1.0 + alignment)) / duration.sum()
             error[finite] = np.hypot(statistical, resolution)
-    # Vectors come in descending order of their growth, but within their errors neighbours may have changed places.
+    # The vectors are in descending order of growth only within the errors.
     order = np.argsort(-mean, kind="stable")
     return {
         "lyapunov_exponent": mean[order],

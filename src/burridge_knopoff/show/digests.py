@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.variables import in_words
+from burridge_knopoff.dataset.variables import decode_flags
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
 from burridge_knopoff.running.status import Status
 
@@ -48,7 +48,7 @@ def mean_distance(data: xarray.Dataset) -> str:
     """Return where each law and initial state is synchronized, and its largest ⟨J⟩."""
 
     def sentence(one: xarray.Dataset, a: np.ndarray) -> str:
-        is_synchronized = in_words(one["synchronized"]).values == "yes"
+        is_synchronized = decode_flags(one["synchronized"]).values == "yes"
         return "; ".join([_synchrony(is_synchronized, a), *_largest("<J>", one["mean_distance"].values, a)])
 
     return _lines(data, sentence)

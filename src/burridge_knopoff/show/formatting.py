@@ -11,7 +11,7 @@ from textwrap import shorten, wrap
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.variables import in_words
+from burridge_knopoff.dataset.variables import decode_flags
 
 #: Maximum length of a list of names, in letters.
 LONGEST = 70
@@ -66,7 +66,7 @@ def describe_values(variable: xarray.DataArray) -> str:
     if not values.size:
         return "no values"
     if "flag_meanings" in variable.attrs:
-        words = in_words(variable).values
+        words = decode_flags(variable).values
         counts = [(name, int((words == name).sum())) for name in variable.attrs["flag_meanings"].split()]
         return ", ".join(f"{name} {number}" for name, number in counts if number)
     if values.dtype == object or values.dtype.kind in "US":

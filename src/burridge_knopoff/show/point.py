@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.motion.kind import motion_of_run, words_of
+from burridge_knopoff.motion.kind import format_motion, motion_of_run
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.running.status import Status
@@ -77,8 +77,8 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
     status = Status(point["status"].item()).name.lower()
     yield "status", f"{status} at tau = {point['end_time'].item():g}"
     yield "<J>", to_ascii(with_error(point["mean_distance"].item(), point["mean_distance_error"].item()))
-    motion = motion.at_speed(point["v"].item())
-    yield "motion", words_of(motion_of_run(run, chain.is_mirror_symmetric, motion), motion)
+    motion = motion.scaled_to_velocity(point["v"].item())
+    yield "motion", format_motion(motion_of_run(run, chain.is_mirror_symmetric, motion), motion)
     exponents = list(zip(run["lyapunov_exponent"], run["lyapunov_error"], strict=True))
     if exponents and not np.isnan(run["lyapunov_exponent"]).all():
         yield "exponents", ", ".join(to_ascii(with_error(*map(float, one))) for one in exponents)

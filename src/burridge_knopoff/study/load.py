@@ -10,7 +10,7 @@ from typing import Any
 
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
-from burridge_knopoff.model.fields import settings_from
+from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.springs import has_digest
 from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.provenance.files import display_path
@@ -81,16 +81,16 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
         for each in chains:
             study.settings(law).check_chain(each)
     # The default is three exponents; a single block has only two.
-    filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponents_of(chain)
+    filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponent_count(chain)
     with rules.error_prefix("basins."):
-        settings_from(BasinSettings, filled["basins"])
+        settings_from_config(BasinSettings, filled["basins"])
     with rules.error_prefix("chains."):
-        settings_from(Sample, filled["chains"])
+        settings_from_config(Sample, filled["chains"])
     rules.fill_values(filled, set(values), study.blocks, study.shown_a)
     rules.fill_catalogue(filled, values)
     rules.fill_edges(filled, values)
     with rules.error_prefix("catalogue."):
-        loading = settings_from(CatalogueSettings, filled.get("catalogue", {})).loading
+        loading = settings_from_config(CatalogueSettings, filled.get("catalogue", {})).loading
         for law, name in product(study.laws, study.catalogue_a):
             is_quasistatic(loading, study.model(law, study.grid[name]), filled["solver"][law])
     for law in study.laws if has_springs and "solvers" not in study.omitted_stages else ():

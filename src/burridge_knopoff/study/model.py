@@ -8,7 +8,7 @@ from typing import Any
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import at
+from burridge_knopoff.model.parameters import set_parameters
 
 #: Keys of a config that define a model, except the number of blocks.
 MODEL_KEYS = ("laws", "chain", "v", "contact")
@@ -29,4 +29,4 @@ def model_of(
     """
     chain = Chain(**{**config["chain"], **({} if blocks is None else {"blocks": blocks})})
     model = Model(chain, law_of(law, a, config["laws"][law]), config["v"], config["contact"])
-    return at(model, others) if others else model
+    return set_parameters(model, others) if others else model

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from burridge_knopoff.dataset.about import point_about
 from burridge_knopoff.dataset.point import write_point
+from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.seal import BadFile, check_seal
 from burridge_knopoff.running.command import simulate_command
-from burridge_knopoff.running.runner import TOGETHER, run_together
+from burridge_knopoff.running.runner import LOCKSTEP_RUNS, run_together
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import prepare
 from burridge_knopoff.study.formatting import format_count
@@ -30,11 +30,11 @@ def make_points(study: Study, points: Sequence[Mapping[str, str]], folder: Path)
         run = study.run_of(**point)
         command = simulate_command(*run)
         try:
-            check_seal(path, point_about(command))
+            check_seal(path, point_identity(command))
         except BadFile:
             wanted.append((path, command, run))
-    for first in range(0, len(wanted), TOGETHER):
-        failed += _simulate_together(wanted[first : first + TOGETHER])
+    for first in range(0, len(wanted), LOCKSTEP_RUNS):
+        failed += _simulate_together(wanted[first : first + LOCKSTEP_RUNS])
     if failed:
         more = f"; {format_count(len(failed) - 1, 'more point')} of this chunk failed" if len(failed) > 1 else ""
         raise RuntimeError(f"{failed[0]}{more}")
@@ -51,7 +51,7 @@ def _simulate_together(wanted: Sequence[tuple[Path, str, tuple[Model, InitialSta
             failed.append(_failure(path, error, command))
     for how, (path, command, one) in zip(run_together([one.runner for *_, one in prepared]), prepared, strict=True):
         try:
-            write_point(one.result(one.runner.ended(how)), path)
+            write_point(one.result(one.runner.status_of(how)), path)
         except (ValueError, MemoryError) as error:
             failed.append(_failure(path, error, command))
     return failed

@@ -18,7 +18,7 @@ from burridge_knopoff.model.chain import BLOCKS, Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import at
+from burridge_knopoff.model.parameters import set_parameters
 from burridge_knopoff.model.ranges import OneOf, Range, Several
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.config import SOME_VALUES
@@ -53,7 +53,7 @@ def fill_states(config: Mapping[str, Any]) -> None:
             if state and key not in state:
                 raise ValueError(f"initial.{name}.{key}: got none, expected position and velocity together")
         if not state:
-            position, velocity = PAPER_STATES[name].numbers(BLOCKS)
+            position, velocity = PAPER_STATES[name].coordinates(BLOCKS)
             state.update(position=position.tolist(), velocity=velocity.tolist())
 
 
@@ -118,7 +118,7 @@ def check_models(
             base = Model(chain, law, config["v"], config["contact"])
             for values in others:
                 with error_prefix(f"grid ({name} law, a = {a:g}): " if values else ""):
-                    model = at(base, values) if values else base
+                    model = set_parameters(base, values) if values else base
                 if solver == "map" and not model.has_closed_form:
                     known = " | ".join(solver for solver in SOLVERS if solver != "map")
                     raise refusal(f"solver.{name}", "map", f"{known}: no closed form at a = {a:g}, {_reason(model)}")
@@ -136,7 +136,7 @@ def check_models(
                     law_of(name, a, laws[name])
     for name, state in config["initial"].items():
         with error_prefix(f"initial.{name}."):
-            model.numbers_of(InitialState(name, **state))
+            model.initial_coordinates(InitialState(name, **state))
 
 
 def _reason(model: Model) -> str:

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.model.fields import settings_from
+from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import plain_name, single_of
+from burridge_knopoff.model.parameters import parse_indexed_name, plain_name
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
@@ -111,7 +111,7 @@ class Study:
     def chain_description(self) -> dict[str, Any]:
         """The arguments of `Chain`; those of the first point if the chain varies."""
         chain, first = self.config["chain"], self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain
-        varied = {(single_of(name) or (name,))[0] for name in self.parameters}
+        varied = {(parse_indexed_name(name) or (name,))[0] for name in self.parameters}
         return {key: getattr(first, key) if key in varied else value for key, value in chain.items()}
 
     @property
@@ -166,7 +166,7 @@ class Study:
     @property
     def marked_states(self) -> dict[str, tuple[float, float]]:
         """U_1(0) and U_N(0) of the initial states in the plane of the basin maps, by name."""
-        states = {name: self.state(name).numbers(self.blocks) for name in self.initial}
+        states = {name: self.state(name).coordinates(self.blocks) for name in self.initial}
         plane, speed = states[self.config["basins"]["initial"]]
         return {
             name: (float(position[0]), float(position[-1]))
@@ -216,7 +216,7 @@ class Study:
         if config["solver"] != "rk4":
             # The other solvers have no step, so that a change of the step must not repeat their points.
             del config["step"]
-        return settings_from(Settings, config)
+        return settings_from_config(Settings, config)
 
     def state(self, initial: str) -> InitialState:
         """Return an initial state of the study from its name."""

@@ -15,11 +15,11 @@ from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import ANSWER, PERIOD, Answer, Variable, flag
 from burridge_knopoff.motion.kind import (
     CHAOS,
-    OPEN,
     REGULAR,
     SYNCHRONOUS,
+    UNDECIDED_KINDS,
     MotionKind,
-    same_result,
+    is_same_result,
 )
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries.event_order import common_order
@@ -32,7 +32,7 @@ DIGITS = 12
 _POINT = ("law", "initial", "a")
 _PAIR = ("other_law", "initial", "a")
 # Relative difference of ⟨J⟩ that is allowed between a run and its attractor even if their errors are smaller.
-SAME_MEAN = 0.01
+MEAN_TOLERANCE = 0.01
 KIND_COMMENT = (
     "kind of the attractor that the run has reached, which was followed for longer than the run; a run that approaches "
     "synchrony counts as synchronized; if the run has reached no known attractor, the kind that the run alone shows"
@@ -138,7 +138,7 @@ def _fill_settled(
         _, error = reached_values(own, *names, "mean_distance_error")
         mine, my_error = (values[name][law, initial] for name in ("mean_distance", "mean_distance_error"))
         allowed = np.maximum(
-            standard_errors * np.hypot(error, my_error), np.maximum(SAME_MEAN * np.maximum(mean, mine), threshold)
+            standard_errors * np.hypot(error, my_error), np.maximum(MEAN_TOLERANCE * np.maximum(mean, mine), threshold)
         )
         there = known & (np.abs(mean - mine) <= allowed)
         kind, (_, finer), (_, period) = (
@@ -148,13 +148,15 @@ def _fill_settled(
         # Transient chaos that outlasts the run is chaos in the run.
         lasting = np.where(mean < threshold, MotionKind.SYNCHRONIZED_CHAOS, MotionKind.CHAOTIC)
         finer = np.where(finer == MotionKind.TRANSIENT_CHAOS, lasting, finer)
-        replaced = there & np.isin(finer, (*REGULAR, *CHAOS)) & (np.isin(kind, OPEN) | same_result(kind, finer))
+        replaced = (
+            there & np.isin(finer, (*REGULAR, *CHAOS)) & (np.isin(kind, UNDECIDED_KINDS) | is_same_result(kind, finer))
+        )
         replaced |= (
             known & np.isin(finer, SYNCHRONOUS) & (mine < attractors.attrs["resolution"] * attractors.attrs["v"] / 0.1)
         )
         kind[...] = np.where(replaced, finer, kind)
         values["period"][law, initial] = np.where(replaced, period, values["period"][law, initial])
-        there &= (finer == MotionKind.UNDETERMINED) | same_result(kind, finer)
+        there &= (finer == MotionKind.UNDETERMINED) | is_same_result(kind, finer)
         # If the errors exceed the tolerance between laws, agreement of ⟨J⟩ does not show that the motions are the same.
         is_accurate = allowed <= np.maximum(relative_tolerance * np.maximum(mean, mine), threshold)
         known &= np.isfinite(mine) & (kind != MotionKind.UNDETERMINED) & (is_accurate | ~there)

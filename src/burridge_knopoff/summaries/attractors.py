@@ -18,7 +18,7 @@ from burridge_knopoff.attractors.labels import UNDETERMINED, label
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import NOTHING, slot_coordinates, slot_values, slot_variables
 from burridge_knopoff.continuation.along_a import Continuation
-from burridge_knopoff.dataset.columns import empty
+from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.model.initial import InitialState
@@ -131,7 +131,7 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
         "start": start,
         "synchronization_threshold": motion.synchronization_threshold,
         "section": str(motion.section),
-        "longest_period": motion.at_speed(model.v).longest_period,
+        "longest_period": motion.scaled_to_velocity(model.v).longest_period,
         "position_box": np.array(settings.position),
         "velocity_box": np.array(settings.velocity),
         **{key: value for key, value in asdict(settings).items() if key not in ("position", "velocity")},
@@ -141,7 +141,7 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
 
 def _basin_fractions(found: Continuation) -> dict[str, np.ndarray]:
     """Return how many of the sampled states reach each attractor, and their fraction with its interval."""
-    values = empty(
+    values = empty_columns(
         VARIABLES,
         {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors))},
         "basin",
@@ -178,7 +178,7 @@ def _neighbour_branches(found: Continuation) -> dict[str, np.ndarray]:
 def _initial_branches(found: Continuation, states: Sequence[InitialState], label_limit: float) -> dict[str, np.ndarray]:
     """Return which branch each initial state reaches under each convention of contact and start."""
     shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(found.grid)}
-    values = empty(VARIABLES, shape, "initial")
+    values = empty_columns(VARIABLES, shape, "initial")
     for k, place in enumerate(found.grid):
         reached = _labels_of_states(found.models[place], found.attractors[place], states, label_limit)
         for where in np.argwhere(reached != UNDETERMINED):
@@ -194,7 +194,7 @@ def _observables(found: Continuation, branch: np.ndarray, side: np.ndarray, sect
     branch, side : reached by the initial states, shape (…, a)
     """
     sizes = {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors)), "block": found.models[0].blocks}
-    values = empty(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")
+    values = empty_columns(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")
     for k, place in enumerate(found.grid):
         wanted = {*zip(branch[..., k].ravel().tolist(), side[..., k].ravel().tolist(), strict=True)}
         for slot, row in enumerate(found.rows(place)):
@@ -212,7 +212,7 @@ def _rounded_branches(
 ) -> dict[str, np.ndarray]:
     """Return the branches reached by the `corners` of each initial state, with the models' contact and `start`."""
     shape = {"initial": len(states), "a": len(found.grid), "corner": CORNERS}
-    values = empty(VARIABLES, shape, "rounded")
+    values = empty_columns(VARIABLES, shape, "rounded")
     for k, place in enumerate(found.grid):
         model = found.models[place]
         for n, state in enumerate(states):
@@ -226,7 +226,7 @@ def _rounded_branches(
 
 def _is_allowed(state: InitialState, contact: str, blocks: int) -> bool:
     """Return whether the velocities of a state are allowed: under one-sided contact no block slips backward."""
-    return contact == "symmetric" or bool(state.numbers(blocks)[1].min() >= 0.0)
+    return contact == "symmetric" or bool(state.coordinates(blocks)[1].min() >= 0.0)
 
 
 def corners(state: InitialState, contact: str, blocks: int) -> list[InitialState]:
@@ -237,7 +237,7 @@ def corners(state: InitialState, contact: str, blocks: int) -> list[InitialState
     contact : if one_sided, velocities are at least 0
     """
     above = np.arange(CORNERS)[:, None] >> (np.arange(2 * blocks) % 6) & 1
-    numbers = np.concatenate(state.numbers(blocks)) + ROUNDING * (2 * above - 1)
+    numbers = np.concatenate(state.coordinates(blocks)) + ROUNDING * (2 * above - 1)
     if contact == "one_sided":
         numbers[:, blocks:] = np.maximum(numbers[:, blocks:], 0.0)
     return [InitialState(state.name, tuple(row[:blocks].tolist()), tuple(row[blocks:].tolist())) for row in numbers]
@@ -266,7 +266,7 @@ def _sweeps(found: Continuation) -> dict[str, np.ndarray]:
     there = [k for k in range(count) if attractors[k]] or [0]
     ends = (there[0], there[-1])
     sweeps = max(1, *(len(attractors[end]) for end in ends))
-    values = empty(VARIABLES, {"direction": 2, "sweep": sweeps, "a": count}, "sweep")
+    values = empty_columns(VARIABLES, {"direction": 2, "sweep": sweeps, "a": count}, "sweep")
     for direction, (end, steps, following) in enumerate(
         zip(ends, (range(ends[0], count), range(ends[1], -1, -1)), (found.upward, found.downward), strict=True)
     ):

@@ -138,7 +138,7 @@ def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit
     """
     first = pixel_centres(basins.first_position, basins.pixels)
     last = np.array_split(pixel_centres(basins.last_position, basins.pixels), basins.tiles)[number]
-    u, w = basins.initial.numbers(known.model.blocks)
+    u, w = basins.initial.coordinates(known.model.blocks)
     position, velocity = plane(u, first, last, w)
     labels, times = _labels(known, position, velocity, basins, label_limit, start)
     shape = (len(last), len(first))
@@ -155,7 +155,7 @@ def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit
 def pairs(known: KnownAttractors, basins: BasinSettings, label_limit: float, seed: int, start: str) -> xarray.Dataset:
     """Label pairs of nearby states in the plane of a map, for the uncertainty exponent of its boundary; see `tile`."""
 
-    u, w = basins.initial.numbers(known.model.blocks)
+    u, w = basins.initial.coordinates(known.model.blocks)
 
     def label(points: np.ndarray) -> np.ndarray:
         first, last = points.T
@@ -227,7 +227,7 @@ def merge(
     coordinates["law"] = ("map", names, {"long_name": "friction law"})
     a = {"long_name": "friction parameter a", "units": "1"}
     coordinates["a"] = ("map", np.array([model.a for model in models]), a)
-    u, w = basins.initial.numbers(models[0].blocks)
+    u, w = basins.initial.coordinates(models[0].blocks)
     attributes = {
         "history": "snakemake, from attractors.nc",
         "v": models[0].v,

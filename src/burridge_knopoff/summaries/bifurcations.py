@@ -18,7 +18,7 @@ import xarray
 from burridge_knopoff.continuation.bifurcations import LEAST_ERROR, Entry, entries
 from burridge_knopoff.continuation.branch_changes import Change, branch_changes
 from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, follow_orbits
-from burridge_knopoff.dataset.columns import Column, filled
+from burridge_knopoff.dataset.columns import Column, column_values
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import ANSWER, Variable, flag
@@ -196,7 +196,7 @@ def one_law(
     segments = enumerate(zip(_branches_of_segments(orbits, one["branch"].values), orbits.segments, strict=True))
     points = [(number, branch, point) for number, (branch, segment) in segments for point in segment.drawn_orbits]
     sizes = {"bifurcation": len(found), "orbit": len(points), "block": model.blocks, "part": len(PARTS)}
-    values = filled(BIFURCATIONS, {(k,): one for k, one in enumerate(found)}, sizes)
+    values = column_values(BIFURCATIONS, {(k,): one for k, one in enumerate(found)}, sizes)
     rounded = {name: _round_digits(value, DIGITS.get(name, 10)) for name, value in values.items()}
     rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])
@@ -206,7 +206,7 @@ def one_law(
     rounded = _sort_rows(rounded)
     rounded |= {
         name: _round_digits(value, 10)
-        for name, value in filled(ORBITS, {(k,): one for k, one in enumerate(points)}, sizes).items()
+        for name, value in column_values(ORBITS, {(k,): one for k, one in enumerate(points)}, sizes).items()
     }
     rounded |= {"law": np.repeat(law, len(found)), "orbit_law": np.repeat(law, len(points))}
     head = {"v": model.v, "contact": model.contact}

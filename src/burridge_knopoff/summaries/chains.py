@@ -17,7 +17,7 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag, global_attributes
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import CHAIN
+from burridge_knopoff.model.parameters import CHAIN_PARAMETERS
 from burridge_knopoff.model.sampling import CONFIDENCE, fraction_interval
 from burridge_knopoff.motion.chain_synchronization import (
     Outcome,
@@ -105,7 +105,7 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
         {
             "history": "snakemake chains",
             "blocks": first.blocks,
-            **{name: getattr(first.chain, name) for name in (*CHAIN, "ends")},
+            **{name: getattr(first.chain, name) for name in (*CHAIN_PARAMETERS, "ends")},
             "friction": friction_words(model.law for model in models),
             "v": first.v,
             "contact": first.contact,

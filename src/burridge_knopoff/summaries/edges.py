@@ -14,7 +14,7 @@ from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.stored_returns import known_attractors
 from burridge_knopoff.basins.settings import EdgeSettings
 from burridge_knopoff.continuation.edges import Approach, Edge, approach, continue_edges, edges_at
-from burridge_knopoff.dataset.columns import Column, filled
+from burridge_knopoff.dataset.columns import Column, column_values
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
@@ -25,7 +25,7 @@ from burridge_knopoff.motion.settings import EXPONENTS
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.study.model import model_of
 
 TITLE = "Edge states on the boundaries between basins"
@@ -198,7 +198,7 @@ def make_of_law(
     returns = given.summary("returns")
     known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
     limit = SearchSettings(**attractors).label_limit
-    with shared_out(given.cores) as each:
+    with parallel_map(given.cores) as each:
         at = each("edge states", partial(edges_at, settings=EdgeSettings(**edges), time_limit=limit), known)
     states = [edge for one in at for edge in one]
     segments, numbers = continue_edges(states, float(found["a"].max()))
@@ -266,7 +266,7 @@ def _of_law(
     rows = [_Row(edge, number) for edge, number in zip(states, numbers, strict=True)]
     values: dict[str, np.ndarray] = {}
     for columns, things in ((EDGES, rows), (ORBITS, points), (CRISES, crises)):
-        values |= filled(columns, {(k,): one for k, one in enumerate(things)}, sizes)
+        values |= column_values(columns, {(k,): one for k, one in enumerate(things)}, sizes)
     values |= {name: np.repeat(model.law.name, sizes[dimension]) for name, (dimension,) in LAWS.items()}
     return _dataset([model.law.name], values, {"v": model.v, "contact": model.contact})
 

@@ -19,7 +19,7 @@ from scipy.linalg import eigvalsh, eigvalsh_tridiagonal, solve, solveh_banded
 
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
-from burridge_knopoff.laws.blend import mirrored
+from burridge_knopoff.laws.blend import mirror_law
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.runner import Runner
@@ -93,7 +93,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
             values["eigenvalue"][i, k] = np.stack([found.real, found.imag], axis=-1)
             values["equilibrium_drift"][i, k], values["growth_rate"][i, k] = simulate_sliding(model, position)
             try:
-                reverse = replace(model, law=mirrored(model.law, model.v))
+                reverse = replace(model, law=mirror_law(model.law, model.v))
             except ValueError:
                 continue
             values["strengthening_growth_rate"][i, k] = simulate_sliding(reverse, position)[1]
@@ -169,7 +169,7 @@ def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:
     runner = Runner(model, perturbations=np.eye(2 * model.blocks))
     fastest = float(eigenvalues(model).real.max())
     duration = min(DURATION, LARGEST_GROWTH / fastest) if fastest > 0.0 else DURATION
-    end = runner.after(start, duration)
+    end = runner.state_after(start, duration)
     if end is None:
         return math.nan, math.nan
     moduli = np.abs(np.linalg.eigvals(runner.perturbations))

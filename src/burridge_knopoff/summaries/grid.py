@@ -58,7 +58,7 @@ def summarize(
             values[name][index] = read[name]
         law, _, *names = point
         symmetric = grid.model_of(law, *names).chain.is_mirror_symmetric
-        found = motion_of_run(read, symmetric, settings.at_speed(float(read["v"])))
+        found = motion_of_run(read, symmetric, settings.scaled_to_velocity(float(read["v"])))
         values["run_kind"][index], values["unstable"][index] = found.kind, found.unstable
         values["section_period"][index], values["period"][index] = found.section_period, found.period
     return summary(
@@ -66,6 +66,6 @@ def summarize(
         variables,
         values,
         grid.axes(),
-        settings.told,
+        settings.attributes,
         module=__name__,
     )

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff.dataset.variables import Answer
-from burridge_knopoff.motion.kind import SYNCHRONOUS, MotionKind, same_result
+from burridge_knopoff.motion.kind import SYNCHRONOUS, MotionKind, is_same_result
 
 
 def compare(
@@ -33,7 +33,7 @@ def compare(
     values["difference"][...] = other - first
     values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
     determined = (kind != MotionKind.UNDETERMINED).all(axis=0)
-    values["same_kind"][...] = np.where(determined, same_result(*kind), Answer.UNDETERMINED)
+    values["same_kind"][...] = np.where(determined, is_same_result(*kind), Answer.UNDETERMINED)
     same = same_mean(values, threshold, agreement)
     disagree = (values["same_kind"] == Answer.NO) | (same == Answer.NO)
     agree = determined & (same == Answer.YES)

@@ -11,7 +11,7 @@ import xarray
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import PERIOD, YES_OR_NO, Variable, flag
-from burridge_knopoff.motion.kind import MotionKind, motion_of_run, zero_exponents
+from burridge_knopoff.motion.kind import MotionKind, is_zero_exponent, motion_of_run
 from burridge_knopoff.motion.period import SECTION
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.summaries.points import Grid, read_point
@@ -55,7 +55,7 @@ def summarize(
     motion : the config's section of that name: thresholds of the kinds of motion
     """
     chosen = {**motion, "synchronization_threshold": synchronization_threshold, "section": grid.section}
-    settings = MotionSettings(**chosen).at_speed(grid.models["v"])
+    settings = MotionSettings(**chosen).scaled_to_velocity(grid.models["v"])
     symmetric = grid.is_mirror_symmetric
     values = {}
     for name, item in VARIABLES.items():
@@ -69,12 +69,12 @@ def summarize(
         values["run_kind"][index], values["unstable"][index] = found.kind, found.unstable
         values["section_period"][index], values["period"][index] = found.section_period, found.period
         exponents = read["lyapunov_exponent"], read["lyapunov_error"]
-        values["zero_exponent_count"][index] = np.count_nonzero(zero_exponents(*exponents, settings))
+        values["zero_exponent_count"][index] = np.count_nonzero(is_zero_exponent(*exponents, settings))
     return summary(
         "Lyapunov exponents and kinds of motion",
         VARIABLES,
         values,
         grid.axes(),
-        settings.told,
+        settings.attributes,
         module=__name__,
     )

@@ -22,7 +22,7 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import AXES, STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.sampling import fraction_interval
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.attractor_observables import follow_attractor
 
@@ -102,7 +102,7 @@ def one_law(
     label_limit : time by which a state has to reach one of them
     processes : number of parallel processes; no result depends on it
     """
-    with shared_out(processes) as each:
+    with parallel_map(processes) as each:
         found = each("phases", partial(_values_at, phases=phases, label_limit=label_limit), known)
     model, grid = known[0].model, [item.model.a for item in known]
     inner = model.chain.blocks - 2

@@ -12,8 +12,8 @@ import netCDF4
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.about import point_about
 from burridge_knopoff.dataset.given import Given
+from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
@@ -165,7 +165,7 @@ def check_run(path: Path, command: str) -> str:
 
     Raises BadFile as `read_point` does.
     """
-    return check_seal(path, point_about(command))
+    return check_seal(path, point_identity(command))
 
 
 def all_events(run: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -72,7 +72,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
 
     refined : the summary of that name; models : one for each of its laws, at any a
     """
-    exponents = Settings().exponents_of(models[0].chain)
+    exponents = Settings().exponent_count(models[0].chain)
     sizes = {**refined.sizes, "detuning": len(DETUNINGS), "exponent": exponents}
     values = {
         name: np.full([sizes[key] for key in item.dimensions], -1 if item.dtype == "i1" else np.nan, item.dtype)

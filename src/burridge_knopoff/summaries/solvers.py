@@ -12,7 +12,7 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.settings import SOLVERS
-from burridge_knopoff.running.status import ENDS
+from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
@@ -27,7 +27,7 @@ VARIABLES = {
         {"ancillary_variables": "mean_distance_error status"},
     ),
     "mean_distance_error": Variable(_AXES, "f8", "standard error of <J> from the batch means"),
-    "status": Variable(_AXES, "i1", "how the run ended", flag("i1", {NO_RUN: "no_such_solver", **ENDS})),
+    "status": Variable(_AXES, "i1", "how the run ended", flag("i1", {NO_RUN: "no_such_solver", **STATUS_WORDS})),
     "step_count": Variable(_AXES, "i8", "number of solver steps in the whole run, -1 if there is no run"),
     "end_time": Variable(_AXES, "f8", "time tau at which the run ended"),
     "difference": Variable(_AXES, "f8", "<J> minus <J> of the solver of the study's points"),

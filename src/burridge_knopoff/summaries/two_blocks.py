@@ -30,7 +30,7 @@ from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.chain_settings import Sample
 from burridge_knopoff.motion.kind import MotionKind, motion_of_run
 from burridge_knopoff.motion.settings import MotionSettings
-from burridge_knopoff.running.processes import shared_out
+from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
@@ -108,7 +108,7 @@ def make(
         as in a config
     """
     grid = two_blocks["a"]
-    initial = Sample(samples=two_blocks["samples"], symmetric_samples=0, **sample).initial(BLOCKS)
+    initial = Sample(samples=two_blocks["samples"], symmetric_samples=0, **sample).initial_states(BLOCKS)
     judged = SearchSettings(**search), MotionSettings(**motion), agreement
     models = models_of(model, grid[0], BLOCKS)
     return summarize(models, initial, grid, run_settings(**settings), *judged, processes=given.cores)
@@ -169,12 +169,12 @@ def summarize(
         for name, item in VARIABLES.items()
     }
     for j, state in enumerate(initial):
-        values["initial_position"][j], values["initial_velocity"][j] = state.numbers(BLOCKS)
+        values["initial_position"][j], values["initial_velocity"][j] = state.coordinates(BLOCKS)
     trains = [replace(model, chain=train(model.chain, BLOCKS)) for model in models]
     alone = [replace(model, chain=train(model.chain, 1)) for model in models]
-    position, velocity = initial[0].numbers(BLOCKS)
+    position, velocity = initial[0].coordinates(BLOCKS)
     first = InitialState(initial[0].name, tuple(position[:1]), tuple(velocity[:1]))
-    with shared_out(processes) as each:
+    with parallel_map(processes) as each:
         for c, (name, chosen) in enumerate(zip(CHAINS, (trains, models), strict=True)):
             of_one = partial(_compare_at, chosen, initial=initial, settings=settings, search=search, motion=motion)
             for k, found in enumerate(each(f"two blocks, {name}", of_one, grid)):
@@ -198,7 +198,7 @@ def summarize(
     shared = axes(law=laws, a=grid)
     chain_about = {"long_name": "chain of two blocks: the train, pulled at its first block only, or both blocks pulled"}
     about = {**shared["law"][2], "long_name": "friction law compared with the first one"}
-    judged = motion.at_speed(models[0].v).told
+    judged = motion.scaled_to_velocity(models[0].v).attributes
     threshold = judged.pop("synchronization_threshold")
     return summary(
         "Two blocks under each friction law",
@@ -258,7 +258,7 @@ def _one_block(
     for i, of_law in enumerate(models):
         model = of_law.at(a)
         found = run(model, initial, measured, stops_only=True)
-        kind[i] = motion_of_run(vars(found), False, motion.at_speed(model.v)).kind
+        kind[i] = motion_of_run(vars(found), False, motion.scaled_to_velocity(model.v)).kind
         rate[i] = len(found.event_time) / min(measured.event_window, measured.window)
     return {"one_block_kind": kind, "one_block_stop_rate": rate}
 

@@ -1,4 +1,4 @@
-"""Numbers for the blocks: one for all, one a block, or drawn at random with a fixed seed."""
+"""Numbers for the blocks: one for all blocks, one per block, or random with a fixed seed."""
 
 from __future__ import annotations
 
@@ -13,19 +13,19 @@ from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.ranges import Number, OneOf, Range, Whole
 from burridge_knopoff.values import refusal
 
-#: One number for all blocks, a list with one number each, or the keys or the text of a `Drawn`.
+#: One number for all blocks, a list with one number per block, or random numbers by their keys or as text.
 Numbers = float | Sequence[float] | Mapping[str, Any] | str
 
 SEED = Whole(0, 2**32 - 1)
 
 
 @dataclass(eq=False, repr=False)
-class Drawn(Range):
-    """Numbers drawn independently for the blocks, uniform between `low` and `high`.
+class RandomNumbers(Range):
+    """The keys of independent random numbers for the blocks, uniform between `low` and `high`.
 
     each : range of `low` and `high`
 
-    Its form is a text that a file and a command line can hold, such as `random=uniform,low=0.9,high=1.1,seed=1`.
+    The form is a text for files and command lines, such as `random=uniform,low=0.9,high=1.1,seed=1`.
     """
 
     each: Number
@@ -44,7 +44,7 @@ class Drawn(Range):
 
     def _fit(self, value: Any, key: str) -> str | None:
         if isinstance(value, str) and value.startswith("random="):
-            value = _read(value)
+            value = _parse(value)
         if not isinstance(value, Mapping):
             return None
         drawn = self.keys.form(value, key)
@@ -56,26 +56,26 @@ class Drawn(Range):
         return "{random: uniform, low, high, seed}"
 
 
-def _read(text: str) -> dict[str, Any]:
-    return {name: _plain(value) for name, _, value in (part.partition("=") for part in text.split(","))}
+def _parse(text: str) -> dict[str, Any]:
+    return {name: _parse_number(value) for name, _, value in (part.partition("=") for part in text.split(","))}
 
 
-def _plain(text: str) -> Any:
+def _parse_number(text: str) -> Any:
     for kind in (int, float):
         with contextlib.suppress(ValueError):
             return kind(text)
     return text
 
 
-def numbers_of(given: Numbers, blocks: int, name: str) -> np.ndarray:
+def block_values(given: Numbers, blocks: int, name: str) -> np.ndarray:
     """Return the numbers of all blocks, shape (blocks,).
 
-    name : of the quantity; different quantities of one seed are independent
+    name : of the quantity; different quantities with the same seed are independent
 
-    The first numbers drawn for more blocks are those drawn for fewer.
+    The sequence does not depend on the number of blocks.
     """
     if not isinstance(given, str):
         return np.array(np.broadcast_to(given, blocks), dtype=float)  # type: ignore[arg-type]
-    drawn = _read(given)
+    drawn = _parse(given)
     unit = np.random.default_rng([drawn["seed"], *name.encode()]).random(blocks)
     return np.minimum(drawn["low"] + (drawn["high"] - drawn["low"]) * unit, drawn["high"])
