@@ -39,6 +39,6 @@ def kept_stages(jobs: Jobs) -> list[str]:
     if not kept:
         return []
     return [
-        f"without {', '.join(study.omitted_stages)}: the study still contains {', '.join(kept)} (only the figures of the "
-        "paper: snakemake curves)"
+        f"without {', '.join(study.omitted_stages)}: the study still contains {', '.join(kept)} (only the figures of "
+        "the paper: snakemake curves)"
     ]
