@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from burridge_knopoff.claims.formats import untestable
+from burridge_knopoff.claims.formats import group_untestable
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, READING
 from burridge_knopoff.study.formatting import counted
 from burridge_knopoff.study.job_log import failure, interrupted, remedies
@@ -69,7 +69,7 @@ def _made(results: Path, made: Sequence[str]) -> str:
 
 def _claims(path: Path) -> list[str]:
     read = json.loads(path.read_text(encoding="utf-8"))
-    ledger, reasons = path.with_suffix(".md"), untestable(read["claims"])
+    ledger, reasons = path.with_suffix(".md"), group_untestable(read["claims"])
     if list(reasons.values()) == [read["claims"]]:
         return [f"claims of the paper: none is judged ({ledger})", f"  {next(iter(reasons))}"]
     independent = read["independent_counts"]
