@@ -86,12 +86,12 @@ def test_the_evidence_itself_stays_as_it_is():
     assert all(world[name].identical(same[name]) for name in same)
 
 
-def test_states_that_round_to_the_papers_are_told_of_where_they_end_elsewhere():
+def test_states_that_round_to_the_papers_and_reach_another_attractor_are_listed():
     world = paper_world()
     assert rounded_state_changes(evidence(world), ["minus", "plus"], ["linearized"], BELOW) == []
     rounded = world["attractors"]["rounded_branch"]
     rounded.loc[{"law": "linearized", "initial": "plus", "a": [0.05, 0.2], "corner": 1}] = 0
-    # What is not known is no other attractor.
+    # An attractor that is not known does not count as another one.
     rounded.loc[{"law": "linearized", "initial": "plus", "a": 0.03}] = -1
     text = "some states that round to plus reach another attractor at a = 0.05 (linearized)"
     assert rounded_state_changes(evidence(world), ["plus"], ["linearized", "nonlinear"], BELOW) == [text]

@@ -1,4 +1,4 @@
-"""What may come before chaos, told of branches made by hand."""
+"""What precedes chaos, on branches made by hand."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ PERIODIC, CHAOTIC = MotionKind.PERIODIC, MotionKind.CHAOTIC
 @pytest.mark.parametrize(
     ("change", "kinds", "expected"),
     [
-        # Known at one value below the bifurcation, or at two: the nearest tells.
+        # Known at one value below the bifurcation, or at two: the nearest decides.
         (Change.END, {0.1: CHAOTIC}, True),
         (Change.END, {0.1: PERIODIC}, False),
         (Change.END, {0.05: PERIODIC, 0.1: CHAOTIC}, True),

@@ -82,8 +82,8 @@ def test_a_claim_depends_on_convention_where_it_holds_and_fails(
         return others[number], str(number + 1)
 
     found = judge_conventions(evidence(paper_world()), own, "why", figures, ["but"], judged)
-    told = {"one_sided, moving": own, **{name: one for name, one in zip(names, others, strict=True) if one}}
-    assert found == Verdict(expected, "why", figures, f"but{changes}", told, own)
+    verdicts = {"one_sided, moving": own, **{name: one for name, one in zip(names, others, strict=True) if one}}
+    assert found == Verdict(expected, "why", figures, f"but{changes}", verdicts, own)
     alone = judge_conventions(evidence({}), own, "why", figures, [], judged)
     assert alone == Verdict(own, "why", figures, "", {"one_sided, moving": own}, own)
 
@@ -232,8 +232,8 @@ def test_nothing_is_judged_by_what_is_not_the_papers(
 
 def test_what_says_the_same_is_judged() -> None:
     same = {"coupling": [1.0, 1.0], "pulling": [1.0, 2.0, 1.0], "threshold": [1.0, 1.0, 1.0]}
-    told = [("equilibrium", {"chain": same}), ("equilibrium", {"window": 200})]
-    for name, config in [*told, *((name, {"window": 20_000}) for name in OF_RUNS)]:
+    cases = [("equilibrium", {"chain": same}), ("equilibrium", {"window": 200})]
+    for name, config in [*cases, *((name, {"window": 20_000}) for name in OF_RUNS)]:
         assert judged(name, evidence(paper_world(), **config)).verdict == HOLDS
     # Ten values of a are enough.
     few = _at(lambda a: np.isin(a, a[(a >= 0.005) & (a <= 0.08)][:10]))
