@@ -149,8 +149,9 @@ class Evidence:
         """Return the part of a summary in a range of a; raises NotTestableError for fewer values than `least`."""
         chosen = a.choose(dataset["a"].values)
         if chosen.sum() < least:
-            there = f"the study has {chosen.sum()} there"
-            raise NotTestableError(f"a statement on all {a} needs {least} values of a; {there}")
+            raise NotTestableError(
+                f"a statement on all {a} needs {least} values of a; the study has {chosen.sum()} there"
+            )
         return self._cached(("a", chosen.tobytes()), lambda: dataset.isel(a=chosen), dataset)
 
     def at(self, dataset: xarray.Dataset, a: float) -> xarray.Dataset:

@@ -271,7 +271,7 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float, 
         elsewhere += describe_where("aperiodic", grid, others, law)
         elsewhere += _locking_ranges(evidence, law, at, kind)
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         there, found = attractors.sel(a=[at]), {}
         for law in laws:
             kind = int(kinds_reached(there, initial, law)[0])
@@ -283,7 +283,7 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float, 
         return verdict, ", ".join(f"{MotionKind(kind).words} ({law})" for law, (kind, _) in found.items())
 
     reason = f"The motion from {initial} at a = {at:g} is {join_words(texts)}."
-    return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, elsewhere, of_branches)
+    return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, elsewhere, judge_attractors)
 
 
 def _judge_repetition(kind: int, period: int, points: int) -> str:
@@ -294,7 +294,7 @@ def _judge_repetition(kind: int, period: int, points: int) -> str:
 
 
 def _locking_ranges(evidence: Evidence, law: str, at: float, kind: int) -> list[str]:
-    """Return, in words, the range of a over which branch 1 is locked around one a, if it is locked there."""
+    """Describe the range of a around one a over which branch 1 is locked, if it is locked at this a."""
     if kind != MotionKind.PERIODIC or "rotation" not in evidence.summaries:
         return []
     found = [one for one in plateaux(evidence.summary("rotation").sel(law=law)) if one.first <= at <= one.last]

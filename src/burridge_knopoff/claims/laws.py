@@ -54,9 +54,9 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
         if np.isfinite(difference).any():
             measured.append(Measured(f"largest |Δ⟨J⟩| where they agree, {state}", float(np.nanmax(difference))))
     tolerance = 100.0 * next(iter(found.values())).attrs["relative_tolerance"]
-    text, points, numbers, apart = _judge_answers(answers, a, loose_share)
+    text, points, numbers, differences = _judge_answers(answers, a, loose_share)
     reason = f"The laws agree in ⟨J⟩ within {tolerance:g} % of its largest value, {scale:.3f}, at {text}."
-    return Verdict(points.verdict, reason, [*numbers, *measured], "; ".join(apart))
+    return Verdict(points.verdict, reason, [*numbers, *measured], "; ".join(differences))
 
 
 @judge("agreement")
@@ -73,15 +73,17 @@ def laws_agree_in_kind(evidence: Evidence, initial: Sequence[str], a: Range, loo
         same, (kind, other) = one["same_kind"].values, with_one_chaos(one["kind"].sel(law=list(PAPER_LAWS)).values)
         loosely[state] = one["a"].values, same
         strictly[state] = one["a"].values, np.where((same == Answer.YES) & (kind != other), Answer.NO, same)
-    readings, texts, measured, apart = {}, [], [], []
+    readings, texts, measured, differences = {}, [], [], []
     for number, answers in (("one kind", loosely), ("two kinds", strictly)):
         text, points, numbers, where = _judge_answers(answers, a, loose_share)
         reading = f"with periodic and quasiperiodic motion as {number}"
         readings[reading] = judge_share(points.share, loose_share)
         texts.append(f"{reading}, at {text} ({readings[reading]})")
         measured += [replace(item, quantity=f"{item.quantity}, {reading}") for item in numbers]
-        apart += [f"{reading}, {text}" for text in where]
-    return combine_readings(readings, f"The laws agree in the kind of motion: {'; '.join(texts)}.", measured, apart)
+        differences += [f"{reading}, {text}" for text in where]
+    return combine_readings(
+        readings, f"The laws agree in the kind of motion: {'; '.join(texts)}.", measured, differences
+    )
 
 
 def _law_comparison(evidence: Evidence, state: str, a: Range) -> xarray.Dataset:
@@ -108,13 +110,13 @@ def _judge_answers(
             numbers.append(Measured(f"share of a at which the laws agree, {case.name}", case.share.value))
         if len(differ := case.a[case.known & ~case.right]):
             numbers.append(Measured(f"smallest a at which they differ, {case.name}", float(differ[0])))
-    apart = [f"{text} ({case.name})" for case in cases for text in case.exceptions("they differ")]
+    differences = [f"{text} ({case.name})" for case in cases for text in case.exceptions("they differ")]
     unknown = [text for case in cases for text in describe_where("undetermined", case.a, ~case.known, case.name)]
     grid, same = (np.concatenate(part) for part in zip(*answers.values(), strict=True))
     reason = f"the laws could not be compared: {'; '.join(unknown)}"
     points = for_all(loose_share, [Case("points", grid, same == Answer.YES, same != Answer.UNDETERMINED, reason)])
     text = f"{points.share} of the points (initial state, a) with {a}, {format_shares(shares)}"
-    return text, points, numbers, [*apart, *unknown]
+    return text, points, numbers, [*differences, *unknown]
 
 
 @judge("mean_distance")

@@ -71,17 +71,19 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
             raise NotTestableError(f"branch 1 is regular motion at fewer than {MIN_VALUES} values of a ({law})")
         grid = found["a"].values[known]
         detuned = found.sel(detuning=detuning).isel(value=known)
-        apart = np.abs(detuned["detuned_frequency"].values[:, -1] - detuned["detuned_frequency"].values[:, 0])
+        detuned_difference = np.abs(
+            detuned["detuned_frequency"].values[:, -1] - detuned["detuned_frequency"].values[:, 0]
+        )
         third, error = (detuned[name].values[:, 2] for name in ("detuned_exponent", "detuned_exponent_error"))
-        together = (apart <= FREQUENCY_TOLERANCE) & (third < -STANDARD_ERRORS * error)
-        shares[law] = count_share(together)
+        are_locked = (detuned_difference <= FREQUENCY_TOLERANCE) & (third < -STANDARD_ERRORS * error)
+        shares[law] = count_share(are_locked)
         measured.append(
             Measured(f"share of a at which the end blocks are locked to each other, {law}", shares[law].value)
         )
-        for name, of in (("difference of their frequencies", apart), ("third exponent", third)):
-            if np.isfinite(of).any():
-                measured.append(Measured(f"largest {name}, {law}", float(np.nanmax(of))))
-        where += describe_where("the end blocks are not locked to each other", grid, ~together, law)
+        for name, values in (("difference of their frequencies", detuned_difference), ("third exponent", third)):
+            if np.isfinite(values).any():
+                measured.append(Measured(f"largest {name}, {law}", float(np.nanmax(values))))
+        where += describe_where("the end blocks are not locked to each other", grid, ~are_locked, law)
         locked = found["locked"].values[known] == 1
         measured.append(
             Measured(f"share of a at which they are locked to the middle block, {law}", count_share(locked).value)
@@ -172,9 +174,11 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
             others.append(
                 f"the motion before chaos is undetermined at a = {', '.join(f'{a:.5g}' for a in values)} ({name})"
             )
-        for doubt in (TORUS, UNFOLLOWED):
-            if there := sorted(place for (place, _), one in places.items() if one == doubt):
-                others.append(f"{doubt} precedes chaos just above a = {', '.join(f'{a:g}' for a in there)} ({name})")
+        for precursor in (TORUS, UNFOLLOWED):
+            if there := sorted(place for (place, _), one in places.items() if one == precursor):
+                others.append(
+                    f"{precursor} precedes chaos just above a = {', '.join(f'{a:g}' for a in there)} ({name})"
+                )
     reason = (
         "Where a branch of attractors becomes chaotic as a grows, a periodic orbit, not a torus, precedes chaos in "
         f"{join_words(texts)} cases."

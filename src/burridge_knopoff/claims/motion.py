@@ -62,7 +62,7 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
     right = sum(verdict == HOLDS for verdict in verdicts)
     reason = f"At a = {at:g} all three blocks stop repeatedly in {right} of {len(verdicts)} runs."
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {
             f"{law}, {state}": Share(int((rate[0] > 0.0).all()), 1)
             for state in initial
@@ -71,7 +71,7 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
         }
         return judge_shares(found, 1.0)
 
-    return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, never, of_branches)
+    return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, never, judge_attractors)
 
 
 @judge("equilibrium", "attractors")
@@ -135,14 +135,14 @@ def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation
     reason = f"The correlation of U₁' and U₃' from {initial} at a = {at:g} ({law}) is {with_error(round(value, 2))}."
     exceptions = [f"negative only {format_values(runs['a'].values, negative)}"] if negative.any() else []
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         found = reached_attractor(attractors, at, initial, law, "velocity_correlation")
         if not found or not np.isfinite(found[0]):
             return "", ""
         return _judge_antiphase(found[0], correlation), with_error(round(float(found[0]), 2))
 
     measured = [Measured("correlation of U₁' and U₃'", value)]
-    return judge_conventions(evidence, verdict, reason, measured, exceptions, of_branches)
+    return judge_conventions(evidence, verdict, reason, measured, exceptions, judge_attractors)
 
 
 def _judge_antiphase(value: float, correlation: float) -> str:
@@ -211,7 +211,7 @@ def half_frequency(
         f"spectra, and {ratios[1].value:.3f} times by the number of stops; the paper says {claimed:g}."
     )
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         found = reached_attractor(attractors, at, initial, law, "velocity_frequency", "stop_rate")
         if not found or not np.isfinite(found[0]).all():
             return "", ""
@@ -221,7 +221,7 @@ def half_frequency(
         verdict = worst_verdict(judge_value(ratio, claimed, tolerance, loose) for ratio in ratios)
         return verdict, f"{ratios[0]:.3f} by the peaks, {ratios[2]:.3f} by stops"
 
-    return judge_conventions(evidence, worst_verdict(verdicts), reason, ratios, [], of_branches)
+    return judge_conventions(evidence, worst_verdict(verdicts), reason, ratios, [], judge_attractors)
 
 
 @judge("stick_slip")

@@ -76,17 +76,17 @@ def cloud_at_lower_velocities(
         f"of the values of a with {a}."
     )
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         inside = evidence.choose(attractors, a)
-        (there, first), (also, second) = (reached(inside, name, law, "section_count") for name in initial)
+        (first_known, first), (second_known, second) = (reached(inside, name, law, "section_count") for name in initial)
         (_, above), (_, below) = (reached(inside, name, law, "section_velocity_mean") for name in initial)
-        seen = there & also & (first > 0) & (second >= 0)
+        seen = first_known & second_known & (first > 0) & (second >= 0)
         case = Case(law, inside["a"].values, (second > points) & (below < above), seen)
         verdict, text = judge_cases(loose_share, [case])
         return verdict, text + "".join(describe_where(", no point at all", case.a, seen & (second == 0)))
 
     exceptions = case.exceptions("no lower cloud") + describe_where("no point at all", grid, known & empty)
-    return judge_conventions(evidence, found.verdict, reason, measured, exceptions, of_branches)
+    return judge_conventions(evidence, found.verdict, reason, measured, exceptions, judge_attractors)
 
 
 @judge("lyapunov", "bifurcation_diagram", "agreement", "attractors")
@@ -120,17 +120,17 @@ def cloud_not_periodic(
         f"{found.share} of them the motion does not repeat within {longest:g} time units, or is chaotic."
     )
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         inside = evidence.choose(attractors, a)
-        (there, count), (_, kind) = (reached(inside, initial, law, name) for name in ("section_count", "kind"))
-        seen = there & (count > points)
+        (is_known, count), (_, kind) = (reached(inside, initial, law, name) for name in ("section_count", "kind"))
+        seen = is_known & (count > points)
         known = kind != MotionKind.UNDETERMINED
         case = Case(law, inside["a"].values, ~np.isin(kind, PERIODIC_KINDS), known, applies=seen)
         verdict, text = judge_cases(loose_share, [case])
         return verdict, text and f"{text} of {seen.sum()} values of a with a cloud"
 
     exceptions = case.exceptions("periodic", "undetermined motion")
-    return judge_conventions(evidence, found.verdict, reason, measured, exceptions, of_branches)
+    return judge_conventions(evidence, found.verdict, reason, measured, exceptions, judge_attractors)
 
 
 @judge("lyapunov", "bifurcation_diagram", "attractors")
@@ -144,28 +144,30 @@ def line_disappears(
     """
     grid, line, other = _sections(evidence, initial, law, a)
     known = _has_crossings(line, initial[0], a)
-    there = np.array(
+    on_line = np.array(
         [
             k and (np.abs(found - one.mean()) <= near * one.mean()).any()
             for k, one, found in zip(known, line, other, strict=True)
         ]
     )
-    case = Case(law, grid, ~there, known, applies=known)
+    case = Case(law, grid, ~on_line, known, applies=known)
     found = for_all(loose_share, [case])
     reason = (
         f"From {initial[1]} ({law}) no section point lies within {100.0 * near:g} % of the line from {initial[0]} at "
         f"{found.share} of the values of a with {a}."
     )
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         inside = evidence.choose(attractors, a)
-        (also, first), (there, second) = (reached(inside, name, law, "branch") for name in initial)
-        case = Case(law, inside["a"].values, first != second, also & there)
+        (first_known, first), (second_known, second) = (reached(inside, name, law, "branch") for name in initial)
+        case = Case(law, inside["a"].values, first != second, first_known & second_known)
         verdict, text = judge_cases(loose_share, [case])
         return verdict, text and f"another attractor than from {initial[0]} at {case.share}"
 
     measured = [Measured("share of a without a point on the line", found.share.value)]
-    return judge_conventions(evidence, found.verdict, reason, measured, case.exceptions("on the line"), of_branches)
+    return judge_conventions(
+        evidence, found.verdict, reason, measured, case.exceptions("on the line"), judge_attractors
+    )
 
 
 def _sections(

@@ -47,10 +47,10 @@ def solutions_agree(
     a : range in which the laws are to agree; solvers are compared wherever they were tried
     loose_share : fraction of points, and of the values of a, from which the claim holds loosely
     """
-    solved, measured, apart = _compare_solvers(evidence, initial, relative)
+    solved, measured, differences = _compare_solvers(evidence, initial, relative)
     solvers = {"solvers": count_share(np.array(solved))}
 
-    def of_runs() -> Iterator[Case]:
+    def run_cases() -> Iterator[Case]:
         for state in initial:
             runs = evidence.choose(evidence.state_summary("agreement", state), a)
             kinds = runs["kind"].sel(law=list(PAPER_LAWS)).values
@@ -58,7 +58,7 @@ def solutions_agree(
             unknown = f"the kind of motion from {state} is undetermined"
             yield Case(f"laws, {state}", runs["a"].values, same_result(*kinds), known, unknown)
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         """Judge as if the solvers agreed at the same points under every convention."""
         inside, cases = evidence.choose(attractors, a), []
         for state in initial:
@@ -69,9 +69,9 @@ def solutions_agree(
             return "", ""
         return judge_shares({**solvers, **{case.name: case.share for case in cases}}, loose_share)
 
-    found = for_all(loose_share, of_runs())
+    found = for_all(loose_share, run_cases())
     for state, case in zip(initial, found.cases, strict=True):
-        apart += [f"{text} ({state})" for text in case.exceptions("the laws differ")]
+        differences += [f"{text} ({state})" for text in case.exceptions("the laws differ")]
     shares = {**solvers, **found.shares}
     own = judge_worst_share(shares, loose_share)
     laws = format_shares({state: shares[f"laws, {state}"] for state in initial})
@@ -80,7 +80,7 @@ def solutions_agree(
         f"laws have the same result (synchrony, other regular motion or chaos) at {laws} of the values of a with {a}."
     )
     numbers = [Measured(f"share with agreement of the {name}", share.value) for name, share in shares.items()]
-    return judge_conventions(evidence, own, reason, [*numbers, *measured], apart, of_branches)
+    return judge_conventions(evidence, own, reason, [*numbers, *measured], differences, judge_attractors)
 
 
 def _compare_solvers(
@@ -90,7 +90,7 @@ def _compare_solvers(
 
     Raises NotTestableError if no point was completed by all solvers.
     """
-    solved, measured, apart = [], [], []
+    solved, measured, differences = [], [], []
     threshold = evidence.summary("agreement").attrs["synchronization_threshold"]
     for state in initial:
         evidence.check_state(state)
@@ -111,10 +111,10 @@ def _compare_solvers(
             largest = float(np.abs(difference[there]).max())
             measured.append(Measured(f"largest |Δ⟨J⟩| between solvers, {state}, a = {value:g}", largest))
             if not solved[-1]:
-                apart.append(f"the solvers differ at a = {value:g} ({state})")
+                differences.append(f"the solvers differ at a = {value:g} ({state})")
     if not solved:
-        raise NotTestableError("there is no point at which all solvers completed")
-    return solved, measured, apart
+        raise NotTestableError("no point was completed by all solvers")
+    return solved, measured, differences
 
 
 @judge("solvers")

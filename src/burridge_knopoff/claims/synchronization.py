@@ -149,7 +149,7 @@ def mean_distance_at(
         measured.append(Measured(f"⟨J⟩, {law}", value, error))
         texts.append(f"{with_error(value, error)} ({law})")
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {law: reached_attractor(attractors, at, initial, law, "mean_distance") for law in laws}
         means = {law: mean[0] for law, mean in found.items() if mean}
         if not means:
@@ -158,7 +158,7 @@ def mean_distance_at(
         return verdict, "⟨J⟩ = " + ", ".join(f"{mean:.4f} ({law})" for law, mean in means.items())
 
     reason = f"⟨J⟩ from {initial} at a = {at:g} is {join_words(texts)}; the paper says {claimed:g}."
-    return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, [], of_branches)
+    return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, [], judge_attractors)
 
 
 @judge("mean_distance", "agreement", "attractors")
@@ -175,7 +175,7 @@ def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -
     if not settled >= 0:
         raise NotTestableError(f"it is undetermined whether the run from {initial} at a = {at:g} is on its attractor")
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         if not (found := reached_attractor(attractors, at, initial, law, "branch")):
             return "", ""
         return (HOLDS, "no synchrony") if found[0] else (FAILS, "synchrony, J = 0")
@@ -185,7 +185,7 @@ def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -
         f"The run from {initial} at a = {at:g} ({law}) {words}; its batch means give ⟨J⟩ = {with_error(mean, error)}."
     )
     own = HOLDS if settled and not synchronized else FAILS
-    return judge_conventions(evidence, own, reason, [Measured("⟨J⟩", mean, error)], [], of_branches)
+    return judge_conventions(evidence, own, reason, [Measured("⟨J⟩", mean, error)], [], judge_attractors)
 
 
 @judge("mean_distance", "orbits")
