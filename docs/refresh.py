@@ -1,7 +1,7 @@
-"""Update the ledger of claims and the figures of the documentation from finished studies: `make docs`.
+"""Update the generated parts of the documentation from the study that `make` runs: `make docs`.
 
-The ledger, here and in the README, is that of the first study, which `make` runs. The second is the same study at
-a greater depth: the figures are its own, and its verdicts are compared.
+Generated are the ledger of claims (docs/claims.json, its text in docs/claims.md, the headline of the README), the
+branches of attractors (docs/branches.json, their table in docs/attractors.md) and the figures of docs/.
 """
 
 from __future__ import annotations
@@ -11,109 +11,132 @@ import re
 import sys
 import textwrap
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
+import xarray
 from PIL import Image
 
-from burridge_knopoff.claims.formats import as_json, as_markdown
+from burridge_knopoff.claims.formats import as_json, as_markdown, count_sentence, dependent_sentence
+from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.provenance.files import write_text
+from burridge_knopoff.study.formatting import span
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
 
 DOCS = Path(__file__).parent
-PAGE = DOCS / "claims.md"
-LEDGER = DOCS / "claims.json"
-DEPTHS = DOCS / "depths.json"
-README = DOCS.parent / "README.md"
+LEDGER, BRANCHES = DOCS / "claims.json", DOCS / "branches.json"
 BEGIN, END = "<!-- made by `make docs` -->", "<!-- end -->"
+
+# The table of branches lists those that exist at this many values of a under some law.
+LONG = 5
 
 # Wide enough for a page on a screen, at a third of the bytes of the figures for print.
 WIDTH = 1400
 COLORS = 96
 
 
-def page(text: str, content: dict, depths: dict[str, dict]) -> str:
-    """Return the text of docs/claims.md with its tables replaced by those of a ledger."""
+def replace_block(text: str, block: str) -> str:
+    """Return the text of a page with the generated block between the markers replaced."""
     before, rest = text.split(BEGIN)
-    after = rest.split(END)[1]
-    return f"{before}{BEGIN}\n{compared(depths)}\n\n{as_markdown(content, 'figures')}{END}{after}"
+    return f"{before}{BEGIN}\n{block}{END}{rest.split(END)[1]}"
 
 
-def verdicts(content: dict) -> dict:
-    """Return the depth of a ledger, and the verdicts and reasons by the name of the claim."""
-    claims = {claim["name"]: {key: claim[key] for key in ("verdict", "reason")} for claim in content["claims"]}
-    return {"depth": content["depth"], "claims": claims}
-
-
-def differing(depths: dict[str, dict]) -> dict[str, tuple[str, str]]:
-    """Return the claims of which the studies have different verdicts: {name: (verdict of the first, of the last)}."""
-    first, last = (study["claims"] for study in depths.values())
-    pairs = {name: (claim["verdict"], last[name]["verdict"]) for name, claim in first.items()}
-    return {name: pair for name, pair in pairs.items() if len({*pair}) > 1}
-
-
-def compared(depths: dict[str, dict]) -> str:
-    """Return a sentence on the study of the tables, and on the verdicts of one that looks closer."""
-    name, *closer = depths
-    text = f"The tables are those of `config/{name}.yaml`."
-    for other in closer:
-        found = differing({name: depths[name], other: depths[other]})
-        listed = "; ".join(f"{claim}: {there}, not {here}" for claim, (here, there) in found.items())
-        said = f"differ in {len(found)}: {listed}" if found else "are the same"
-        text += (
-            f" All {len(depths[other]['claims'])} verdicts of `config/{other}.yaml` ({depths[other]['depth']}) {said}."
-        )
-    return textwrap.fill(text, 120, break_on_hyphens=False)
-
-
-def headline(content: dict) -> str:
+def headline(ledger: Mapping[str, Any]) -> str:
     """Return the sentence of the README that counts the independent statements of a ledger."""
-    counts, every = content["independent_counts"], sum(content["counts"].values())
-    number = sum(counts.values())
-    words = {
-        "holds": "hold",
-        "holds loosely": "hold loosely",
-        "depends on convention": "depend on conventions that the paper leaves open",
-        "depends on reading": "depend on how they are read",
-        "fails": "fail",
-        "not testable": "cannot be tested",
-    }
-    *parts, last = (f"{counts[verdict]} {said}" for verdict, said in words.items() if counts[verdict])
     sentence = (
-        f"**Of {number} independent statements, {', '.join(parts)}, and {last}**; {every - number} more repeat these "
-        "or follow from them. [docs/claims.md](docs/claims.md) lists all with their numbers."
+        f"**{count_sentence(ledger['independent_counts'])}**; {dependent_sentence(ledger)} "
+        "[docs/claims.md](docs/claims.md) lists all of them with their evidence."
     )
     return textwrap.fill(sentence, 120, break_on_hyphens=False) + "\n"
 
 
-def readme(text: str, content: dict) -> str:
-    """Return the text of the README with the headline of a ledger."""
-    before, rest = text.split(BEGIN)
-    return f"{before}{BEGIN}\n{headline(content)}{END}{rest.split(END)[1]}"
+def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
+    """Return each branch of attractors under each law: where it exists along a, its ⟨J⟩ and its kinds of motion.
+
+    attractors : attractors.nc
+    """
+    names = dict(
+        zip(attractors["branch_number"].values.tolist(), attractors["branch_name"].values.tolist(), strict=True)
+    )
+    found = []
+    for number, name in sorted(names.items()):
+        for law in attractors["law"].values.tolist():
+            of_law = attractors.sel(law=law)
+            there = of_law["branch"].values == number
+            a = of_law["a"].values[there.any(axis=1)]
+            if not len(a):
+                continue
+            mean, kinds = of_law["mean_distance"].values[there], np.unique(of_law["kind"].values[there])
+            found.append(
+                {
+                    "number": number,
+                    "name": name,
+                    "law": law,
+                    "first_a": float(a[0]),
+                    "last_a": float(a[-1]),
+                    "values_of_a": len(a),
+                    "mean_distance": [round(float(end(mean)), 5) for end in (np.nanmin, np.nanmax)],
+                    "kinds": [MotionKind(kind).words for kind in kinds.tolist()],
+                }
+            )
+    return found
+
+
+def branch_table(found: Sequence[Mapping[str, Any]]) -> str:
+    """Return the branches that exist at LONG or more values of a as a table, a row for each law."""
+    long = {branch["number"] for branch in found if branch["values_of_a"] >= LONG}
+    rows = ["| branch | law | a | values of a | ⟨J⟩ | kinds of motion |", "| --- | --- | --- | ---: | --- | --- |"]
+    for branch in found:
+        if branch["number"] in long:
+            name = branch["name"] if branch["name"].endswith(")") else f"{branch['name']} ({branch['number']})"
+            a = span(f"{branch['first_a']:g}", f"{branch['last_a']:g}")
+            mean = span(*(f"{end:.2g}" for end in branch["mean_distance"]))
+            cells = [name, branch["law"], a, str(branch["values_of_a"]), mean, ", ".join(branch["kinds"])]
+            rows.append(f"| {' | '.join(cells)} |")
+    others = len({branch["number"] for branch in found} - long)
+    return "\n".join(rows) + f"\n\n{others} other branches exist at fewer than {LONG} values of a under each law.\n"
+
+
+def pages(ledger: Mapping[str, Any], found: Sequence[Mapping[str, Any]]) -> dict[Path, str]:
+    """Return the generated block of each page of the documentation."""
+    return {
+        DOCS / "claims.md": as_markdown(ledger, "figures"),
+        DOCS.parent / "README.md": headline(ledger),
+        DOCS / "attractors.md": branch_table(found),
+    }
 
 
 def figure_names() -> set[str]:
     """Return the names of the study's figures that the pages of docs/ and the README show or link."""
-    pages = [*DOCS.glob("*.md"), DOCS.parent / "README.md"]
-    return {name for text in pages for name in re.findall(r"figures/(\w+)\.png", text.read_text(encoding="utf-8"))}
+    texts = [path.read_text(encoding="utf-8") for path in [*DOCS.glob("*.md"), DOCS.parent / "README.md"]]
+    return {name for text in texts for name in re.findall(r"figures/(\w+)\.png", text)}
 
 
-def main(default: Path, *closer: Path) -> None:
-    """Write the ledger of a study into docs/ and the README, and copy the figures of the one that looks closest."""
-    studies = [json.loads((one / "summary/claims.json").read_text(encoding="utf-8")) for one in (default, *closer)]
-    content, depths = studies[0], {one["study"]: verdicts(one) for one in studies}
-    results = [default, *closer][-1]
-    write_text(LEDGER, as_json(content))
-    write_text(DEPTHS, as_json(depths))
-    write_text(PAGE, page(PAGE.read_text(encoding="utf-8"), content, depths))
-    write_text(README, readme(README.read_text(encoding="utf-8"), content))
+def copy_figure(source: Path) -> None:
+    """Write a figure of the study into docs/figures, smaller and with fewer colours."""
+    picture = Image.open(source).convert("RGB")
+    height = round(picture.height * WIDTH / picture.width)
+    small = picture.resize((WIDTH, height), Image.Resampling.LANCZOS) if picture.width > WIDTH else picture
+    # Median cut, the usual method, would merge the colours of curves, which cover few pixels.
+    few = small.quantize(COLORS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    few.save(DOCS / "figures" / source.name, optimize=True)
+
+
+def main(results: Path) -> None:
+    """Update the pages, the JSON files and the figures from the results of a study."""
+    ledger = json.loads((results / "summary/claims.json").read_text(encoding="utf-8"))
+    with xarray.open_dataset(results / "summary/attractors.nc") as attractors:
+        found = branches(attractors)
+    write_text(LEDGER, as_json(ledger))
+    write_text(BRANCHES, json.dumps(found, ensure_ascii=False, indent=1) + "\n")
+    for path, block in pages(ledger, found).items():
+        write_text(path, replace_block(path.read_text(encoding="utf-8"), block))
     for name in sorted(figure_names()):
-        source = results / f"figures/{name}.png"
-        if source.exists():
-            picture = Image.open(source).convert("RGB")
-            height = round(picture.height * WIDTH / picture.width)
-            small = picture.resize((WIDTH, height), Image.Resampling.LANCZOS) if picture.width > WIDTH else picture
-            # Median cut, the usual method, would merge the colours of curves, which cover few pixels.
-            few = small.quantize(COLORS, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-            few.save(DOCS / f"figures/{name}.png", optimize=True)
+        if (source := results / f"figures/{name}.png").exists():
+            copy_figure(source)
 
 
 if __name__ == "__main__":
-    main(*map(Path, sys.argv[1:]))
+    main(Path(sys.argv[1]))

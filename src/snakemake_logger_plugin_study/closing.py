@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from burridge_knopoff.claims.formats import untestable
+from burridge_knopoff.claims.formats import group_untestable
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, READING
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.job_log import SILENT, failure_line, failure_reason, is_interrupted, remedies
@@ -81,7 +81,7 @@ def _made_files(results: Path, made: Sequence[str]) -> str:
 
 def _verdicts(path: Path) -> list[str]:
     read = json.loads(path.read_text(encoding="utf-8"))
-    ledger, reasons = path.with_suffix(".md"), untestable(read["claims"])
+    ledger, reasons = path.with_suffix(".md"), group_untestable(read["claims"])
     if list(reasons.values()) == [read["claims"]]:
         return [f"no claim of the paper could be tested ({ledger})", f"  {next(iter(reasons))}"]
     independent = read["independent_counts"]

@@ -1,4 +1,4 @@
-"""What is altered in the world in which the paper is right, and the verdict that follows, for each claim."""
+"""Alterations of the world in which the paper is right, and the verdict that follows, for each claim."""
 
 from __future__ import annotations
 
@@ -140,18 +140,18 @@ def few(summary: str, **counts: int) -> Alteration:
 
 
 def exponents(value: float, error: float) -> Alteration:
-    told = {"lyapunov_exponent": value, "lyapunov_error": error}
-    return both(*(alter("lyapunov", name, item, exponent=0) for name, item in told.items()))
+    values = {"lyapunov_exponent": value, "lyapunov_error": error}
+    return both(*(alter("lyapunov", name, item, exponent=0) for name, item in values.items()))
 
 
 def solutions(difference: float, mean: float = 0.14, error: float = 1e-5) -> Alteration:
-    told = {"difference": difference, "mean_distance": mean, "difference_error": error}
-    return both(*(alter("solvers", name, item, solver="rk4") for name, item in told.items()))
+    values = {"difference": difference, "mean_distance": mean, "difference_error": error}
+    return both(*(alter("solvers", name, item, solver="rk4") for name, item in values.items()))
 
 
 def failed(solver: str, **where: object) -> Alteration:
-    told = {"status": Status.DIVERGED, "difference": np.nan, "mean_distance": np.nan}
-    return both(*(alter("solvers", name, item, solver=solver, **where) for name, item in told.items()))
+    values = {"status": Status.DIVERGED, "difference": np.nan, "mean_distance": np.nan}
+    return both(*(alter("solvers", name, item, solver=solver, **where) for name, item in values.items()))
 
 
 def chaos_from(first: float) -> Alteration:
@@ -214,7 +214,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus"), reached(1, initial="minus"))),
     ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus", law="nonlinear"), reached(1, initial="minus"))),
     ("minus_synchronizes", CONVENTION, reached(1, initial="minus", **OTHER)),
-    # What is not known would decide, of runs and under another convention.
+    # Outcomes that are not known would decide: those of runs, and those under another convention.
     (
         "minus_synchronizes",
         NOT_TESTABLE,
@@ -227,7 +227,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ),
     ("minus_synchronizes", CONVENTION, synchronized(0, initial="minus")),
     ("upper_edge", LOOSELY, both(reached(0, initial="minus", a=lambda a: a < 0.087), lost_at(0.0887))),
-    # A loss of stability elsewhere is not where synchrony ends.
+    # Synchrony does not end at a loss of stability elsewhere.
     ("upper_edge", HOLDS, lost_at(0.12)),
     ("upper_edge", HOLDS, lost_at(np.nan)),
     ("upper_edge", FAILS, reached(0, initial="minus", a=lambda a: a < 0.145)),
@@ -240,7 +240,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("lower_edge", FAILS, reached(1, initial="minus", law="nonlinear", a=lambda a: a < 0.03)),
     ("lower_edge", HOLDS, reached(0, initial="minus", a=0.0025)),
     ("lower_edge", NOT_TESTABLE, reached(1, initial="minus")),
-    # A value of a at which it is not known leaves both open.
+    # A value of a at which synchrony is not known leaves both possibilities open.
     ("lower_edge", NOT_TESTABLE, reached(-1, initial="minus", a=lambda a: a < 0.0201)),
     ("plus_does_not_synchronize", FAILS, both(synchronized(1, initial="plus"), reached(0, initial="plus"))),
     ("plus_does_not_synchronize", CONVENTION, reached(0, initial="plus", **OTHER)),
@@ -260,7 +260,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("minus_distance_vanishes", LOOSELY, alter("mean_distance", "settling_time", 4500.0)),
     ("history_decides", HOLDS, alter("attractors", "basin_count", 0, attractor=[1, 2])),
     ("history_decides", FAILS, both(alter("attractors", "branch", 0), reached(0))),
-    # Several attractors of one kind are one character of motion; the kind of one that is unknown is none.
+    # Several attractors of one kind have one character of motion; an undetermined kind does not count.
     ("history_decides", FAILS, alter("attractors", "kind", PERIODIC)),
     ("history_decides", FAILS, both(alter("attractors", "kind", UNDETERMINED, attractor=[1, 2]))),
     ("history_decides", LOOSELY, ONE_ATTRACTOR),
@@ -272,26 +272,26 @@ CASES: list[tuple[str, str, Alteration]] = [
         NOT_TESTABLE,
         alter("mean_distance", "status", Status.DIVERGED, initial="minus", a=lambda a: a > 0.02),
     ),
-    # Under the first law alone, which is not the last that is looked at.
+    # Under the first law only.
     ("first_block_decides", CONVENTION, reached(0, initial="plus", law="linearized", **OTHER)),
     ("first_block_decides", HOLDS, reached(-1, initial="minus", **OTHER)),
     ("same_for_both_laws", FAILS, both(synchronized(1, initial="plus", law="nonlinear"), reached(0, law="linearized"))),
     ("same_for_both_laws", CONVENTION, synchronized(1, initial="plus", law="nonlinear")),
-    # From the first state alone.
+    # From the first state only.
     ("same_for_both_laws", CONVENTION, reached(1, initial="minus", law="linearized", **OTHER)),
     ("phases_decide", FAILS, alter("phases", "branch", 2, phase_difference=30.0)),
     ("phases_decide", FAILS, alter("phases", "velocity_correlation", 1.0, phase_difference=180.0)),
     # Neither close nor opposite.
     ("phases_decide", HOLDS, alter("phases", "velocity_correlation", 1.0, phase_difference=150.0)),
-    # Where blocks stop in the course of an oscillation.
+    # At amplitudes at which blocks stop during an oscillation.
     ("phases_decide", LOOSELY, alter("phases", "branch", 2, phase_difference=30.0, amplitude=0.2)),
     ("phases_decide", LOOSELY, alter("phases", "velocity_correlation", 1.0, phase_difference=180.0, amplitude=0.2)),
     ("phases_decide", LOOSELY, alter("phases", "branch", 2, phase_difference=30.0, a=ONE_OF_MANY)),
-    # Two of eighty states are no exception to the rule, twenty are.
+    # Two of eighty states do not contradict the claim, twenty do.
     ("phases_decide", HOLDS, alter("phases", "branch", 2, phase_difference=[15.0, 30.0], state=1)),
     ("phases_decide", FAILS, alter("phases", "branch", 2, phase_difference=[15.0, 30.0], state=np.arange(1, 11))),
     ("phases_decide", HOLDS, alter("phases", "branch", 2, a=lambda a: a > 0.08)),
-    # The paper says nothing of the inner block: what holds for one of its motions and not for another depends on that.
+    # The paper does not mention the inner block: a verdict that depends on its motion depends on the reading.
     ("phases_decide", READING, alter("phases", "branch", 2, phase_difference=30.0, inner_share=1.0)),
     (
         "phases_decide",
@@ -299,7 +299,7 @@ CASES: list[tuple[str, str, Alteration]] = [
         alter("phases", "velocity_correlation", 1.0, phase_difference=180.0, inner_share=0.3),
     ),
     ("phases_decide", HOLDS, alter("phases", "slipping_amplitude", 0.001, inner_share=1.0)),
-    # A motion that cannot be judged does not hide the next one.
+    # A motion of the inner block that cannot be judged does not hide the next one.
     (
         "phases_decide",
         READING,
@@ -318,39 +318,39 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("chaotic_above", FAILS, everywhere("agreement", "kind", PERIODIC)),
     ("chaotic_above", LOOSELY, alter("agreement", "kind", PERIODIC, a=0.2)),
     ("chaotic_above", HOLDS, alter("agreement", "kind", UNDETERMINED, a=0.2)),
-    # What is not known of most runs would decide.
+    # Undetermined kinds of most runs would decide.
     ("chaotic_above", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED, a=lambda a: a > 0.13)),
     ("transition", FAILS, chaos_from(0.135)),
     ("transition", FAILS, chaos_from(0.05)),
     ("transition", FAILS, chaos_from(9.0)),
     ("transition", LOOSELY, chaos_from(0.115)),
-    # Between the last value without chaos and the first with it the step of the grid leaves both open.
+    # The step of the grid between the last value without chaos and the first with it leaves both verdicts open.
     ("transition", NOT_TESTABLE, chaos_from(0.12)),
     ("transition", NOT_TESTABLE, few("refined", value=9)),
-    # Chaos that does not last is none.
+    # Transient chaos does not count.
     ("transition", FAILS, alter("refined", "kind", TRANSIENT)),
-    # Chaos of a run may be a transient.
+    # The chaos of a run may be transient.
     ("transition", HOLDS, alter("agreement", "kind", CHAOTIC)),
-    # The end blocks are locked to each other if they keep one frequency with other masses, and their phases attract.
+    # The end blocks are locked if they keep one frequency with other masses and a perturbation of their phases decays.
     ("branch_locked", FAILS, parted()),
     ("branch_locked", FAILS, parted(law="nonlinear")),
     ("branch_locked", HOLDS, parted(detuning=0.8)),
     ("branch_locked", LOOSELY, parted(a=lambda a: (a > 0.03) & (a < 0.036))),
     ("branch_locked", NOT_TESTABLE, parted(a=lambda a: (a > 0.03) & (a < 0.05))),
-    # As blocks on springs keep one frequency without friction that weakens: then three exponents are 0.
+    # Blocks that only springs move keep one frequency too, but then three exponents are 0.
     ("branch_locked", FAILS, alter("rotation", "detuned_exponent", -0.001)),
-    # To the middle one they need not be.
+    # They need not be locked to the middle block.
     ("branch_locked", HOLDS, locked(0)),
-    # Beyond the range, and where the kind of motion is not known.
+    # Outside the range, and where the kind of motion is undetermined.
     ("branch_locked", HOLDS, parted(a=lambda a: a > 0.1)),
     ("branch_locked", HOLDS, locked(-1, a=lambda a: (a > 0.03) & (a < 0.036))),
     ("branch_locked", NOT_TESTABLE, locked(-1, a=lambda a: a > 0.03)),
     ("branch_locked", NOT_TESTABLE, lambda world: world.update(rotation=world["rotation"].sel(detuning=[0.8]))),
-    # That the end blocks share a frequency at equal masses, as mirror symmetry makes them, is no locking.
+    # The common frequency of the end blocks at equal masses follows from mirror symmetry and is not locking.
     ("branch_locked", FAILS, both(parted(), alter("stick_slip", "velocity_frequency", 0.17))),
     ("locking_precedes_chaos", FAILS, alter("bifurcations", "motion_before", QUASIPERIODIC)),
     ("locking_precedes_chaos", LOOSELY, alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=13)),
-    # An orbit too long to be followed may be that of a tongue between tori: one of twelve may be, two of twelve decide.
+    # An orbit too long to be continued may lie in a tongue between tori: one of twelve does not decide, two do.
     ("locking_precedes_chaos", LOOSELY, alter("bifurcations", "kind", BifurcationKind.UNDETERMINED, bifurcation=13)),
     (
         "locking_precedes_chaos",
@@ -365,13 +365,13 @@ CASES: list[tuple[str, str, Alteration]] = [
             alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=[14, 15, 16, 17, 18]),
         ),
     ),
-    # Tori at two of twelve places may be chance.
+    # Tori in two of twelve cases may be chance.
     (
         "locking_precedes_chaos",
         NOT_TESTABLE,
         alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=[14, 15]),
     ),
-    # Chaos that was there before, a bifurcation that is passed, and unknown motion before it are no onset of chaos.
+    # Earlier chaos, a passed bifurcation, and undetermined motion before it do not count as an onset of chaos.
     ("locking_precedes_chaos", HOLDS, alter("bifurcations", "motion_before", TRANSIENT, bifurcation=13)),
     ("locking_precedes_chaos", HOLDS, alter("bifurcations", "motion_before", UNDETERMINED, bifurcation=13)),
     (
@@ -383,12 +383,12 @@ CASES: list[tuple[str, str, Alteration]] = [
         ),
     ),
     ("locking_precedes_chaos", NOT_TESTABLE, alter("bifurcations", "motion_after", PERIODIC)),
-    # A branch that ends on another one is the beginning of chaos only if that was not chaotic before.
+    # A branch that ends on another one is an onset of chaos only if the other was not chaotic before.
     ("locking_precedes_chaos", NOT_TESTABLE, both(alter("bifurcations", "change", Change.END), chaos_from(0.05))),
     ("locking_precedes_chaos", HOLDS, both(alter("bifurcations", "change", Change.END), chaos_from(0.3))),
     ("locking_precedes_chaos", HOLDS, chaos_from(0.05)),
     ("periodic_is_synchronized", FAILS, both(PERIODIC_PLUS, alter("lyapunov", "section_period", 3, initial="plus"))),
-    # Sections of many points are a cloud, which the paper does not call periodic; beyond 0.08 it finds no synchrony.
+    # A section of many points is a cloud, which the paper does not call periodic; above 0.08 it finds no synchrony.
     (
         "periodic_is_synchronized",
         READING,
@@ -405,9 +405,9 @@ CASES: list[tuple[str, str, Alteration]] = [
         NOT_TESTABLE,
         alter("agreement", "kind", UNDETERMINED, initial="minus", a=lambda a: a > 0.03),
     ),
-    # So are sections that do not repeat within the run.
+    # A section that does not repeat within the run is a cloud too.
     ("periodic_is_synchronized", READING, PERIODIC_PLUS),
-    # A state without periodic runs is left out, and no other.
+    # Only a state without periodic runs is left out.
     (
         "periodic_is_synchronized",
         FAILS,
@@ -419,13 +419,13 @@ CASES: list[tuple[str, str, Alteration]] = [
     ),
     ("minus_one_section_point", FAILS, alter("lyapunov", "section_period", 2)),
     ("minus_one_section_point", LOOSELY, both(UNREPEATED, alter("agreement", "kind", QUASIPERIODIC, a=ONE_OF_MANY))),
-    # Closed motion whose section points do not repeat yet has not settled.
+    # Periodic motion whose section points do not repeat yet has not settled.
     ("minus_one_section_point", HOLDS, UNREPEATED),
     ("minus_one_section_point", NOT_TESTABLE, alter("lyapunov", "section_period", 0, a=lambda a: a > 0.03)),
     ("plus_cloud", CONVENTION, cloud(0.0, 0.3)),
     ("plus_cloud", CONVENTION, cloud(1.0, 0.5)),
     ("plus_cloud", FAILS, both(cloud(1.0, 0.5), alter("attractors", "section_velocity_mean", 0.8, attractor=1))),
-    # Under another convention, a section of another kind, higher, or without any point.
+    # Under another convention the section is of another kind, higher, or empty.
     ("plus_cloud", CONVENTION, alter("attractors", "section_count", 1)),
     ("plus_cloud", CONVENTION, alter("attractors", "section_count", 0, attractor=1)),
     ("plus_cloud", CONVENTION, alter("attractors", "section_velocity_mean", 0.6, attractor=1)),
@@ -449,7 +449,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("plus_largest_exponent", HOLDS, alter("lyapunov", "lyapunov_error", np.nan, exponent=0, a=ONE_OF_MANY)),
     ("plus_largest_exponent", NOT_TESTABLE, alter("lyapunov", "lyapunov_error", np.nan, a=lambda a: a > 0.03)),
     ("plus_largest_exponent", CONVENTION, alter("attractors", "kind", CHAOTIC)),
-    # Three standard errors, and no more, are granted.
+    # Three standard errors are allowed.
     ("plus_largest_exponent", HOLDS, exponents(0.002, 0.001)),
     ("plus_largest_exponent", CONVENTION, exponents(0.002, 0.0005)),
     ("plus_largest_exponent", FAILS, both(exponents(0.002, 0.0005), alter("attractors", "kind", CHAOTIC))),
@@ -458,19 +458,19 @@ CASES: list[tuple[str, str, Alteration]] = [
         FAILS,
         both(everywhere("agreement", "kind", PERIODIC), alter("attractors", "section_count", 1)),
     ),
-    # Motion that repeats after so many section points that they are a cloud, and after one less.
+    # Motion that repeats after enough section points for a cloud, and after one less.
     ("plus_aperiodic", LOOSELY, repeating(9)),
     ("plus_aperiodic", CONVENTION, repeating(8)),
     ("plus_aperiodic", LOOSELY, both(repeating(9), attracting(9))),
     ("plus_aperiodic", FAILS, both(repeating(8), attracting(8))),
     ("plus_aperiodic", CONVENTION, reached(0, initial="plus", **OTHER)),
-    # An attractor that is not known is no evidence, nor one whose motion is not.
+    # An attractor that is not known, or whose kind is undetermined, is not evidence.
     ("plus_aperiodic", HOLDS, reached(-1, initial="plus", **OTHER)),
     ("plus_aperiodic", HOLDS, alter("attractors", "kind", UNDETERMINED)),
-    # Chaos that dies is chaos, as it is of a run.
+    # Transient chaos is chaos, as that of a run is.
     ("plus_aperiodic", HOLDS, alter("attractors", "kind", TRANSIENT)),
     ("plus_not_periodic", FAILS, everywhere("agreement", "kind", PERIODIC)),
-    # Where there is no cloud nothing is said, under one convention or at one a.
+    # The claim says nothing where there is no cloud, under a convention or at an a.
     ("plus_not_periodic", HOLDS, reached(0, initial="plus", **OTHER)),
     (
         "plus_not_periodic",
@@ -507,7 +507,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("antiphase_persists", LOOSELY, alter("agreement", "settled", 0, initial="plus", a=ONE_OF_MANY)),
     ("antiphase_persists", HOLDS, alter("agreement", "settled", -1, a=ONE_OF_MANY)),
     ("antiphase_persists", HOLDS, alter("agreement", "settled", 0, initial="minus")),
-    # Blocks that are not in antiphase have none that could persist.
+    # No antiphase can persist if the blocks are not in antiphase.
     ("antiphase_persists", NOT_TESTABLE, alter("stick_slip", "velocity_correlation", 0.9)),
     ("antiphase_persists", NOT_TESTABLE, alter("agreement", "settled", -1, a=lambda a: a > 0.03)),
     ("half_frequency", FAILS, everywhere("stick_slip", "stop_rate", 0.34)),
@@ -525,7 +525,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     # A cycle may be that of one block, or the time between stops of any.
     ("cycle_time", READING, alter("stick_slip", "cycle_time", 5.7)),
     ("cycle_time", READING, alter("stick_slip", "stop_rate", 1.0)),
-    # Or that of the middle block from plus, where the figures are.
+    # Or that of the middle block from plus, at the a of the figures.
     (
         "cycle_time",
         READING,
@@ -560,19 +560,19 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("linearization_justified", FAILS, alter("mean_distance", "window_least_friction", 0.7, a=ONE_OF_MANY)),
     ("linearization_justified", LOOSELY, alter("mean_distance", "window_least_friction", 0.85, a=ONE_OF_MANY)),
     ("linearization_justified", HOLDS, alter("mean_distance", "window_least_friction", 0.7, a=0.2)),
-    # The transient is no part of it.
+    # The transient does not count.
     ("linearization_justified", HOLDS, alter("mean_distance", "least_friction", 0.7, a=ONE_OF_MANY)),
     ("linearization_justified", NOT_TESTABLE, alter("mean_distance", "status", 1, initial="minus")),
-    # At one velocity V of the driver, and at one v: a power of 2, and one of 0.
+    # The power at a fixed velocity V of the driver, and at a fixed v.
     ("springs_and_masses_help", READING, slips(0.0)),
     ("springs_and_masses_help", FAILS, slips(-1.0)),
     ("springs_and_masses_help", LOOSELY, slips(0.6)),
     ("springs_and_masses_help", HOLDS, slips(0.8)),
     ("laws_agree", FAILS, means_apart(lambda a: a > 0.055)),
-    # A small part of the largest ⟨J⟩ is no difference, however large a part it is of a small one.
+    # A small fraction of the largest ⟨J⟩ does not count as a difference, even where ⟨J⟩ is small.
     ("laws_agree", HOLDS, alter("agreement", "difference", 0.01)),
     ("laws_agree", FAILS, alter("agreement", "difference", 0.02)),
-    # All of one curve and nineteen values of the other, 41 of 44 points; 38 of 44 leave it open.
+    # 41 of 44 points: all of one curve and nineteen values of the other. 38 of 44 leave the verdict open.
     ("laws_agree", LOOSELY, means_apart(lambda a: (a > 0.08) & (a < 0.095), initial="plus")),
     ("laws_agree", NOT_TESTABLE, means_apart(lambda a: (a > 0.072) & (a < 0.096), initial="plus")),
     ("laws_agree", LOOSELY, means_apart(ONE_OF_MANY, initial="plus")),
@@ -615,7 +615,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ),
     ("two_blocks_agree", READING, both(PARTED, alter("two_blocks", "agrees", -1, state=1))),
     ("two_blocks_agree", HOLDS, alter("two_blocks", "agrees", -1, state=1, a=0.1)),
-    # What the kind of motion decides needs no distance.
+    # Where the kind of motion decides, no distance is needed.
     (
         "two_blocks_agree",
         READING,
@@ -636,32 +636,32 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("periodic_for_one_block", NOT_TESTABLE, alter("two_blocks", "one_block_kind", -1, a=lambda a: a > 0.05)),
     ("solutions_agree", FAILS, alter("solvers", "difference", 0.05, solver="rk4")),
     ("solutions_agree", FAILS, alter("solvers", "difference", 0.001, solver="rk4")),
-    # What is granted is a thousandth of ⟨J⟩, three standard errors, or the threshold of synchrony.
+    # A thousandth of ⟨J⟩, three standard errors, or the threshold of synchrony are allowed.
     ("solutions_agree", HOLDS, solutions(1.3e-4)),
     ("solutions_agree", FAILS, solutions(1.5e-4)),
     ("solutions_agree", HOLDS, solutions(2.9e-4, error=1e-4)),
     ("solutions_agree", FAILS, solutions(3.1e-4, error=1e-4)),
     ("solutions_agree", HOLDS, solutions(1e-6, mean=0.0, error=0.0)),
     ("solutions_agree", FAILS, solutions(1.1e-6, mean=0.0, error=0.0)),
-    # Under another convention the laws may lead to one result.
+    # Under another convention the laws may lead to the same result.
     ("solutions_agree", CONVENTION, CHAOS_OF_RUNS),
     ("solutions_agree", CONVENTION, alter("agreement", "kind", PERIODIC, law="nonlinear", initial="minus")),
-    # Whether other regular motion is periodic or not is no other result.
+    # Whether other regular motion is periodic or not does not count as another result.
     (
         "solutions_agree",
         HOLDS,
         alter("agreement", "kind", PERIODIC, law="nonlinear", initial="plus"),
     ),
-    # The laws are compared at every a: one of twenty-two is no exception to the rule.
+    # The laws are compared at every a: one of twenty-two does not contradict the claim.
     ("solutions_agree", LOOSELY, alter("agreement", "kind", CHAOTIC, law="nonlinear", a=ONE_OF_MANY)),
-    # One of six points at which solvers differ is too little to say that they do.
+    # If solvers differ at one of six points, these are too few to decide.
     ("solutions_agree", NOT_TESTABLE, alter("solvers", "difference", 0.05, a=0.02, initial="plus", solver="rk4")),
     ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED, a=lambda a: a > 0.05)),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", CHAOTIC, law="nonlinear"))),
     ("solutions_agree", FAILS, both(CHAOS_OF_RUNS, alter("attractors", "kind", UNDETERMINED))),
     ("solutions_agree", NOT_TESTABLE, alter("agreement", "kind", UNDETERMINED)),
     ("solutions_agree", NOT_TESTABLE, alter("solvers", "difference", np.nan)),
-    # What has failed agrees with nothing.
+    # A failed run does not agree with any other.
     ("solutions_agree", NOT_TESTABLE, failed("rk4")),
     ("solutions_agree", NOT_TESTABLE, both(failed("rk4"), failed("map", law="linearized"))),
     ("solutions_agree", HOLDS, failed("rk4", a=0.02)),

@@ -1,6 +1,6 @@
-"""What each verdict says, word for word and number for number, beside the cases that it is said of.
+"""The texts and numbers of each verdict, word for word, in all cases of `alterations.py`.
 
-`python -m tests.claims.said` writes said.json anew; read what has changed there before it is kept.
+`python -m tests.claims.said` rewrites said.json; read what has changed there before you keep it.
 """
 
 from __future__ import annotations
@@ -25,27 +25,27 @@ CLAIMS: dict[str, Claim] = {claim.name: claim for claim in read_claims(PICTURES)
 
 
 def altered(name: str, alteration: Alteration) -> Verdict:
-    """Return the verdict on a claim in the world in which the paper is right, but for an alteration."""
+    """Return the verdict on a claim in the world in which the paper is right, except for an alteration."""
     world = paper_world()
     alteration(world)
     return judged(name, evidence(world))
 
 
 def judged(name: str, known: Evidence) -> Verdict:
-    """Return the verdict on a claim, which a claim on other claims takes from theirs."""
+    """Return the verdict on a claim; a claim about other claims is judged by their verdicts."""
     verdicts = {other: judge(CLAIMS[other], known) for other in CLAIMS[name].parameters.get("claims", ())}
     return judge(CLAIMS[name], replace(known, verdicts=verdicts))
 
 
 def said(verdict: Verdict) -> str:
-    """Return a verdict with all that it rests on as a line."""
+    """Return a verdict, with its texts and numbers, as a line."""
     errors = ["" if item.error is None else f" ± {item.error:.3g}" for item in verdict.measured]
     measured = [f"{item.quantity}: {item.value:.7g}{end}" for item, end in zip(verdict.measured, errors, strict=True)]
     return " | ".join([verdict.verdict, verdict.own, verdict.reason, verdict.changes, *measured])
 
 
 def write() -> None:
-    """Write what is said of each claim: first where the paper is right, then in the order of the cases."""
+    """Write the lines of each claim: first where the paper is right, then in the order of the cases."""
     cases = [(name, lambda world: None) for name in CLAIMS] + [(name, alteration) for name, _, alteration in CASES]
     found: dict[str, list[str]] = {name: [] for name in CLAIMS}
     for name, alteration in cases:

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from burridge_knopoff.claims.choices import other_tolerances
-from burridge_knopoff.claims.conventions import of_rounded_states
+from burridge_knopoff.claims.conventions import rounded_state_changes
 from burridge_knopoff.claims.ledger import judge, ledger
 from burridge_knopoff.claims.verdict import FAILS, HOLDS, Range
 from burridge_knopoff.motion.kind import MotionKind
@@ -21,8 +21,10 @@ def by_name(world):
 def test_each_tolerance_is_halved_and_doubled():
     names = list(by_name(paper_world()))
     assert len(names) == len(set(names)) == 12
-    assert {"agreement.relative_tolerance = 0.2 (0.1)", "motion.zero_exponent = 0.00025 (0.0005)"} <= set(names)
-    assert {"motion.standard_errors = 6 (3)", "synchronization_threshold = 5e-07 (1e-06)"} <= set(names)
+    assert {"agreement.relative_tolerance is 0.2 (here 0.1)", "motion.zero_exponent is 0.00025 (here 0.0005)"} <= set(
+        names
+    )
+    assert {"motion.standard_errors is 6 (here 3)", "synchronization_threshold is 5e-07 (here 1e-06)"} <= set(names)
     assert by_name({}) == {}
 
 
@@ -35,7 +37,7 @@ def test_a_tolerance_of_agreement_decides_where_laws_part():
     others = by_name(world)
     for claim in ("laws_agree", "two_blocks_agree"):
         verdicts = {name: judge(CLAIMS[claim], other).verdict for name, other in others.items()}
-        assert verdicts.pop("agreement.relative_tolerance = 0.2 (0.1)") == HOLDS
+        assert verdicts.pop("agreement.relative_tolerance is 0.2 (here 0.1)") == HOLDS
         assert set(verdicts.values()) == {FAILS}
 
 
@@ -43,8 +45,8 @@ def test_a_tolerance_of_agreement_decides_where_laws_part():
     ("exponent", "name", "expected"),
     [
         # Chaos of 0.0015 is none by twice the threshold; 0.0008 is by half of it.
-        (0.0015, "motion.chaotic_exponent = 0.002 (0.001)", "not testable"),
-        (0.0008, "motion.chaotic_exponent = 0.0005 (0.001)", FAILS),
+        (0.0015, "motion.chaotic_exponent is 0.002 (here 0.001)", "not testable"),
+        (0.0008, "motion.chaotic_exponent is 0.0005 (here 0.001)", FAILS),
     ],
 )
 def test_a_tolerance_of_motion_decides_what_is_chaos(exponent, name, expected):
@@ -64,7 +66,7 @@ def test_a_kind_that_an_attractor_has_shown_stays():
     world = paper_world()
     world["lyapunov"]["lyapunov_exponent"].loc[{"exponent": 0, "initial": "plus"}] = 0.0008
     world["lyapunov"]["run_kind"].loc[{"initial": "plus"}] = MotionKind.UNDETERMINED
-    other = by_name(world)["motion.chaotic_exponent = 0.0005 (0.001)"]
+    other = by_name(world)["motion.chaotic_exponent is 0.0005 (here 0.001)"]
     assert (other.summaries["lyapunov"]["run_kind"].sel(initial="plus") == MotionKind.CHAOTIC).all()
     assert (other.summaries["agreement"]["kind"] == world["agreement"]["kind"]).all()
 
@@ -74,7 +76,7 @@ def test_the_threshold_of_synchrony_decides_who_synchronizes():
     world["mean_distance"]["mean_distance"].loc[{"initial": "minus"}] = 1.5e-6
     world["mean_distance"]["synchronized"].loc[{"initial": "minus"}] = 0
     found = {name: judge(CLAIMS["minus_synchronizes"], other).own for name, other in by_name(world).items()}
-    assert found.pop("synchronization_threshold = 2e-06 (1e-06)") == HOLDS
+    assert found.pop("synchronization_threshold is 2e-06 (here 1e-06)") == HOLDS
     assert set(found.values()) == {FAILS}
 
 
@@ -84,16 +86,16 @@ def test_the_evidence_itself_stays_as_it_is():
     assert all(world[name].identical(same[name]) for name in same)
 
 
-def test_states_that_round_to_the_papers_are_told_of_where_they_end_elsewhere():
+def test_states_that_round_to_the_papers_and_reach_another_attractor_are_listed():
     world = paper_world()
-    assert of_rounded_states(evidence(world), ["minus", "plus"], ["linearized"], BELOW) == []
+    assert rounded_state_changes(evidence(world), ["minus", "plus"], ["linearized"], BELOW) == []
     rounded = world["attractors"]["rounded_branch"]
     rounded.loc[{"law": "linearized", "initial": "plus", "a": [0.05, 0.2], "corner": 1}] = 0
-    # What is not known is no other attractor.
+    # An attractor that is not known does not count as another one.
     rounded.loc[{"law": "linearized", "initial": "plus", "a": 0.03}] = -1
     text = "some states that round to plus reach another attractor at a = 0.05 (linearized)"
-    assert of_rounded_states(evidence(world), ["plus"], ["linearized", "nonlinear"], BELOW) == [text]
-    assert of_rounded_states(evidence(world), ["plus"], ["linearized"], Range(first=0.08, last=0.08)) == []
+    assert rounded_state_changes(evidence(world), ["plus"], ["linearized", "nonlinear"], BELOW) == [text]
+    assert rounded_state_changes(evidence(world), ["plus"], ["linearized"], Range(first=0.08, last=0.08)) == []
     names = ("plus_does_not_synchronize", "minus_synchronizes", "plus_mean_distance", "friction_keeps_sign")
     content = ledger("test", [CLAIMS[name] for name in names], evidence(world), [])
     assert [claim["changes"] for claim in content["claims"]] == [text, "", "", ""]

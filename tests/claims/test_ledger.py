@@ -13,12 +13,19 @@ import pytest
 import xarray
 
 from burridge_knopoff.claims.claim import read_claims
-from burridge_knopoff.claims.conventions import of_rounded_states
+from burridge_knopoff.claims.conventions import rounded_state_changes
 from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
 from burridge_knopoff.claims.judge import JUDGES, Judge
 from burridge_knopoff.claims.ledger import OWN, READS, ledger
 from burridge_knopoff.claims.margins import LISTED
-from burridge_knopoff.claims.verdict import NOT_TESTABLE, NotTestableError, Range, at_values, by_interval, by_value
+from burridge_knopoff.claims.verdict import (
+    NOT_TESTABLE,
+    NotTestableError,
+    Range,
+    format_values,
+    judge_interval,
+    judge_value,
+)
 from burridge_knopoff.study.yaml_file import ConfigError
 from tests.claims.alterations import CASES
 from tests.claims.said import CLAIMS, PICTURES, judged
@@ -115,7 +122,7 @@ class Recorded(dict):
 
 @pytest.mark.parametrize("judge", JUDGES.values(), ids=JUDGES)
 def test_a_judge_reads_what_it_declares(judge: Judge) -> None:
-    """It can read no others; a change of one that it does not read would make the verdicts out of date needlessly."""
+    """It can read no others. A declared summary that it does not read would outdate the verdicts needlessly."""
     names = [name for name, claim in CLAIMS.items() if claim.judge is judge]
     assert names
     cases = [(name, lambda world: None) for name in names]
@@ -143,9 +150,9 @@ def test_the_ledger_reads_what_it_declares_and_what_its_judges_do() -> None:
     summaries = Recorded(paper_world())
     known = evidence(summaries)
     ledger("test", [], known, [])
-    of_rounded_states(known, ["minus"], ["linearized"], Range())
+    rounded_state_changes(known, ["minus"], ["linearized"], Range())
     assert summaries.read == set(OWN)
-    for parameter, summary in LISTED.items():
+    for parameter, (_, summary) in LISTED.items():
         assert all(summary in claim.judge.reads for claim in CLAIMS.values() if parameter in claim.parameters)
     assert set(READS) == {*OWN, *(name for claim in CLAIMS.values() for name in claim.judge.reads)}
 
@@ -165,14 +172,14 @@ def test_csv_has_a_line_for_each_figure(content: dict) -> None:
         own = [row for row in rows if row["claim"] == claim["name"]]
         measured = claim["measured"] or [{"quantity": "", "value": None, "error": None, "proved": False}]
         for row, item in zip(own, measured, strict=True):
-            told = {**claim, "turns": "; ".join(claim["turns"])}
+            shown_claim = {**claim, "changing_choices": "; ".join(claim["changing_choices"])}
             others = [key for key in row if key not in ("claim", *item)]
-            assert [row[key] for key in others] == [told[key] for key in others]
+            assert [row[key] for key in others] == [shown_claim[key] for key in others]
             shown = {**item, "proved": "proved" if item["proved"] else None}
             assert [row[key] for key in item] == ["" if value is None else str(value) for value in shown.values()]
 
 
-def test_what_is_proved_is_told_beside_its_number() -> None:
+def test_a_proved_number_is_marked() -> None:
     proof = xarray.Dataset({"critical_a": (("law", "end"), [[0.0800999, 0.0801001]])}, {"law": ["linearized"]})
     world = {**paper_world(), "proof": proof}
     world["orbits"]["critical_a"].values[:] = 0.0801, 0.0802
@@ -182,7 +189,7 @@ def test_what_is_proved_is_told_beside_its_number() -> None:
     proved = [item for item in claim["measured"] if item["proved"]]
     assert [(item["quantity"].split(", ")[-1], item["value"]) for item in proved] == [("linearized", 0.0801)]
     assert abs(proved[0]["error"] - 2e-7) < 1e-12
-    assert "(linearized, proved); at a_c = 0.0802, where the synchronized orbit loses stability (non" in claim["reason"]
+    assert "ends at a_c = 0.0801 (linearized, proved) and at a_c = 0.0802 (nonlinear)" in claim["reason"]
     rows = [row for row in csv.DictReader(io.StringIO(as_csv(content))) if row["proved"]]
     assert [(row["value"], row["proved"]) for row in rows] == [("0.0801", "proved")]
     world["orbits"]["critical_a"].values[0] += 1e-6
@@ -191,55 +198,71 @@ def test_what_is_proved_is_told_beside_its_number() -> None:
         ledger("test", claims, evidence(world), [])
 
 
-def test_markdown_has_a_row_for_each_claim(content: dict) -> None:
+def test_markdown_has_a_row_and_a_section_for_each_claim(content: dict) -> None:
     text = as_markdown(content, "figures")
-    rows = [line for line in text.splitlines() if line.startswith("| ") and "claim | verdict" not in line]
+    rows = [line for line in text.splitlines() if line.startswith("| ")][2:]
     assert len(rows) == len(content["claims"]) == len(CLAIMS)
-    assert {claim["figure"] for claim in content["claims"]} == {"orbits", ""}
-    # A bar inside a cell is escaped.
-    assert all(row.replace("\\|", "").count("|") == 7 for row in rows)
+    sections = [line.removeprefix("#### ") for line in text.splitlines() if line.startswith("#### ")]
+    assert [row.split("](#")[1] for row in rows] == [f"{name}) |" for name in sections]
+    assert {*sections} == {*CLAIMS}
+    assert all(len(line) <= 120 for line in text.splitlines() if not line.startswith("|"))
     independent = sum(not claim.depends_on for claim in CLAIMS.values())
     assert 30 < independent < len(CLAIMS)
-    none = "holds loosely: 0; depends on convention: 0; depends on reading: 0; fails: 0; not testable: 0."
     assert text.startswith(
-        f"{independent} independent statements: holds: {independent}; {none}\n\n"
-        f"All {len(CLAIMS)}, with those that repeat others or follow from them: holds: {len(CLAIMS)}; {none}\n\n"
+        f"Of {independent} independent statements, {independent} hold; nine more repeat these or follow from them.\n\n"
         "Depth of the search for attractors: 95 % intervals of basin fractions ±2 %, changes along a located within "
-        "0.0006, closed orbits followed up to a period of 500.\n\n###"
+        "0.0006,\nperiodic orbits up to a period of 500.\n\n| statement"
     )
     assert text.count("Depends on ") == len(CLAIMS) - independent
-    claim = next(claim for claim in content["claims"] if claim["figure"])
-    claim |= {"verdict": "fails", "reason": "a|b", "changes": "nowhere"}
-    claim |= {"turns": ["holds: near below 1 (2)", "holds: c"], "depends_on": []}
-    text = as_markdown({**content, "claims": [claim]}, "figures")
-    assert text.count("###") == 1
-    assert (
-        f"| {claim['statement']} *{claim['place']}* | **fails** (here: holds) | a\\|b | nowhere | "
-        "holds: near below 1 (2); holds: c | [orbits](figures/orbits.png) |"
-    ) in text.splitlines()
-    claims = [{**claim, "name": name, "verdict": NOT_TESTABLE, "reason": "Short runs."} for name in ("one", "two")]
+
+
+def test_a_section_has_the_evidence_of_its_claim(content: dict) -> None:
+    claim = next(claim for claim in content["claims"] if claim["figure"]).copy()
+    claim |= {
+        "statement": "A|B.",
+        "verdict": "depends on reading",
+        "reason": "Why.",
+        "changes": "here; not other_claim",
+    }
+    claim |= {"changing_choices": ["holds if c"], "depends_on": ["other_claim"]}
+    lines = as_markdown({**content, "claims": [claim]}, "figures").split("\n\n")
+    assert f"| A\\|B. | depends on reading | [{claim['name']}](#{claim['name']}) |" in "\n".join(lines).splitlines()
+    assert lines[lines.index(f"#### {claim['name']}") + 1 :] == [
+        f"*A|B.* ({claim['place']})",
+        "**Depends on reading** (under the first reading: holds). Why.",
+        "Exceptions and other cases:",
+        "- here\n- not [other_claim](#other_claim)",
+        "What would change the verdict:",
+        "- holds if c",
+        "Depends on [other_claim](#other_claim). Figure: [orbits](figures/orbits.png).\n",
+    ]
+
+
+def test_claims_that_cannot_be_tested_are_listed_by_reason(content: dict) -> None:
+    claim = {**content["claims"][0], "verdict": NOT_TESTABLE, "reason": "Short runs.", "place": "Fig. 1"}
+    claims = [{**claim, "name": name, "statement": f"{name}."} for name in ("one", "two")]
     text = as_markdown({**content, "claims": claims}, "figures")
-    assert text.endswith("\n\n### Not testable\n\n- Short runs. (2: one, two)\n")
+    assert text.endswith("\n\n### Not testable\n\n- Short runs.\n  - one. *Fig. 1* (one)\n  - two. *Fig. 1* (two)\n")
     assert "|" not in text
 
 
 def test_values_join_neighbours_and_count_many() -> None:
-    assert at_values(A, (A > 0.0) & (A < 0.025)) == "at a = 0.0025 to 0.02"
-    assert at_values(A, (A == 0.05) | (A > 0.285)) == "at a = 0.05, 0.29 to 0.3"
-    assert at_values(A, (A == 0.05) | (A > 0.29)) == "at a = 0.05, 0.295, 0.3"
-    assert at_values(A, [k % 3 == 0 for k in range(len(A))]) == "at 22 of the 64 values of a from 0 to 0.3"
-    assert at_values(np.arange(20.0), np.arange(20) % 2 == 0) == "at 10 of the 19 values of a from 0 to 18"
-    assert at_values(np.arange(17.0), np.arange(17) % 2 == 1) == "at a = 1, 3, 5, 7, 9, 11, 13, 15"
-    assert at_values(A, A > 1.0) == "at a = "
+    assert format_values(A, (A > 0.0) & (A < 0.025)) == "at a = 0.0025 to 0.02"
+    assert format_values(A, (A == 0.05) | (A > 0.285)) == "at a = 0.05, 0.29 to 0.3"
+    assert format_values(A, (A == 0.05) | (A > 0.29)) == "at a = 0.05, 0.295, 0.3"
+    assert format_values(A, [k % 3 == 0 for k in range(len(A))]) == "at 22 of the 64 values of a from 0 to 0.3"
+    assert format_values(np.arange(20.0), np.arange(20) % 2 == 0) == "at 10 of the 19 values of a from 0 to 18"
+    assert format_values(np.arange(17.0), np.arange(17) % 2 == 1) == "at a = 1, 3, 5, 7, 9, 11, 13, 15"
+    assert format_values(A, A > 1.0) == "at a = "
 
 
 def test_a_coarse_grid_neither_helps_nor_harms_a_claim() -> None:
-    assert by_interval(0.138, 0.142, 0.14, 0.005, 0.01) == "holds"
-    assert by_interval(0.146, 0.148, 0.14, 0.005, 0.01) == "holds loosely"
-    assert by_interval(0.2, math.inf, 0.14, 0.005, 0.01) == by_interval(0.0, 0.1, 0.14, 0.005, 0.01) == "fails"
+    assert judge_interval(0.138, 0.142, 0.14, 0.005, 0.01) == "holds"
+    assert judge_interval(0.146, 0.148, 0.14, 0.005, 0.01) == "holds loosely"
+    assert judge_interval(0.2, math.inf, 0.14, 0.005, 0.01) == judge_interval(0.0, 0.1, 0.14, 0.005, 0.01) == "fails"
     for low, high in ((0.1, 0.2), (0.14, 0.148), (0.146, 0.2), (0.13, math.inf)):
         with pytest.raises(NotTestableError, match="too coarse"):
-            by_interval(low, high, 0.14, 0.005, 0.01)
+            judge_interval(low, high, 0.14, 0.005, 0.01)
 
 
 def test_ranges_have_open_and_closed_ends() -> None:
@@ -260,14 +283,14 @@ def test_ranges_have_open_and_closed_ends() -> None:
 
 
 def test_a_number_holds_within_its_tolerance() -> None:
-    assert by_value(0.144, 0.14, 0.005, 0.01) == "holds"
-    assert by_value(0.148, 0.14, 0.005, 0.01) == "holds loosely"
-    assert by_value(0.16, 0.14, 0.005, 0.01) == by_value(math.nan, 0.14, 0.005, 0.01) == "fails"
+    assert judge_value(0.144, 0.14, 0.005, 0.01) == "holds"
+    assert judge_value(0.148, 0.14, 0.005, 0.01) == "holds loosely"
+    assert judge_value(0.16, 0.14, 0.005, 0.01) == judge_value(math.nan, 0.14, 0.005, 0.01) == "fails"
 
 
 @pytest.mark.parametrize("missing", [{"minus"}, {"plus"}, {"minus", "plus"}])
 def test_a_study_without_the_papers_states_is_judged_without_an_error(missing: set[str]) -> None:
-    """Its states have other names: what rests on them is not testable, and says so."""
+    """Its states have other names: claims on the paper's states are not testable, with that reason."""
     names = {name: f"other_{name}" if name in missing else name for name in ("minus", "plus")}
     summaries = {}
     for key, dataset in paper_world().items():

@@ -1,11 +1,11 @@
-"""What may come before chaos, told of branches made by hand."""
+"""What precedes chaos, on branches made by hand."""
 
 import numpy as np
 import pytest
 import xarray as xr
 
 from burridge_knopoff import MotionKind
-from burridge_knopoff.claims.locking import _chaotic_before
+from burridge_knopoff.claims.locking import _was_chaotic
 from burridge_knopoff.continuation.branch_changes import Change
 
 PERIODIC, CHAOTIC = MotionKind.PERIODIC, MotionKind.CHAOTIC
@@ -14,7 +14,7 @@ PERIODIC, CHAOTIC = MotionKind.PERIODIC, MotionKind.CHAOTIC
 @pytest.mark.parametrize(
     ("change", "kinds", "expected"),
     [
-        # Known at one value below the bifurcation, or at two: the nearest tells.
+        # Known at one value below the bifurcation, or at two: the nearest decides.
         (Change.END, {0.1: CHAOTIC}, True),
         (Change.END, {0.1: PERIODIC}, False),
         (Change.END, {0.05: PERIODIC, 0.1: CHAOTIC}, True),
@@ -30,4 +30,4 @@ def test_a_branch_may_end_on_what_was_chaotic_already(change, kinds, expected):
     )
     slots = {"branch": np.tile([3, 7], (len(kinds), 1)), "kind": [[CHAOTIC, kind] for kind in kinds.values()]}
     refined = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
-    assert _chaotic_before(bifurcations, refined.assign(a=("value", list(kinds)))).tolist() == [expected]
+    assert _was_chaotic(bifurcations, refined.assign(a=("value", list(kinds)))).tolist() == [expected]

@@ -10,7 +10,7 @@ import pytest
 import xarray
 
 from burridge_knopoff.attractors.lookup import reached_values
-from burridge_knopoff.claims.conventions import by_readings, shares_by_readings, under_conventions
+from burridge_knopoff.claims.conventions import combine_readings, judge_conventions, judge_readings
 from burridge_knopoff.claims.ledger import judge
 from burridge_knopoff.claims.verdict import (
     CONVENTION,
@@ -23,9 +23,9 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Share,
     Verdict,
-    by_share,
+    judge_share,
     judge_shares,
-    verdict_of,
+    judge_worst_share,
 )
 from tests.claims import alterations
 from tests.claims.alterations import CASES, ONE_OF_MANY, Alteration, at
@@ -33,24 +33,24 @@ from tests.claims.said import CLAIMS, FILE, altered, judged, said
 from tests.claims.worlds import Summaries, evidence, paper_world
 
 SAID = json.loads(FILE.read_text(encoding="utf-8"))
-#: (claim, its number there, verdict, alteration): first no alteration, for each claim.
-TOLD = [(name, 0, HOLDS, lambda world: None) for name in CLAIMS]
-TOLD += [(case[0], [one[0] for one in CASES[: k + 1]].count(case[0]), *case[1:]) for k, case in enumerate(CASES)]
+#: (claim, its line there, verdict, alteration): first each claim without an alteration.
+JUDGED = [(name, 0, HOLDS, lambda world: None) for name in CLAIMS]
+JUDGED += [(case[0], [one[0] for one in CASES[: k + 1]].count(case[0]), *case[1:]) for k, case in enumerate(CASES)]
 
 
-def told(name: str, number: int) -> str:
-    """Return what said.json has of a claim in one of its cases."""
+def expected_line(name: str, number: int) -> str:
+    """Return the line of said.json on a claim in one of its cases."""
     known = SAID.get(name, [])
-    assert number < len(known), f"said.json has {len(known)} lines of {name}: `python -m tests.claims.said` adds more"
+    assert number < len(known), f"said.json has {len(known)} lines of {name}: `python -m tests.claims.said` writes more"
     return known[number]
 
 
-@pytest.mark.parametrize(("name", "number", "expected", "alteration"), TOLD, ids=[f"{c[0]}-{c[2]}" for c in TOLD])
+@pytest.mark.parametrize(("name", "number", "expected", "alteration"), JUDGED, ids=[f"{c[0]}-{c[2]}" for c in JUDGED])
 def test_altered_data_alter_the_verdict(name: str, number: int, expected: str, alteration: Alteration) -> None:
-    """Every claim holds where the paper is right; what is said, and the numbers that it rests on, lie in said.json."""
+    """Every claim holds where the paper is right; said.json has the texts and the numbers of every verdict."""
     verdict = altered(name, alteration)
     assert verdict.verdict == expected, verdict.reason
-    assert said(verdict) == told(name, number)
+    assert said(verdict) == expected_line(name, number)
     assert len(SAID[name]) == 1 + [case[0] for case in CASES].count(name)
     if expected in (CONVENTION, READING):
         judged = set(verdict.conventions.values())
@@ -62,11 +62,11 @@ def test_altered_data_alter_the_verdict(name: str, number: int, expected: str, a
     ("own", "others", "expected", "changes"),
     [
         (HOLDS, (HOLDS, HOLDS, HOLDS), HOLDS, ""),
-        (HOLDS, (HOLDS, FAILS, HOLDS), CONVENTION, "; B: fails (2)"),
-        (FAILS, (FAILS, "", LOOSELY), CONVENTION, "; C: holds loosely (3); not judged under B"),
+        (HOLDS, (HOLDS, FAILS, HOLDS), CONVENTION, "; under (B) it fails: 2"),
+        (FAILS, (FAILS, "", LOOSELY), CONVENTION, "; under (C) it holds loosely: 3; it cannot be judged under (B)"),
         (FAILS, (FAILS, FAILS, FAILS), FAILS, ""),
-        (LOOSELY, (HOLDS, "", ""), LOOSELY, "; A: holds (1); not judged under B and C"),
-        (FAILS, ("", "", ""), FAILS, "; not judged under A and B and C"),
+        (LOOSELY, (HOLDS, "", ""), LOOSELY, "; under (A) it holds: 1; it cannot be judged under (B) and (C)"),
+        (FAILS, ("", "", ""), FAILS, "; it cannot be judged under (A), (B) and (C)"),
     ],
 )
 def test_a_claim_depends_on_convention_where_it_holds_and_fails(
@@ -74,17 +74,17 @@ def test_a_claim_depends_on_convention_where_it_holds_and_fails(
 ) -> None:
     names = ["one_sided, tested", "symmetric, moving", "symmetric, tested"]
     for letter, name in zip("ABC", names, strict=True):
-        changes = changes.replace(letter, name)
+        changes = changes.replace(f"({letter})", f"({name})")
     figures = [Measured("number", 1.0)]
 
     def judged(attractors: xarray.Dataset) -> tuple[str, str]:
         number = names.index(f"{attractors['contact'].item()}, {attractors['start'].item()}")
         return others[number], str(number + 1)
 
-    found = under_conventions(evidence(paper_world()), own, "why", figures, ["but"], judged)
-    told = {"one_sided, moving": own, **{name: one for name, one in zip(names, others, strict=True) if one}}
-    assert found == Verdict(expected, "why", figures, f"but{changes}", told, own)
-    alone = under_conventions(evidence({}), own, "why", figures, [], judged)
+    found = judge_conventions(evidence(paper_world()), own, "why", figures, ["but"], judged)
+    verdicts = {"one_sided, moving": own, **{name: one for name, one in zip(names, others, strict=True) if one}}
+    assert found == Verdict(expected, "why", figures, f"but{changes}", verdicts, own)
+    alone = judge_conventions(evidence({}), own, "why", figures, [], judged)
     assert alone == Verdict(own, "why", figures, "", {"one_sided, moving": own}, own)
 
 
@@ -125,17 +125,17 @@ def test_the_attractor_that_is_reached_is_known_by_branch_and_side() -> None:
 def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> None:
     """Too few values are no reason to say that a statement fails, whichever claim they are of."""
     share = Share(hits, count)
-    assert by_share(share, 0.9) == expected
-    texts = f"100.0 % (one), {100 * hits / count:.1f} % (other)"
+    assert judge_share(share, 0.9) == expected
+    texts = f"100 % (one) and {share} (other)"
     one, open_one = {"one": Share(9, 9), "other": share}, expected == NOT_TESTABLE
     assert judge_shares(one, 0.9) == ("" if open_one else expected, texts)
     if open_one:
-        with pytest.raises(NotTestableError, match=rf"{hits} of {count} \(other\), and the 95 % interval"):
-            verdict_of(one, 0.9)
+        with pytest.raises(NotTestableError, match=rf"{hits} of {count} cases \(other\), and the 95 % interval"):
+            judge_worst_share(one, 0.9)
     else:
-        assert verdict_of(one, 0.9) == expected
+        assert judge_worst_share(one, 0.9) == expected
     # What fails anyhow is not left open by another share.
-    assert verdict_of({**one, "third": Share(0, 9)}, 0.9) == FAILS
+    assert judge_worst_share({**one, "third": Share(0, 9)}, 0.9) == FAILS
 
 
 @pytest.mark.parametrize(
@@ -155,15 +155,15 @@ def test_a_reading_that_is_open_is_not_left_out(readings: list[str], expected: s
     verdicts = {f"reading {number}": verdict for number, verdict in enumerate(readings)}
     if expected == NOT_TESTABLE:
         with pytest.raises(NotTestableError, match=f"«reading {readings.index(NOT_TESTABLE)}»$"):
-            by_readings(verdicts, "why", [])
+            combine_readings(verdicts, "why", [])
     else:
         found = Verdict(expected, "why", [], "but; and", verdicts, readings[0])
-        assert by_readings(verdicts, "why", [], ["but", "and"]) == found
+        assert combine_readings(verdicts, "why", [], ["but", "and"]) == found
 
 
 def test_the_worst_share_of_a_reading_decides() -> None:
     shares = {"first": {"one": Share(7, 8), "other": Share(8, 8)}, "second": {"one": Share(8, 8)}}
-    assert shares_by_readings(shares, 0.9) == {"first": NOT_TESTABLE, "second": HOLDS}
+    assert judge_readings(shares, 0.9) == {"first": NOT_TESTABLE, "second": HOLDS}
 
 
 def test_every_claim_is_seen_to_fail() -> None:
@@ -195,7 +195,7 @@ MOVED = {"plus": {"position": [0.98, -0.993, -0.991], "velocity": [0.099, 0.1012
 FASTER = {"plus": {"position": [0.989, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1024]}}
 LONGER = "the paper's runs have a transient of 3000 and a window of 7000, those of the study "
 CHAINS = [{"ends": "ring"}, {"coupling": 2.0}, {"pulling": 1.0}, {"threshold": [1.0, 1.1, 1.0]}]
-FEW = "a statement on all 0.005 ≤ a ≤ 0.08 needs 10 values of a; what was computed has 2 there"
+FEW = "a statement on all 0.005 ≤ a ≤ 0.08 needs 10 values of a; the study has 2 there"
 SPRINGS = "the study's chain has other springs, masses or static friction than the paper's"
 
 
@@ -232,8 +232,8 @@ def test_nothing_is_judged_by_what_is_not_the_papers(
 
 def test_what_says_the_same_is_judged() -> None:
     same = {"coupling": [1.0, 1.0], "pulling": [1.0, 2.0, 1.0], "threshold": [1.0, 1.0, 1.0]}
-    told = [("equilibrium", {"chain": same}), ("equilibrium", {"window": 200})]
-    for name, config in [*told, *((name, {"window": 20_000}) for name in OF_RUNS)]:
+    cases = [("equilibrium", {"chain": same}), ("equilibrium", {"window": 200})]
+    for name, config in [*cases, *((name, {"window": 20_000}) for name in OF_RUNS)]:
         assert judged(name, evidence(paper_world(), **config)).verdict == HOLDS
     # Ten values of a are enough.
     few = _at(lambda a: np.isin(a, a[(a >= 0.005) & (a <= 0.08)][:10]))
@@ -261,7 +261,7 @@ def test_a_further_law_changes_no_verdict(name: str) -> None:
         world[key] = item.reindex(names, fill_value=-1)
     laws = {"linearized": {}, "nonlinear": {}, "stribeck": {}}
     own = judged(name, evidence(world, laws=laws))
-    assert (own.verdict, said(own)) == (HOLDS, told(name, 0))
+    assert (own.verdict, said(own)) == (HOLDS, expected_line(name, 0))
     first = judged(name, evidence(world, laws={"stribeck": {}, **laws}))
     compared = name in ("laws_agree", "laws_agree_in_kind", "two_blocks_agree")
     assert first.verdict == (NOT_TESTABLE if compared else HOLDS)

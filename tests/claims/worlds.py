@@ -1,4 +1,4 @@
-"""Summaries of a world in which the paper is right in every word: what each claim's judge should call «holds»."""
+"""Summaries of a world in which every statement of the paper is true: every judge should return «holds»."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ BLOCK = (*POINT, "block")
 STATE = ("position", "velocity")
 BLOCKS = np.array([1, 2, 3])
 SYNCHRONY = (A >= 0.005) & (A <= 0.08)
-# Kinds of motion of the runs, one row a state.
+# Kinds of motion of the runs, one row per state.
 _PLUS = np.where(A > 0.1, CHAOTIC, QUASIPERIODIC)
 KINDS = (np.where((A > 0.0) & (A < 0.1), SYNCHRONIZED, _PLUS), _PLUS)
 MEANS = np.stack([np.where(SYNCHRONY, 0.0, 0.05), np.full(len(A), 0.14)])
@@ -50,7 +50,7 @@ def evidence(summaries: Summaries, **config: object) -> Evidence:
 
 
 def paper_world() -> Summaries:
-    """Return all summaries, made new at each call so that a test may spoil them."""
+    """Return all summaries, new at each call, so that a test may alter them."""
     world = {
         "mean_distance": _mean_distance(),
         "lyapunov": _lyapunov(),
@@ -110,8 +110,8 @@ def paper_world() -> Summaries:
         ),
     }
     for name, dataset in world.items():
-        # No two numbers are the same, so that it shows where one is taken for another.
-        # The friction of slow slips is 1 but for the sixth digit.
+        # All numbers differ, so that a judge that reads the wrong one is noticed. The friction of slow slips, which
+        # differs from 1 in the sixth digit, stays.
         numbers = (key for key in dataset.data_vars if dataset[key].dtype == float and key != "window_least_friction")
         for values in (dataset[key].values for key in numbers):
             if name != "equilibrium":
@@ -120,7 +120,7 @@ def paper_world() -> Summaries:
 
 
 def _dataset(variables: dict, **coordinates: object) -> xarray.Dataset:
-    """Return variables over dimensions that are named, each given where it is the same along the first of them."""
+    """Return a Dataset of variables over named dimensions; values are broadcast along the leading ones."""
     known = {"law": list(LAWS), "initial": list(STATES), "a": A, **coordinates}
     used = {name for dimensions, _ in variables.values() for name in dimensions}
     sizes = {name: len(values) for name, values in {"exponent": range(3), "attractor": range(3), **known}.items()}
@@ -143,7 +143,7 @@ def _compared(pair: tuple[str, ...], difference: object) -> dict:
 
 
 def _mean_distance() -> xarray.Dataset:
-    """Return slips whose speed over v grows with a, as it must for (aU')² at a fixed velocity of the driver."""
+    """Return slips whose speed over v grows with a, as (aU')² requires at a fixed velocity of the driver."""
     return _dataset(
         {
             "mean_distance": (POINT, MEANS),
@@ -194,9 +194,9 @@ def _bifurcation() -> xarray.Dataset:
 
 
 def _attractors() -> xarray.Dataset:
-    """Return three attractors at each a: synchrony, another one, which plus reaches, and a third; one alone above 0.1.
+    """Return three attractors at each a: synchrony, a second, which plus reaches, and a third; only one above 0.1.
 
-    minus reaches the third where it does not synchronize, and the second beyond 0.1.
+    minus reaches the third where it does not synchronize, and the second above 0.1.
     """
     slots = ("law", "a", "attractor")
     conventions = ("law", "contact", "start", "initial", "a")
@@ -228,7 +228,7 @@ def _attractors() -> xarray.Dataset:
 
 
 def _refined() -> xarray.Dataset:
-    """Return the second of the attractors at the values of the grid and, for the second law, at one put in between."""
+    """Return the second of the attractors at the values of the grid and, for the second law, at one inserted value."""
     rows = [A, np.sort(np.append(A, 0.1001))]
     a = np.full((2, len(A) + 1), np.nan)
     for law, row in enumerate(rows):
@@ -246,7 +246,7 @@ def _refined() -> xarray.Dataset:
 
 
 def _rotation() -> xarray.Dataset:
-    """Return a plateau, 1/2, over all values of a of both laws, and end blocks that stay locked if detuned."""
+    """Return a plateau at 1/2 over all values of a of both laws, and end blocks that stay locked if detuned."""
     refined = _refined()
     there = np.isfinite(refined["a"].values)
     data = {
@@ -273,16 +273,22 @@ def _rotation() -> xarray.Dataset:
 
 
 def _bifurcations() -> xarray.Dataset:
-    """Return twelve bifurcations of each law at which a locked orbit, at a grazing, gives way to chaos."""
-    told = {"law": np.repeat(LAWS, 12), "kind": 0, "motion_before": PERIODIC, "motion_after": CHAOTIC, "to_branch": 1}
+    """Return twelve bifurcations of each law at which a locked orbit becomes chaotic at a grazing."""
+    columns = {
+        "law": np.repeat(LAWS, 12),
+        "kind": 0,
+        "motion_before": PERIODIC,
+        "motion_after": CHAOTIC,
+        "to_branch": 1,
+    }
     low = np.tile(A[A >= 0.1][:12], 2)
-    told |= {"change": Change.CHANGE, "grid_low": low, "a": low + 0.001}
-    values = {name: ("bifurcation", np.array(np.broadcast_to(value, 24))) for name, value in told.items()}
+    columns |= {"change": Change.CHANGE, "grid_low": low, "a": low + 0.001}
+    values = {name: ("bifurcation", np.array(np.broadcast_to(value, 24))) for name, value in columns.items()}
     return xarray.Dataset(values, attrs={"laws": " ".join(LAWS)})
 
 
 def _phases() -> xarray.Dataset:
-    """Return states that synchronize from phases up to 90° apart and are in antiphase from phases beyond."""
+    """Return states that synchronize from phases up to 90° apart and end in antiphase from larger differences."""
     states = ("law", "a", "inner_share", "amplitude", "phase_difference", "state")
     opposite = np.array([False, False, True, True])[:, None]
     return _dataset(
@@ -299,7 +305,7 @@ def _phases() -> xarray.Dataset:
 
 
 def _equilibrium() -> xarray.Dataset:
-    """Return e = −(5/6, 2/3, 5/6)(1 − av) and the growth rate a, twice that of the world as it is."""
+    """Return e = −(5/6, 2/3, 5/6)(1 − av) and the growth rate a, twice the true one."""
     pairs = np.stack(np.broadcast_arrays(A[:, None], [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]), axis=-1)
     return _dataset(
         {
@@ -329,7 +335,7 @@ def _solvers() -> xarray.Dataset:
         solver=["map", "series", "rk4"],
         a=[0.02, 0.05, 0.08],
     )
-    # The map does not know the nonlinear law.
+    # The map cannot treat the nonlinear law.
     found["step_count"].values[1, 0] = -1
     found["status"].values[1, 0] = -1
     found["difference"].values[1, 0] = np.nan

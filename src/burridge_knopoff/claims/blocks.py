@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings
+from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
-from burridge_knopoff.claims.verdict import FAILS, Measured, Range, Verdict, at_values, by_share
+from burridge_knopoff.claims.verdict import FAILS, Measured, Range, Verdict, format_values, judge_share
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
 from burridge_knopoff.summaries.judgement import same_mean
@@ -25,7 +25,7 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     measured for two blocks that are both pulled as well, which is not the paper's chain.
     """
     summary = evidence.summary("two_blocks")
-    both = evidence.choose(evidence.compared(summary), a)
+    both = evidence.choose(evidence.law_comparison(summary), a)
     found = both.sel(chain="train").transpose("law", "state", "a", ...)
     grid, states = found["a"].values, found.sizes["state"]
     agreement = {key: summary.attrs[f"agreement_{key}"] for key in ("relative_tolerance", "standard_errors")}
@@ -36,12 +36,12 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     }
     measured, changes, readings, texts = [], [], {}, []
     for reading, agrees in answers.items():
-        known, right = _for_all_states(agrees)
-        unknown = f"the laws could not be compared for two blocks {at_values(grid, ~known)}"
+        known, right = _states_agree(agrees)
+        unknown = f"the laws could not be compared for two blocks {format_values(grid, ~known)}"
         case = Case(reading, grid, right, known, unknown)
         share = for_all(loose_share, [case]).share
-        readings[reading] = by_share(share, loose_share)
-        texts.append(f"{share} {reading} ({readings[reading]})")
+        readings[reading] = judge_share(share, loose_share)
+        texts.append(f"{reading} at {share} ({readings[reading]})")
         of_states = float((agrees == Answer.YES)[agrees != Answer.UNDETERMINED].mean())
         measured.append(Measured(f"share of a at which the laws agree {reading} from all states", share.value))
         measured.append(Measured(f"share of states and a at which they agree {reading}", of_states))
@@ -49,7 +49,7 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
         if len(wrong):
             measured.append(Measured(f"smallest a at which they disagree {reading}", wrong[0]))
             measured.append(Measured(f"largest a at which they disagree {reading}", wrong[-1]))
-        changes += case.exceptions(f"they disagree {reading}", f"unknown {reading}")
+        changes += case.exceptions(f"they disagree {reading}", f"undetermined {reading}")
     ratio = np.abs(pair["difference"]) / np.maximum(*pair["mean_distance"])
     if np.isfinite(ratio).any():
         measured.append(Measured("largest |Δ⟨J⟩|/⟨J⟩", float(np.nanmax(ratio))))
@@ -58,20 +58,20 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     if by_distance.any():
         nearest = float(np.abs(found["margin"].values[by_distance]).min())
         measured.append(Measured("smallest distance of Δ⟨J⟩ from the tolerance where it decides, in errors", nearest))
-    other_known, other_right = _for_all_states(both["agrees"].sel(chain="both_pulled").transpose("state", "a").values)
+    other_known, other_right = _states_agree(both["agrees"].sel(chain="both_pulled").transpose("state", "a").values)
     if other_known.any():
         of_other = float(other_right[other_known].mean())
         measured.append(Measured("the first share if both blocks are pulled, which is not the paper's chain", of_other))
     reason = (
-        f"In the train model, pulled at its first block only, the laws agree from all {states} sampled states at "
-        f"{'; at '.join(texts)}, of the values of a with {a}."
+        f"In the train model, which is pulled at its first block only, the laws agree for all {states} sampled states "
+        f"{' and '.join(texts)} of the values of a with {a}."
     )
-    return by_readings(readings, reason, measured, changes)
+    return combine_readings(readings, reason, measured, changes)
 
 
-def _for_all_states(agrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return where it is known whether laws agree from all states, and where they agree; answers : (states, a)."""
-    # One state that disagrees decides; to say that all agree, all have to be known.
+def _states_agree(agrees: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return where it is known whether laws agree for all states, and where they do; answers : (states, a)."""
+    # One state that disagrees decides; for agreement of all, all have to be known.
     return (agrees >= 0).all(axis=0) | (agrees == Answer.NO).any(axis=0), (agrees == Answer.YES).all(axis=0)
 
 
@@ -89,7 +89,9 @@ def periodic_for_one_block(evidence: Evidence, a: Range, loose_share: float) -> 
     known = (one != MotionKind.UNDETERMINED).all(axis=1)
     right = ((one == MotionKind.PERIODIC) & sticks).all(axis=1)
     grid = found["a"].values
-    case = Case("one block", grid, right, known, f"the motion of one block is unknown {at_values(grid, ~known)}")
+    case = Case(
+        "one block", grid, right, known, f"the motion of one block is undetermined {format_values(grid, ~known)}"
+    )
     periodic = for_all(loose_share, [case])
     measured = [Measured("share of a at which one block sticks and slips periodically", periodic.share.value)]
     two = np.isin(found["kind"].sel(chain="train").transpose("a", ...).values.reshape(len(grid), -1), CHAOS)

@@ -1,7 +1,7 @@
-"""The evidence of a study for other values of its tolerances: those of agreement, and those of the kinds of motion.
+"""The evidence of a study with other tolerances of agreement and of the kinds of motion.
 
-The kind of a run is changed if the classification gives another kind for its exponents, section points and ⟨J⟩ with the
-new tolerance. The kinds of attractors come from longer windows and stay as they are.
+A run is given another kind if its exponents, section points and ⟨J⟩ are classified differently with the new tolerance.
+The kinds of attractors come from longer windows and are unchanged.
 """
 
 from __future__ import annotations
@@ -27,34 +27,36 @@ THRESHOLD = "synchronization_threshold"
 
 
 def other_tolerances(evidence: Evidence) -> Iterator[tuple[str, Evidence]]:
-    """Yield («tolerance = another value (its own)», the evidence with it), at half and at twice the tolerance."""
+    """Yield («tolerance is another value (here its own)», the evidence with it), at half and at twice the tolerance."""
     summaries, motion = evidence.summaries, dict(evidence.config["motion"])
     agreement = summaries["agreement"].attrs if "agreement" in summaries else {}
     for factor in FACTORS:
         for name in AGREEMENT if agreement else ():
             changed = {**agreement, name: factor * agreement[name]}
-            yield _said(f"agreement.{name}", agreement[name], factor), _compared(evidence, changed)
+            yield _format_choice(f"agreement.{name}", agreement[name], factor), _compare_laws(evidence, changed)
         if "lyapunov" not in summaries:
             continue
         for name in MOTION:
             value = motion.get(name, getattr(MotionSettings(), name))
             other = replace(evidence, config={**evidence.config, "motion": {**motion, name: factor * value}})
-            yield _said(f"motion.{name}", value, factor), _with_kinds(other, evidence, agreement)
+            yield _format_choice(f"motion.{name}", value, factor), _reclassify_runs(other, evidence, agreement)
         if THRESHOLD in agreement:
             changed = {**agreement, THRESHOLD: factor * agreement[THRESHOLD]}
-            yield _said(THRESHOLD, agreement[THRESHOLD], factor), _with_kinds(evidence, evidence, changed)
+            yield _format_choice(THRESHOLD, agreement[THRESHOLD], factor), _reclassify_runs(evidence, evidence, changed)
 
 
-def _said(name: str, value: float, factor: float) -> str:
-    return f"{name} = {factor * value:g} ({value:g})"
+def _format_choice(name: str, value: float, factor: float) -> str:
+    return f"{name} is {factor * value:g} (here {value:g})"
 
 
-def _with_kinds(other: Evidence, evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
+def _reclassify_runs(other: Evidence, evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
     """Return evidence in which kinds and synchrony of the runs follow tolerances other than those of `evidence`."""
     lyapunov = evidence.summaries["lyapunov"]
     own = evidence.summaries.get("agreement")
     threshold = {} if own is None else own.attrs
-    before, after = (_kinds(lyapunov, one.config, about) for one, about in ((evidence, threshold), (other, agreement)))
+    before, after = (
+        _classify_runs(lyapunov, one.config, about) for one, about in ((evidence, threshold), (other, agreement))
+    )
     kind = lyapunov["run_kind"]
     changed = {"lyapunov": lyapunov.assign(run_kind=kind.copy(data=np.where(after != before, after, kind.values)))}
     if own is not None:
@@ -65,13 +67,13 @@ def _with_kinds(other: Evidence, evidence: Evidence, agreement: Mapping[str, Any
     if THRESHOLD in agreement and "mean_distance" in evidence.summaries:
         means = evidence.summaries["mean_distance"]
         below = (means["mean_distance"] < agreement[THRESHOLD]).astype(means["synchronized"].dtype)
-        told = agreement[THRESHOLD] != threshold.get(THRESHOLD)
-        changed["mean_distance"] = means.assign(synchronized=below) if told else means
+        is_new = agreement[THRESHOLD] != threshold.get(THRESHOLD)
+        changed["mean_distance"] = means.assign(synchronized=below) if is_new else means
     result = replace(other, summaries={**evidence.summaries, **changed})
-    return _compared(result, agreement) if agreement else result
+    return _compare_laws(result, agreement) if agreement else result
 
 
-def _kinds(lyapunov: xarray.Dataset, config: Mapping[str, Any], about: Mapping[str, Any]) -> np.ndarray:
+def _classify_runs(lyapunov: xarray.Dataset, config: Mapping[str, Any], about: Mapping[str, Any]) -> np.ndarray:
     """Return the kind of motion of each run for the tolerances of a config and a threshold of synchrony."""
     threshold = {THRESHOLD: about[THRESHOLD]} if THRESHOLD in about else {}
     settings = MotionSettings(**{**config["motion"], **threshold}).scaled_to_velocity(config["v"])
@@ -84,7 +86,7 @@ def _kinds(lyapunov: xarray.Dataset, config: Mapping[str, Any], about: Mapping[s
     return kinds
 
 
-def _compared(evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
+def _compare_laws(evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
     """Return evidence in which the laws are compared with other tolerances, for three blocks and for two."""
     changed = {}
     for name in ("agreement", "two_blocks"):
@@ -92,12 +94,12 @@ def _compared(evidence: Evidence, agreement: Mapping[str, Any]) -> Evidence:
             continue
         dataset = evidence.summaries[name].copy(deep=True)
         for one in [dataset.sel(chain=chain) for chain in dataset["chain"]] if "chain" in dataset.dims else [dataset]:
-            told = {
+            known = {
                 key: one[key].values for key in ("difference", "difference_error", "same_kind", "agrees", "parting_a")
             }
             for i in range(one.sizes["other_law"]):
                 pair = {key: one[key].values[[0, i + 1]] for key in ("mean_distance", "mean_distance_error", "kind")}
-                both = {**pair, **{key: value[i] for key, value in told.items()}}
+                both = {**pair, **{key: value[i] for key, value in known.items()}}
                 compare(both, one["a"].values, agreement[THRESHOLD], agreement)
         prefix = "agreement_" if name == "two_blocks" else ""
         about = {f"{prefix}{key}": agreement[key] for key in AGREEMENT}

@@ -78,7 +78,8 @@ class Claim:
 
     parameters : of the judge
     figure : the figure of the study that shows the claim
-    depends_on : names of the claims of which this is a case, a repetition or a consequence; empty if independent
+    depends_on : names of the claims of which this one is a special case, a repetition or a consequence; empty if
+        independent
     """
 
     name: str

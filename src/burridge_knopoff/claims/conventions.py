@@ -1,6 +1,6 @@
-"""Judging a claim under each convention of contact and start.
+"""Verdicts on a claim under each convention of contact and start, and under each reading.
 
-Under the study's convention the runs decide, under the others the attractors that the initial states reach.
+Under the study's convention the runs decide; under the others, the attractors that the initial states reach.
 """
 
 from __future__ import annotations
@@ -21,16 +21,17 @@ from burridge_knopoff.claims.verdict import (
     Range,
     Share,
     Verdict,
-    by_share,
-    told_where,
-    worst,
+    describe_where,
+    join_words,
+    judge_share,
+    worst_verdict,
 )
 
 if TYPE_CHECKING:
     import xarray
 
 
-def under_conventions(
+def judge_conventions(
     evidence: Evidence,
     own: str,
     reason: str,
@@ -43,7 +44,7 @@ def under_conventions(
     own : verdict from the study's runs
     exceptions : where the claim does not hold under the study's convention
     judge : takes the attractors with the branches that the initial states reach under one convention; returns the
-        verdict and the numbers behind it as text, or "" as the verdict if nothing is known
+        verdict and the numbers behind it as text; the verdict is "" if nothing is known
 
     A claim depends on convention if it holds, at least loosely, under one convention and fails under another.
     """
@@ -55,43 +56,45 @@ def under_conventions(
         else:
             unknown.append(name)
         if found and found != own:
-            others.append(f"{name}: {found} ({numbers})")
+            others.append(f"under ({name}) it {found}: {numbers}")
     if unknown:
-        others.append(f"not judged under {' and '.join(unknown)}")
+        others.append(f"it cannot be judged under {join_words([f'({name})' for name in unknown])}")
     changes = "; ".join([*exceptions, *others])
-    verdict = CONVENTION if _divided(verdicts) else own
+    verdict = CONVENTION if _is_divided(verdicts) else own
     return Verdict(verdict, reason, measured, changes, dict(sorted(verdicts.items())), own)
 
 
-def by_readings(
+def combine_readings(
     verdicts: Mapping[str, str], reason: str, measured: Sequence[Measured], changes: Sequence[str] = ()
 ) -> Verdict:
-    """Return the verdict of a claim with more than one reading, from that under each; the first one is its own.
+    """Return the verdict of a claim with more than one reading, from the verdict under each; the first one is its own.
 
-    It depends on reading if it holds, at least loosely, under one reading and fails under another; if it does not, the
-    worst decides. Raises NotTestableError if that is open: it may agree with the others or not.
+    The claim depends on reading if it holds, at least loosely, under one reading and fails under another. Otherwise the
+    worst verdict decides. Raises NotTestableError if a reading is open and could contradict the others.
     """
     own = next(iter(verdicts.values()))
-    divided = _divided(verdicts)
+    divided = _is_divided(verdicts)
     unresolved = [reading for reading, verdict in verdicts.items() if verdict == NOT_TESTABLE]
     if unresolved and not divided:
         raise NotTestableError(f"there are too few values for the reading «{'» and «'.join(unresolved)}»")
-    verdict = READING if divided else worst(verdicts.values())
+    verdict = READING if divided else worst_verdict(verdicts.values())
     return Verdict(verdict, reason, measured, "; ".join(changes), verdicts, own)
 
 
-def shares_by_readings(shares: Mapping[str, Mapping[str, Share]], loose: float) -> dict[str, str]:
-    """Return the verdict under each reading for its worst share, for `by_readings`."""
-    return {name: worst(by_share(share, loose) for share in of_one.values()) for name, of_one in shares.items()}
+def judge_readings(shares: Mapping[str, Mapping[str, Share]], loose: float) -> dict[str, str]:
+    """Return the verdict under each reading for its worst share, for `combine_readings`."""
+    return {
+        name: worst_verdict(judge_share(share, loose) for share in of_one.values()) for name, of_one in shares.items()
+    }
 
 
-def _divided(verdicts: Mapping[str, str]) -> bool:
+def _is_divided(verdicts: Mapping[str, str]) -> bool:
     """Return whether some verdict is «fails» and some «holds», at least loosely."""
     return FAILS in verdicts.values() and not {HOLDS, LOOSELY}.isdisjoint(verdicts.values())
 
 
-def of_rounded_states(evidence: Evidence, initial: Sequence[str], laws: Sequence[str], a: Range) -> list[str]:
-    """Return, in words, where states that round to the paper's reach another attractor than the paper's states.
+def rounded_state_changes(evidence: Evidence, initial: Sequence[str], laws: Sequence[str], a: Range) -> list[str]:
+    """Describe where states that round to the paper's reach another attractor than the paper's states.
 
     The paper gives positions to three decimals: see `rounded_branch` of attractors.nc.
     """
@@ -107,5 +110,5 @@ def of_rounded_states(evidence: Evidence, initial: Sequence[str], laws: Sequence
             )
             other = ((others != own[:, None]) & (others >= 0) & (own >= 0)[:, None]).any(axis=1)
             words = f"some states that round to {state} reach another attractor"
-            texts += told_where(words, attractors["a"].values, other, law)
+            texts += describe_where(words, attractors["a"].values, other, law)
     return texts

@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 _T = TypeVar("_T")
 
 # A statement on a range of a is judged only with at least this many values of a.
-LEAST_VALUES = 10
+MIN_VALUES = 10
 
 # Accuracy of a computed a_c: rounding of the multiplier divided by its slope.
-COMPUTED_WITHIN = 1e-13
+CRITICAL_A_ROUNDING = 1e-13
 
 
 @dataclass(frozen=True)
@@ -35,8 +35,8 @@ class Evidence:
     summaries : Datasets by name, of those that claims depend on; without those that the study does not make
     config : the study's config: laws, chain, v, contact, start, transient, window, initial, and the section `motion`
     verdicts : on the claims judged before, by name
-    selected : what has been selected from summaries, with what it was selected from, which keeps its id: the judges ask
-        for the same hundreds of times
+    selected : selections from summaries, each with its source, so that the id of the source stays valid: the judges
+        repeat the same selections hundreds of times
     """
 
     summaries: Mapping[str, xarray.Dataset]
@@ -44,8 +44,8 @@ class Evidence:
     verdicts: Mapping[str, Verdict] = field(default_factory=dict)
     selected: dict[Hashable, tuple[Any, object]] = field(default_factory=dict, repr=False, compare=False)
 
-    def _once(self, key: Hashable, select: Callable[[], _T], source: object = None) -> _T:
-        """Return what a function selects from a Dataset, `source`, the first time that it is asked for."""
+    def _cached(self, key: Hashable, select: Callable[[], _T], source: object = None) -> _T:
+        """Return the selection from a Dataset, `source`, computed at the first request."""
         own = id(source), key
         if own not in self.selected:
             self.selected[own] = select(), source
@@ -78,7 +78,7 @@ class Evidence:
             if law not in self.config["laws"]:
                 raise NotTestableError(f"the study has no {law} law")
             own = self.config["laws"][law]
-            if self._once((law, str(own)), partial(law_of, law, PAPER_A, own)) != law_of(law, PAPER_A):
+            if self._cached((law, str(own)), partial(law_of, law, PAPER_A, own)) != law_of(law, PAPER_A):
                 raise NotTestableError(f"the study's {law} law is not the paper's")
 
     def check_runs(self) -> None:
@@ -107,9 +107,9 @@ class Evidence:
         if "law" not in dataset.dims or set(dataset["law"].values) <= {*PAPER_LAWS}:
             return dataset
         laws = [law for law in dataset["law"].values if law in PAPER_LAWS]
-        return self._once("laws", lambda: dataset.sel(law=laws), dataset)
+        return self._cached("laws", lambda: dataset.sel(law=laws), dataset)
 
-    def compared(self, dataset: xarray.Dataset) -> xarray.Dataset:
+    def law_comparison(self, dataset: xarray.Dataset) -> xarray.Dataset:
         """Return the comparison of the paper's two laws from a summary that compares laws with the first one.
 
         Raises NotTestableError if the first law of the study is neither of the two.
@@ -120,7 +120,7 @@ class Evidence:
         (other,) = (law for law in PAPER_LAWS if law != first)
         return dataset.sel(other_law=other)
 
-    def of_state(self, name: str, initial: str) -> xarray.Dataset:
+    def state_summary(self, name: str, initial: str) -> xarray.Dataset:
         """Return a summary over law and a for one of the paper's initial states, completed runs only.
 
         Raises NotTestableError if the study lacks the state, or uses its name for another.
@@ -133,7 +133,7 @@ class Evidence:
             found = dataset.sel(initial=initial)
             return found.where(found["status"] == Status.COMPLETED) if "status" in found else found
 
-        return self._once(("initial", initial), select, dataset)
+        return self._cached(("initial", initial), select, dataset)
 
     def check_state(self, initial: str) -> None:
         """Raise NotTestableError if the study has no initial state of that name, or it is not the paper's."""
@@ -145,25 +145,26 @@ class Evidence:
         if InitialState(initial, **own) != paper:
             raise NotTestableError(f"the study's initial state {initial} is not the paper's")
 
-    def choose(self, dataset: xarray.Dataset, a: Range, least: int = LEAST_VALUES) -> xarray.Dataset:
+    def choose(self, dataset: xarray.Dataset, a: Range, least: int = MIN_VALUES) -> xarray.Dataset:
         """Return the part of a summary in a range of a; raises NotTestableError for fewer values than `least`."""
         chosen = a.choose(dataset["a"].values)
         if chosen.sum() < least:
-            there = f"what was computed has {chosen.sum()} there"
-            raise NotTestableError(f"a statement on all {a} needs {least} values of a; {there}")
-        return self._once(("a", chosen.tobytes()), lambda: dataset.isel(a=chosen), dataset)
+            raise NotTestableError(
+                f"a statement on all {a} needs {least} values of a; the study has {chosen.sum()} there"
+            )
+        return self._cached(("a", chosen.tobytes()), lambda: dataset.isel(a=chosen), dataset)
 
     def at(self, dataset: xarray.Dataset, a: float) -> xarray.Dataset:
         """Return a summary at one value of a; raises NotTestableError if it is not in the grid."""
         if a not in dataset["a"].values:
             raise NotTestableError(f"a = {a:g} is not in the grid")
-        return self._once(("a", a), lambda: dataset.sel(a=a), dataset)
+        return self._cached(("a", a), lambda: dataset.sel(a=a), dataset)
 
     def weakening(self, law: str, a: np.ndarray) -> np.ndarray:
-        """Return −F'(v), how fast friction falls with velocity at that of the driver, at values of a."""
+        """Return −F'(v), the rate at which friction falls with velocity at the driver velocity, at values of a."""
         v = self.config["v"]
         key = law, v, a.tobytes()
-        return self._once(key, lambda: np.array([-float(law_of(law, value).slope(v)) for value in a]))
+        return self._cached(key, lambda: np.array([-float(law_of(law, value).slope(v)) for value in a]))
 
     @property
     def own_convention(self) -> str:
@@ -182,16 +183,16 @@ class Evidence:
         for contact in attractors["contact"].values:
             for start in attractors["start"].values:
                 if (name := f"{contact}, {start}") != self.own_convention:
-                    yield name, self._of_convention(contact, start)
+                    yield name, self._convention_attractors(contact, start)
 
     def own_attractors(self) -> xarray.Dataset:
         """Return the attractors with the branches that initial states reach under the study's convention."""
         self.check_blocks()
-        return self._of_convention(self.config["contact"], self.config["start"])
+        return self._convention_attractors(self.config["contact"], self.config["start"])
 
-    def _of_convention(self, contact: str, start: str) -> xarray.Dataset:
+    def _convention_attractors(self, contact: str, start: str) -> xarray.Dataset:
         attractors = self.summary("attractors")
-        return self._once((contact, start), lambda: attractors.sel(contact=contact, start=start), attractors)
+        return self._cached((contact, start), lambda: attractors.sel(contact=contact, start=start), attractors)
 
     def critical_a(self, law: str) -> tuple[float, float]:
         """Return a_c, at which synchrony loses stability, and its error; NaN if the study has no orbits."""
@@ -210,9 +211,9 @@ class Evidence:
         low, high = self.summaries["proof"]["critical_a"].sel(law=law).values.tolist()
         middle = 0.5 * (low + high)
         critical, error = self.critical_a(law)
-        if abs(critical - middle) > error + COMPUTED_WITHIN:
+        if abs(critical - middle) > error + CRITICAL_A_ROUNDING:
             raise ValueError(f"orbits.nc: critical_a: got {critical!r}, expected {low!r} to {high!r} by proof.nc")
-        # Even if rounded, the midpoint lies between the two, as a_c does.
+        # Like a_c, the midpoint lies between the two, even if it is rounded.
         return middle, high - low
 
 

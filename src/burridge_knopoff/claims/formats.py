@@ -5,18 +5,46 @@ from __future__ import annotations
 import csv
 import io
 import json
-from collections.abc import Iterable, Mapping
+import re
+import textwrap
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from burridge_knopoff.claims.verdict import NOT_TESTABLE
+from burridge_knopoff.claims.verdict import (
+    CONVENTION,
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    NOT_TESTABLE,
+    READING,
+    join_words,
+)
+
+#: Predicates of one statement and of several, by verdict.
+PREDICATES = {
+    HOLDS: ("holds", "hold"),
+    LOOSELY: ("holds loosely", "hold loosely"),
+    CONVENTION: (
+        "depends on a convention that the paper leaves open",
+        "depend on conventions that the paper leaves open",
+    ),
+    READING: ("depends on how it is read", "depend on how they are read"),
+    FAILS: ("fails", "fail"),
+    NOT_TESTABLE: ("cannot be tested", "cannot be tested"),
+}
+
+NUMBERS = ("zero", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven", "twelve")
+
+# Number of characters in a line of Markdown.
+WIDTH = 120
 
 
-def untestable(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+def group_untestable(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
     """Return {reason: claims that cannot be judged for this reason}."""
     return _grouped("reason", (claim for claim in claims if claim["verdict"] == NOT_TESTABLE))
 
 
-def by_topic(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+def group_by_topic(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
     """Return {topic: claims that could be judged}."""
     return _grouped("topic", (claim for claim in claims if claim["verdict"] != NOT_TESTABLE))
 
@@ -38,59 +66,106 @@ def as_csv(content: Mapping[str, Any]) -> str:
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
     texts = ("name", "topic", "statement", "place", "verdict", "own")
-    head = ["claim", *texts[1:], "quantity", "value", "error", "proved", "reason", "changes", "turns", "figure"]
-    writer.writerow(head)
+    numbers = ("quantity", "value", "error", "proved")
+    writer.writerow(["claim", *texts[1:], *numbers, "reason", "changes", "changing_choices", "figure"])
     for claim in content["claims"]:
         for item in claim["measured"] or [{"quantity": "", "value": None, "error": None, "proved": False}]:
             writer.writerow(
                 [
                     *(claim[key] for key in texts),
                     *(item["quantity"], _text(item["value"]), _text(item["error"]), "proved" if item["proved"] else ""),
-                    *(claim["reason"], claim["changes"], "; ".join(claim["turns"]), claim["figure"]),
+                    *(claim["reason"], claim["changes"], "; ".join(claim["changing_choices"]), claim["figure"]),
                 ]
             )
     return lines.getvalue()
 
 
+def count_sentence(counts: Mapping[str, int]) -> str:
+    """Return how many independent statements have each verdict: «Of 3 independent statements, 2 hold and 1 fails»."""
+    parts = [f"{count} {PREDICATES[verdict][count > 1]}" for verdict, count in counts.items() if count]
+    return f"Of {sum(counts.values())} independent statements, {join_words(parts)}"
+
+
+def dependent_sentence(content: Mapping[str, Any]) -> str:
+    """Return how many statements of a ledger depend on others: «nine more repeat these or follow from them.»."""
+    number = sum(content["counts"].values()) - sum(content["independent_counts"].values())
+    return f"{NUMBERS[number] if number < len(NUMBERS) else number} more repeat these or follow from them."
+
+
 def as_markdown(content: Mapping[str, Any], figures: str) -> str:
-    """Return the ledger as Markdown: a table for each topic, and a line for each reason why claims are not testable.
+    """Return the ledger as Markdown: a table of verdicts, a section for each claim, and the reasons not to test others.
 
     figures : folder of the linked figures, relative to the Markdown file
     """
-    every, independent = content["counts"], content["independent_counts"]
-    lines = [
-        f"{sum(independent.values())} independent statements: {_counts(independent)}.",
-        "",
-        f"All {sum(every.values())}, with those that repeat others or follow from them: {_counts(every)}.",
-    ]
+    parts = [f"{count_sentence(content['independent_counts'])}; {dependent_sentence(content)}"]
     if content["depth"]:
-        lines += ["", f"Depth of the search for attractors: {content['depth']}."]
-    for topic, claims in by_topic(content["claims"]).items():
-        lines += [
-            "",
-            f"### {topic.capitalize()}",
-            "",
-            "| claim | verdict | why | where it changes | what would change it | figure |",
-            "|---|---|---|---|---|---|",
+        parts.append(f"Depth of the search for attractors: {content['depth']}.")
+    topics = group_by_topic(content["claims"])
+    if topics:
+        rows = [
+            f"| {_cell(claim['statement'])} | {claim['verdict']} | [{claim['name']}](#{claim['name']}) |"
+            for claims in topics.values()
+            for claim in claims
         ]
+        parts.append("\n".join(["| statement | verdict | evidence |", "| --- | --- | --- |", *rows]))
+    for topic, claims in topics.items():
+        parts.append(f"### {topic.capitalize()}")
         for claim in claims:
-            figure = f"[{claim['figure']}]({figures}/{claim['figure']}.png)" if claim["figure"] else ""
-            own = f" (here: {claim['own']})" if claim["own"] != claim["verdict"] else ""
-            judged = f"**{claim['verdict']}**{own}"
-            turning = "; ".join(claim["turns"]) or "no other choice that was tried"
-            depends = f" Depends on {', '.join(claim['depends_on'])}." if claim["depends_on"] else ""
-            statement = f"{claim['statement']} *{claim['place']}*{depends}"
-            cells = [statement, judged, claim["reason"], claim["changes"], turning]
-            lines.append("| " + " | ".join([*(cell.replace("|", "\\|") for cell in cells), figure]) + " |")
-    if reasons := untestable(content["claims"]):
-        lines += ["", "### Not testable", ""]
-    for reason, claims in reasons.items():
-        lines.append(f"- {reason} ({len(claims)}: {', '.join(claim['name'] for claim in claims)})")
-    return "\n".join(lines) + "\n"
+            parts += _section(claim, figures)
+    if reasons := group_untestable(content["claims"]):
+        parts.append("### Not testable")
+        for reason, claims in reasons.items():
+            statements = [_item(f"{claim['statement']} *{claim['place']}* ({claim['name']})", 2) for claim in claims]
+            parts.append("\n".join([_item(reason), *statements]))
+    # Tables are the only lines that cannot be wrapped.
+    return "\n\n".join(part if part.startswith(("|", "- ", "  ")) else _wrap(part) for part in parts) + "\n"
 
 
-def _counts(counts: Mapping[str, int]) -> str:
-    return "; ".join(f"{name}: {count}" for name, count in counts.items())
+def _section(claim: Mapping[str, Any], figures: str) -> Iterator[str]:
+    """Yield the paragraphs of one claim: statement, verdict and reason, exceptions, what would change the verdict."""
+    names = claim["depends_on"]
+    yield f"#### {claim['name']}"
+    yield f"*{claim['statement']}* ({claim['place']})"
+    under = {CONVENTION: "under the study's convention", READING: "under the first reading"}.get(claim["verdict"])
+    own = f" ({under}: {claim['own']})" if under else ""
+    yield f"**{claim['verdict'].capitalize()}**{own}. {claim['reason']}"
+    if claim["changes"]:
+        items = [_link(item, names) for item in claim["changes"].split("; ")]
+        yield "\n".join(["Exceptions and other cases:", "", *map(_item, items)])
+    if claim["changing_choices"]:
+        yield "\n".join(["What would change the verdict:", "", *map(_item, claim["changing_choices"])])
+    depends = f"Depends on {_link(join_words(names), names)}. " if names else ""
+    figure = f"Figure: [{claim['figure']}]({figures}/{claim['figure']}.png)." if claim["figure"] else ""
+    if depends or figure:
+        yield f"{depends}{figure}".rstrip()
+
+
+def _link(text: str, names: Iterable[str]) -> str:
+    """Return a text in which the names of claims link to their sections."""
+    return re.sub(r"\b[a-z_]+\b", lambda m: f"[{m[0]}](#{m[0]})" if m[0] in names else m[0], text)
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|")
+
+
+def _item(text: str, indent: int = 0) -> str:
+    """Return an item of a list."""
+    first = " " * indent + "- "
+    return textwrap.fill(
+        text,
+        WIDTH,
+        initial_indent=first,
+        subsequent_indent=" " * len(first),
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
+
+
+def _wrap(text: str) -> str:
+    """Return a paragraph, with the list that follows it, in lines of WIDTH characters."""
+    first, *rest = text.split("\n")
+    return "\n".join([textwrap.fill(first, WIDTH, break_long_words=False, break_on_hyphens=False), *rest])
 
 
 def _text(value: float | None) -> str:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings, under_conventions
-from burridge_knopoff.claims.endings import Criteria, Endings, percent
+from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.outcomes import synchrony
+from burridge_knopoff.claims.phase_outcomes import Criteria, PhaseOutcomes, percent
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -22,12 +22,13 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
+    count_share,
+    describe_where,
     extremes,
-    share_of,
-    shares_text,
-    told_where,
-    verdict_of,
-    worst,
+    format_shares,
+    join_words,
+    judge_worst_share,
+    worst_verdict,
 )
 from burridge_knopoff.motion.kind import MotionKind, merge_chaos
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -49,15 +50,15 @@ def coexistence(evidence: Evidence, a: Range, samples: int, loose_share: float) 
     for law in PAPER_LAWS:
         found = attractors.sel(law=law)
         count, kinds = _coexisting(found, samples)
-        shares[law] = share_of(kinds > 1)
+        shares[law] = count_share(kinds > 1)
         measured.append(Measured(f"share of a with attractors of more than one kind, {law}", shares[law].value))
         measured.append(Measured(f"most attractors that coexist, {law}", float(count.max())))
         fraction = found["basin_fraction"].values[(found["branch"].values == 0) & (found["basin_count"].values > 0)]
         if len(fraction):
             measured += extremes("basin fraction of synchrony", fraction, law)
-        single += told_where("at most one kind of motion", found["a"].values, kinds <= 1, law)
-    reason = f"More than one kind of motion is reached at {shares_text(shares)} of the values of a with {a}."
-    return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(single))
+        single += describe_where("at most one kind of motion", found["a"].values, kinds <= 1, law)
+    reason = f"Attractors of more than one kind are reached at {format_shares(shares)} of the values of a with {a}."
+    return Verdict(judge_worst_share(shares, loose_share), reason, measured, "; ".join(single))
 
 
 def _coexisting(found: xarray.Dataset, samples: int) -> tuple[np.ndarray, np.ndarray]:
@@ -89,13 +90,18 @@ def first_block_decides(evidence: Evidence, initial: tuple[str, str], a: Range, 
     found = for_all(loose_share, cases())
     first, second = initial
     reason = f"One of {first} and {second} synchronizes and the other does not at {found} of the values of a with {a}."
-    measured, same = found.measured("share of a at which the outcome differs"), found.exceptions("no difference")
-    return under_conventions(evidence, found.verdict, reason, measured, same, found.reached(evidence, a, cases))
+    measured, same = (
+        found.measured("share of a at which the outcome differs"),
+        found.exceptions("the outcome is the same"),
+    )
+    return judge_conventions(
+        evidence, found.verdict, reason, measured, same, found.convention_judge(evidence, a, cases)
+    )
 
 
 @judge("mean_distance", "attractors")
 def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
-    """Judge whether both laws lead from each initial state to the same outcome, synchrony or none, for all a."""
+    """Judge whether both laws lead from each initial state to the same outcome, synchronized or not, for all a."""
 
     def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
         for state in initial:
@@ -105,10 +111,12 @@ def same_for_both_laws(evidence: Evidence, initial: Sequence[str], a: Range, loo
             yield Case(state, found["a"].values, one == other, np.isfinite(one + other), few)
 
     found = for_all(loose_share, cases())
-    reason = f"Both laws have the same outcome, synchrony or none, at {found} of the values of a with {a}."
+    reason = f"Both laws have the same outcome, synchrony or no synchrony, at {found} of the values of a with {a}."
     measured = found.measured("share of a with the same outcome")
     differ = [text for case in found.cases for text in case.exceptions(f"the outcomes from {case.name} differ")]
-    return under_conventions(evidence, found.verdict, reason, measured, differ, found.reached(evidence, a, cases))
+    return judge_conventions(
+        evidence, found.verdict, reason, measured, differ, found.convention_judge(evidence, a, cases)
+    )
 
 
 @judge()
@@ -134,31 +142,20 @@ def one_convention(evidence: Evidence, claims: Sequence[str]) -> Verdict:
                 f"claims that hold, of {len(judged)} judged: {convention}", sum(v != FAILS for v in judged.values())
             )
         )
-        together[convention] = worst(judged.values()) if len(judged) == len(claims) else FAILS
-        against = [_words(name) for name, verdict in judged.items() if verdict == FAILS]
-        open_ones = [_words(name) for name in claims if name not in judged]
-        texts.append(
-            f"{convention}: "
-            + "; ".join(
-                [
-                    *([f"contradicted by {', '.join(against)}"] if against else ["not contradicted"]),
-                    *([f"not judged {', '.join(open_ones)}"] if open_ones else []),
-                ]
-            )
-        )
+        together[convention] = worst_verdict(judged.values()) if len(judged) == len(claims) else FAILS
+        against = [name for name, verdict in judged.items() if verdict == FAILS]
+        open_ones = [name for name in claims if name not in judged]
+        parts = [f"{join_words(against)} {'fail' if len(against) > 1 else 'fails'}"] if against else []
+        parts += [f"{join_words(open_ones)} cannot be judged"] if open_ones else []
+        texts.append(f"under ({convention}) {', and '.join(parts) or 'all hold'}")
     best = min(together.values(), key=(HOLDS, LOOSELY, FAILS).index)
     under = [convention for convention, verdict in together.items() if verdict == best]
     reason = (
-        f"All of them hold{' loosely' if best == LOOSELY else ''} under {'; '.join(under)}."
+        f"All of them hold{' loosely' if best == LOOSELY else ''} under {join_words([f'({name})' for name in under])}."
         if best != FAILS
         else f"None of the {len(conventions)} conventions makes all {len(claims)} statements hold."
     )
-    return Verdict(best, reason, measured, " | ".join(texts))
-
-
-def _words(name: str) -> str:
-    """Return the name of a claim as words: «plus does not synchronize»."""
-    return f"«{name.replace('_', ' ')}»"
+    return Verdict(best, reason, measured, "; ".join(texts))
 
 
 @judge("phases")
@@ -177,58 +174,59 @@ def phases_decide(
     inner_share : amplitude of the inner blocks, as a fraction, of the judged states; other fractions are reported too
     close, opposite : phase difference in degrees up to which phases are close, and from which they are opposite
     correlation : of the velocities of the end blocks; up to this value they are in antiphase
-    share : fraction of states that have to end so, by the lower end of a Wilson interval
+    share : required fraction of states with this outcome, by the lower end of a Wilson interval
 
-    The claim holds if this is so at every amplitude, and holds loosely if it is so at all amplitudes at which every
-    velocity is positive at the start, whatever the phases: only there are the states oscillations about uniform
-    sliding. The paper does not mention the inner block. If the claim holds for one computed fraction and fails for
+    The claim holds if this is true at every amplitude. It holds loosely if it is true at all amplitudes at which every
+    velocity is positive at the start, whatever the phases: only these states are oscillations about uniform sliding.
+    The paper does not mention the inner block. If the claim holds for one computed fraction and fails for
     another, it depends on reading.
     """
     evidence.check_blocks()
     phases = evidence.summary("phases")
     evidence.choose(phases, a)
     criteria = Criteria(a, close, opposite, correlation, share, loose_share)
-    judged = Endings(phases, inner_share, criteria)
+    judged = PhaseOutcomes(phases, inner_share, criteria)
     measured: list[Measured] = []
     changes = []
     for k, size in enumerate(judged.amplitude):
         measured += judged.measured(f"A = {size:g}", np.arange(len(judged.amplitude)) == k)
-        if not judged.right[:, judged.inside, k].all():
-            shown = [percent(found.fraction[:, judged.inside, k]) for found in (judged.together, judged.against)]
+        if not judged.holds[:, judged.inside, k].all():
+            shown = [percent(found.fraction[:, judged.inside, k]) for found in (judged.synchronized, judged.antiphase)]
             changes.append(
                 f"A = {size:g}: {shown[0]} of the close phases synchronize, {shown[1]} of the opposite phases end in "
                 "antiphase"
             )
-    for law, low in zip(judged.laws, judged.together.low, strict=True):
-        lost = ~judged.inside & (low[:, judged.slips] < share).any(axis=1)
-        changes += told_where("close phases do not synchronize", phases["a"].values, lost, law)
-    readings = {_inner_block(inner_share): judged.verdict}
+    for law, low in zip(judged.laws, judged.synchronized.low, strict=True):
+        lost = ~judged.inside & (low[:, judged.without_backward_slip] < share).any(axis=1)
+        changes += describe_where("close phases do not synchronize", phases["a"].values, lost, law)
+    readings = {_format_inner_block(inner_share): judged.verdict}
     for other in phases["inner_share"].values[phases["inner_share"].values != inner_share].tolist():
-        where = _inner_block(other)
+        where = _format_inner_block(other)
         try:
-            endings = Endings(phases, other, criteria)
+            outcomes = PhaseOutcomes(phases, other, criteria)
         except NotTestableError as error:
-            changes.append(f"{where}: {NOT_TESTABLE}, {error}")
+            changes.append(f"with {where} the claim is {NOT_TESTABLE}: {error}")
             continue
-        readings[where] = endings.verdict
+        readings[where] = outcomes.verdict
         changes.append(
-            f"{where} (A = {endings.amplitudes}): {endings.verdict}, true at {endings.shares} of the values of a: "
-            f"{endings.told()}"
+            f"with {where} (A = {outcomes.amplitudes}) the claim {outcomes.verdict}, since it is true at "
+            f"{outcomes.shares} of the values of a: {outcomes.format_fractions()}"
         )
-        measured += endings.measured(where, endings.slips)
-    together, against = (
-        f"{percent(found.fraction[judged.cells])} of the states, Wilson intervals "
-        f"{100 * found.low[judged.cells].min():.1f} % or more"
-        for found in (judged.together, judged.against)
+        measured += outcomes.measured(where, outcomes.without_backward_slip)
+    synchronized, antiphase = (
+        f"{percent(found.fraction[judged.cells])} of the states, Wilson intervals from "
+        f"{100 * found.low[judged.cells].min():.1f} %"
+        for found in (judged.synchronized, judged.antiphase)
     )
     reason = (
-        f"With {_inner_block(inner_share)}, end blocks that oscillate about uniform sliding without slipping backward "
-        f"(A = {judged.amplitudes}) synchronize from phases within {close:g}° ({together}) and end in antiphase from "
-        f"opposite phases ({against}), at {judged.shares} of the values of a with {a}."
+        f"The end blocks oscillate about uniform sliding with amplitudes at which no block slips backward (A = "
+        f"{judged.amplitudes}), {_format_inner_block(inner_share)}. Phases within {close:g}° lead to synchrony "
+        f"({synchronized}) and opposite phases to antiphase ({antiphase}) at {judged.shares} of the values of a with "
+        f"{a}."
     )
-    return by_readings(readings, reason, measured, changes)
+    return combine_readings(readings, reason, measured, changes)
 
 
-def _inner_block(share: float) -> str:
+def _format_inner_block(share: float) -> str:
     """Describe the motion of the inner block."""
     return "the inner block sliding uniformly" if share == 0.0 else f"the inner block oscillating with {share:g} A"

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings
+from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.for_all import Case, ForAll, for_all
 from burridge_knopoff.claims.judge import judge
@@ -20,11 +20,11 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
-    by_share,
-    by_value,
+    describe_where,
     extremes,
-    shares_text,
-    told_where,
+    format_shares,
+    judge_share,
+    judge_value,
 )
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.motion.kind import merge_chaos
@@ -39,10 +39,10 @@ if TYPE_CHECKING:
 def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead to the same ⟨J⟩ at all a of a range, as curves in a figure correspond.
 
-    The study's relative tolerance of agreement is one of the largest ⟨J⟩ in the range: by that of each value alone,
-    curves that lie on each other would disagree where ⟨J⟩ is small.
+    The study's relative tolerance of agreement is applied to the largest ⟨J⟩ in the range: applied to each value alone,
+    curves that coincide in a figure would disagree where ⟨J⟩ is small.
     """
-    found = {state: _compared(evidence, state, a) for state in initial}
+    found = {state: _law_comparison(evidence, state, a) for state in initial}
     scale = max(float(np.nanmax(one["mean_distance"].values)) for one in found.values())
     measured, answers = [Measured("largest ⟨J⟩", scale)], {}
     for state, one in found.items():
@@ -54,48 +54,51 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
         if np.isfinite(difference).any():
             measured.append(Measured(f"largest |Δ⟨J⟩| where they agree, {state}", float(np.nanmax(difference))))
     tolerance = 100.0 * next(iter(found.values())).attrs["relative_tolerance"]
-    text, points, numbers, apart = _by_answers(answers, a, loose_share)
-    reason = f"The laws agree in ⟨J⟩ within {tolerance:g} % of the largest, {scale:.3f}, at {text}."
-    return Verdict(points.verdict, reason, [*numbers, *measured], "; ".join(apart))
+    text, points, numbers, differences = _judge_answers(answers, a, loose_share)
+    reason = f"The laws agree in ⟨J⟩ within {tolerance:g} % of its largest value, {scale:.3f}, at {text}."
+    return Verdict(points.verdict, reason, [*numbers, *measured], "; ".join(differences))
 
 
 @judge("agreement")
 def laws_agree_in_kind(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead to the same kind of motion at all a of a range.
 
-    Kinds may be synchrony, other regular motion and chaos: a torus is locked to closed orbits on a dense set of a, so
-    that one value of a shows either. Or they may be those that the paper names: periodic, quasiperiodic and chaotic.
+    The kinds may be synchrony, other regular motion and chaos: a torus is locked to periodic orbits on a dense set of
+    a, so that a single value of a may show either. Or they may be those that the paper names: periodic, quasiperiodic
+    and chaotic.
     """
     loosely, strictly = {}, {}
     for state in initial:
-        one = _compared(evidence, state, a)
+        one = _law_comparison(evidence, state, a)
         same, (kind, other) = one["same_kind"].values, merge_chaos(one["kind"].sel(law=list(PAPER_LAWS)).values)
         loosely[state] = one["a"].values, same
         strictly[state] = one["a"].values, np.where((same == Answer.YES) & (kind != other), Answer.NO, same)
-    readings, texts, measured, apart = {}, [], [], []
+    readings, texts, measured, differences = {}, [], [], []
     for number, answers in (("one kind", loosely), ("two kinds", strictly)):
-        text, points, numbers, where = _by_answers(answers, a, loose_share)
+        text, points, numbers, where = _judge_answers(answers, a, loose_share)
         reading = f"with periodic and quasiperiodic motion as {number}"
-        readings[reading] = by_share(points.share, loose_share)
-        texts.append(f"at {text}, {reading} ({readings[reading]})")
+        readings[reading] = judge_share(points.share, loose_share)
+        texts.append(f"{reading}, at {text} ({readings[reading]})")
         measured += [replace(item, quantity=f"{item.quantity}, {reading}") for item in numbers]
-        apart += [f"{reading} {text}" for text in where]
-    return by_readings(readings, f"The laws agree in the kind of motion {'; '.join(texts)}.", measured, apart)
+        differences += [f"{reading}, {text}" for text in where]
+    return combine_readings(
+        readings, f"The laws agree in the kind of motion: {'; '.join(texts)}.", measured, differences
+    )
 
 
-def _compared(evidence: Evidence, state: str, a: Range) -> xarray.Dataset:
-    return evidence.choose(evidence.compared(evidence.of_state("agreement", state)), a)
+def _law_comparison(evidence: Evidence, state: str, a: Range) -> xarray.Dataset:
+    return evidence.choose(evidence.law_comparison(evidence.state_summary("agreement", state)), a)
 
 
-def _by_answers(
+def _judge_answers(
     answers: Mapping[str, tuple[np.ndarray, np.ndarray]], a: Range, loose_share: float
 ) -> tuple[str, ForAll, list[Measured], list[str]]:
-    """Return where the laws agree, by the points of all states together, as a figure shows them.
+    """Judge where the laws agree, by the points of all states together, as a figure shows them.
 
     answers : {initial state: (a, an Answer for each)}
 
     Returned are the share as text, the statement on all points, the shares of the states, and where the laws differ or
-    are not known to agree.
+    could not be compared.
     """
     cases = [
         Case(state, grid, same == Answer.YES, same != Answer.UNDETERMINED) for state, (grid, same) in answers.items()
@@ -107,13 +110,13 @@ def _by_answers(
             numbers.append(Measured(f"share of a at which the laws agree, {case.name}", case.share.value))
         if len(differ := case.a[case.known & ~case.right]):
             numbers.append(Measured(f"smallest a at which they differ, {case.name}", float(differ[0])))
-    apart = [f"{text} ({case.name})" for case in cases for text in case.exceptions("they differ")]
-    unknown = [text for case in cases for text in told_where("unknown", case.a, ~case.known, case.name)]
+    differences = [f"{text} ({case.name})" for case in cases for text in case.exceptions("they differ")]
+    unknown = [text for case in cases for text in describe_where("undetermined", case.a, ~case.known, case.name)]
     grid, same = (np.concatenate(part) for part in zip(*answers.values(), strict=True))
     reason = f"the laws could not be compared: {'; '.join(unknown)}"
     points = for_all(loose_share, [Case("points", grid, same == Answer.YES, same != Answer.UNDETERMINED, reason)])
-    text = f"{points.share} of the points, states and values of a with {a}: {shares_text(shares)}"
-    return text, points, numbers, [*apart, *unknown]
+    text = f"{points.share} of the points (initial state, a) with {a}, {format_shares(shares)}"
+    return text, points, numbers, [*differences, *unknown]
 
 
 @judge("mean_distance")
@@ -137,9 +140,9 @@ def linearization_justified(
     ]
     verdict = HOLDS if difference <= tolerance else LOOSELY if difference <= loose else FAILS
     reason = (
-        f"With {a} the laws differ by at most {difference:.2g} of the static friction on a slipping block (at a = "
-        f"{grid[top]:g}), since slips are {speed.min():.2f} to {speed.max():.2f} times as fast as the driver "
-        f"({'in the window' if part == 'window' else 'in the whole run'})."
+        f"For {a} the laws differ by at most {difference:.2g} of the static friction on a slipping block (at a = "
+        f"{grid[top]:g}), since the fastest slips {'in the window' if part == 'window' else 'of the whole run'} are "
+        f"{speed.min():.2f} to {speed.max():.2f} times as fast as the driver."
     )
     return Verdict(verdict, reason, measured)
 
@@ -160,19 +163,19 @@ def springs_help(
     grid, speed = _fastest_slips(evidence, initial, law, a, "window")
     least, largest = int(np.argmin(grid)), int(np.argmax(grid))
     readings, measured, texts = {}, [], []
-    for fixed, product in (("V, which leaves av = cV as it is", speed), ("v", grid * speed)):
+    for fixed, product in (("V, which leaves av = cV unchanged", speed), ("v", grid * speed)):
         power = float(np.polyfit(np.log(grid), 2.0 * np.log(product), 1)[0])
         ratio = float((product[least] / product[largest]) ** 2)
         name = f"at a fixed {fixed}"
-        readings[name] = by_value(min(power, claimed), claimed, tolerance, loose)
+        readings[name] = judge_value(min(power, claimed), claimed, tolerance, loose)
         measured.append(Measured(f"power of a with which the difference of the laws falls {name}", power))
         measured.append(Measured(f"remaining fraction of it {name}", ratio))
         texts.append(f"to {100 * ratio:.2g} %, as a^{power:.2f}, {name} ({readings[name]})")
     reason = (
         f"From a = {grid[largest]:g} down to {grid[least]:g} the difference of the laws on a slipping block falls "
-        f"{'; '.join(texts)}. The claim says a^{claimed:g}."
+        f"{'; '.join(texts)}. With the same slip speed it would fall as a^{claimed:g}."
     )
-    return by_readings(readings, reason, measured)
+    return combine_readings(readings, reason, measured)
 
 
 def _fastest_slips(
@@ -181,7 +184,7 @@ def _fastest_slips(
     """Return (a, fastest slip divided by v) of all completed runs, from their least friction 1 − aU'."""
     found = []
     for state in initial:
-        runs = evidence.choose(evidence.of_state("mean_distance", state), a).sel(law=law)
+        runs = evidence.choose(evidence.state_summary("mean_distance", state), a).sel(law=law)
         friction = runs["window_least_friction" if part == "window" else "least_friction"].values
         known = np.isfinite(friction)
         if not known.any():

@@ -12,17 +12,17 @@ import numpy as np
 
 from burridge_knopoff.claims.choices import other_tolerances
 from burridge_knopoff.claims.claim import Claim
-from burridge_knopoff.claims.conventions import of_rounded_states
+from burridge_knopoff.claims.conventions import rounded_state_changes
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.judge import JUDGES
-from burridge_knopoff.claims.margins import turns
+from burridge_knopoff.claims.margins import changing_choices
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.paper import PAPER_LAWS
 
-#: Summaries that the ledger itself reads: for states that round to the paper's, other tolerances, and the depth.
+#: Summaries that the ledger itself reads: for rounded initial states, other tolerances, and the depth of the search.
 OWN = ("attractors", "agreement", "lyapunov", "mean_distance", "two_blocks", "refined")
-#: Summaries that the ledger depends on: a change of another one leaves it up to date.
+#: Summaries on which the ledger depends: a change of any other leaves it up to date.
 READS = tuple(sorted({*OWN, *(name for judge in JUDGES.values() for name in judge.reads)}))
 
 
@@ -34,31 +34,31 @@ def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None
     parameters = claim.parameters if parameters is None else parameters
     try:
         evidence.check_setting()
-        evidence.check_laws(_laws(parameters))
+        evidence.check_laws(_claim_laws(parameters))
         return claim.judge(evidence, **parameters)
     except NotTestableError as error:
         return Verdict(NOT_TESTABLE, f"Not testable here: {error}.")
 
 
-def _laws(parameters: Mapping[str, Any]) -> list[str]:
+def _claim_laws(parameters: Mapping[str, Any]) -> list[str]:
     """Return the laws that a claim is about."""
     return np.atleast_1d(parameters.get("laws", parameters.get("law", PAPER_LAWS))).tolist()
 
 
-def _told(claim: Claim, evidence: Evidence, verdict: Verdict, others: Sequence[tuple[str, Evidence]]) -> Verdict:
-    """Return a verdict with what would change it, and where states that round to the paper's reach other attractors."""
+def _add_changes(claim: Claim, evidence: Evidence, verdict: Verdict, others: Sequence[tuple[str, Evidence]]) -> Verdict:
+    """Return a verdict with the choices that would change it, and where rounded states reach another attractor."""
     changes = [verdict.changes] if verdict.changes else []
     a = claim.parameters.get("a")
     if at := claim.parameters.get("at"):
         a = Range(first=at, last=at)
     if verdict.verdict != NOT_TESTABLE and a and "initial" in claim.parameters and claim.topic != "model":
         states = np.atleast_1d(claim.parameters["initial"]).tolist()
-        changes += of_rounded_states(evidence, states, _laws(claim.parameters), a)
-    found = turns(partial(judge, claim), evidence, claim.parameters, verdict, others)
-    return replace(verdict, changes="; ".join(changes), turns=found)
+        changes += rounded_state_changes(evidence, states, _claim_laws(claim.parameters), a)
+    found = changing_choices(partial(judge, claim), evidence, claim.parameters, verdict, others)
+    return replace(verdict, changes="; ".join(changes), changing_choices=found)
 
 
-def _depth(evidence: Evidence) -> str:
+def _search_depth(evidence: Evidence) -> str:
     """Describe the depth of the study's search for attractors; empty without a search."""
     try:
         attrs = evidence.summary("refined").attrs
@@ -66,7 +66,7 @@ def _depth(evidence: Evidence) -> str:
         return ""
     return (
         f"95 % intervals of basin fractions ±{100.0 * attrs['fraction_width']:g} %, changes along a located within "
-        f"{attrs['refine_resolution']:g}, closed orbits followed up to a period of {attrs['refine_longest_period']:g}"
+        f"{attrs['refine_resolution']:g}, periodic orbits up to a period of {attrs['refine_longest_period']:g}"
     )
 
 
@@ -76,16 +76,16 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
     figures : names of the study's figures; a claim with another figure gets none
     """
     verdicts: dict[str, Verdict] = {}
-    # A claim about other claims finds their verdicts in the evidence.
+    # A claim about other claims reads their verdicts from the evidence.
     known = replace(evidence, verdicts=verdicts)
     others = list(other_tolerances(known))
     for claim in claims:
-        verdicts[claim.name] = _told(claim, known, judge(claim, known), others)
+        verdicts[claim.name] = _add_changes(claim, known, judge(claim, known), others)
     independent = [verdicts[claim.name].verdict for claim in claims if not claim.depends_on]
     return {
         "study": study,
         **{key: evidence.config[key] for key in ("v", "contact", "start")},
-        "depth": _depth(evidence),
+        "depth": _search_depth(evidence),
         **provenance(__name__),
         "counts": {name: sum(verdict.verdict == name for verdict in verdicts.values()) for name in VERDICTS},
         "independent_counts": {name: independent.count(name) for name in VERDICTS},
@@ -101,14 +101,14 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
                 "measured": [
                     {
                         "quantity": item.quantity,
-                        "value": _number(item.value),
-                        "error": _number(item.error),
+                        "value": _json_number(item.value),
+                        "error": _json_number(item.error),
                         "proved": item.proved,
                     }
                     for item in verdict.measured
                 ],
                 "changes": verdict.changes,
-                "turns": list(verdict.turns),
+                "changing_choices": list(verdict.changing_choices),
                 "conventions": dict(verdict.conventions),
                 "figure": claim.figure if claim.figure in figures else "",
                 "depends_on": list(claim.depends_on),
@@ -118,6 +118,6 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
     }
 
 
-def _number(value: float | None) -> float | None:
+def _json_number(value: float | None) -> float | None:
     """Return a number for JSON: null if it is not finite."""
     return float(value) if value is not None and math.isfinite(value) else None

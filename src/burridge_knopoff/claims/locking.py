@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
+from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence
 from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.verdict import (
     NOT_TESTABLE,
@@ -16,12 +16,13 @@ from burridge_knopoff.claims.verdict import (
     Range,
     Share,
     Verdict,
-    by_share,
+    count_share,
+    describe_where,
+    format_shares,
+    join_words,
+    judge_share,
+    judge_worst_share,
     share_is_decided,
-    share_of,
-    shares_text,
-    told_where,
-    verdict_of,
 )
 from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.motion.kind import CHAOS, REGULAR, MotionKind
@@ -32,13 +33,13 @@ from burridge_knopoff.summaries.plateaux import plateaux
 if TYPE_CHECKING:
     import xarray
 
-# End blocks whose frequencies differ by no more have one frequency: on tori they are known to a tenth of this. An
-# exponent is negative if it is so by this many standard errors.
-ONE_FREQUENCY = 1e-6
-CERTAIN = 3.0
+# End blocks whose frequencies differ by no more have one frequency; on tori frequencies are known to a tenth of this.
+# An exponent is negative if it is below 0 by this many standard errors.
+FREQUENCY_TOLERANCE = 1e-6
+STANDARD_ERRORS = 3.0
 
-TORUS = "quasiperiodic motion, or chaos too weak to tell from it,"
-UNFOLLOWED = "a closed orbit too long to be followed, or a torus beside it,"
+TORUS = "quasiperiodic motion, or chaos too weak to be distinguished from it,"
+UNFOLLOWED = "a periodic orbit too long to be continued, or a torus near it,"
 
 
 @judge("rotation")
@@ -47,12 +48,12 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
 
     The paper speaks of the phases of the lateral blocks. At equal masses their equal frequencies would show nothing,
     since the motion is its own mirror image. They are locked if they keep one frequency when the mass of one of them
-    becomes 1 + `detuning` times as large, and if a perturbation of their phases decays: of three blocks without any
-    locking three Lyapunov exponents would be 0.
+    becomes 1 + `detuning` times as large, and if a perturbation of their relative phase decays: without any locking,
+    three blocks would have three Lyapunov exponents of 0.
 
-    Whether they are locked to the middle block as well, the rotation number shows, which is then a ratio of whole
-    numbers, constant in a; the verdict says where, and does not depend on it. The fraction of a is taken over the
-    values of the grid. A value with an unknown kind of motion does not count.
+    If they are locked to the middle block as well, the rotation number is a ratio of whole numbers that is constant in
+    a. The verdict reports where, but does not depend on it. The fraction of a is taken over the values of the grid. A
+    value with an undetermined kind of motion does not count.
 
     loose_share : fraction of a from which the claim holds loosely
     """
@@ -66,60 +67,64 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
         found = rotation.sel(law=law)
         inside = a.choose(found["a"].values)
         known = inside & (found["in_grid"].values == 1) & (found["locked"].values >= 0)
-        if known.sum() < LEAST_VALUES:
-            raise NotTestableError(f"branch 1 is regular motion at fewer than {LEAST_VALUES} values of a ({law})")
+        if known.sum() < MIN_VALUES:
+            raise NotTestableError(f"branch 1 is regular motion at fewer than {MIN_VALUES} values of a ({law})")
         grid = found["a"].values[known]
         detuned = found.sel(detuning=detuning).isel(value=known)
-        apart = np.abs(detuned["detuned_frequency"].values[:, -1] - detuned["detuned_frequency"].values[:, 0])
+        detuned_difference = np.abs(
+            detuned["detuned_frequency"].values[:, -1] - detuned["detuned_frequency"].values[:, 0]
+        )
         third, error = (detuned[name].values[:, 2] for name in ("detuned_exponent", "detuned_exponent_error"))
-        together = (apart <= ONE_FREQUENCY) & (third < -CERTAIN * error)
-        shares[law] = share_of(together)
+        are_locked = (detuned_difference <= FREQUENCY_TOLERANCE) & (third < -STANDARD_ERRORS * error)
+        shares[law] = count_share(are_locked)
         measured.append(
             Measured(f"share of a at which the end blocks are locked to each other, {law}", shares[law].value)
         )
-        for name, of in (("difference of their frequencies", apart), ("third exponent", third)):
-            if np.isfinite(of).any():
-                measured.append(Measured(f"largest {name}, {law}", float(np.nanmax(of))))
-        where += told_where("the end blocks are not locked to each other", grid, ~together, law)
+        for name, values in (("difference of their frequencies", detuned_difference), ("third exponent", third)):
+            if np.isfinite(values).any():
+                measured.append(Measured(f"largest {name}, {law}", float(np.nanmax(values))))
+        where += describe_where("the end blocks are not locked to each other", grid, ~are_locked, law)
         locked = found["locked"].values[known] == 1
         measured.append(
-            Measured(f"share of a at which they are locked to the middle block, {law}", share_of(locked).value)
+            Measured(f"share of a at which they are locked to the middle block, {law}", count_share(locked).value)
         )
         number = found["rotation_number"].values[inside]
         measured += [
             Measured(f"smallest rotation number, {law}", float(np.nanmin(number))),
             Measured(f"largest rotation number, {law}", float(np.nanmax(number))),
         ]
-        met = [one for one in plateaux(found.isel(value=inside)) if one.last > one.first]
-        if met:
+        found_plateaux = [one for one in plateaux(found.isel(value=inside)) if one.last > one.first]
+        if found_plateaux:
             measured.append(
-                Measured(f"width in a of all plateaux that were met, {law}", sum(p.last - p.first for p in met))
+                Measured(
+                    f"width in a of all plateaux that were found, {law}", sum(p.last - p.first for p in found_plateaux)
+                )
             )
-            widest = max(met, key=lambda one: one.last - one.first)
+            widest = max(found_plateaux, key=lambda one: one.last - one.first)
             where.append(
                 f"the widest plateau, {widest.ratio}, reaches from a = {widest.first:.5g} to {widest.last:.5g} ({law})"
             )
-        where += told_where("locked to the middle block", grid, locked, law)
+        where += describe_where("locked to the middle block", grid, locked, law)
     reason = (
-        f"With {100 * detuning:g} % more mass of one end block, the end blocks of branch 1 keep one frequency and a "
-        f"relation of their phases that attracts (the third Lyapunov exponent is negative) at {shares_text(shares)} of "
-        f"the values of a with {a}, each followed for "
+        f"With {100 * detuning:g} % more mass on one end block, the end blocks of branch 1 keep one frequency, and a "
+        f"perturbation of their relative phase decays (the third Lyapunov exponent is negative), at "
+        f"{format_shares(shares)} of the values of a with {a}. Each motion was followed for "
         f"{rotation.attrs['detuned_transient'] + 2.0 * rotation.attrs['detuned_window']:g} time units."
     )
-    return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(where))
+    return Verdict(judge_worst_share(shares, loose_share), reason, measured, "; ".join(where))
 
 
 @judge("bifurcations", "refined")
 def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
-    """Judge whether a closed orbit, not a torus, precedes chaos where a branch of attractors turns chaotic as a grows.
+    """Judge whether a periodic orbit, not a torus, precedes chaos where a branch becomes chaotic as a grows.
 
-    On a closed orbit the stops of the blocks have rational ratios: they are locked. On a torus they are not. The motion
-    before chaos is that of the branch at the next value of a below. An onset does not count if the chaos existed
-    before, dying or taking over a branch that ends on it, nor does a bifurcation that a branch passes without a change.
-    A torus may be chaos too weak for the search to resolve, or may lock between the values of a; the verdict says so. A
-    closed orbit that is too long to be followed to the bifurcation, as in a locking tongue, counts as one of unknown
-    kind, since another value of a may show the torus. A closer search finds more onsets, so that those of a study are a
-    sample: the claim fails if the 95 % interval of the fraction lies below `loose_share`.
+    On a periodic orbit the stops of the blocks have rational ratios: they are locked. On a torus they are not. The
+    motion before chaos is that of the branch at the next smaller value of a. An onset does not count if the chaos
+    existed before, as a transient or on an attractor on which the branch ends; neither does a bifurcation that a branch
+    passes without a change. A torus may be chaos too weak for the search to resolve, or may lock between the values of
+    a; the verdict says so. A periodic orbit that is too long to be continued to the bifurcation, as in a locking
+    tongue, counts as undetermined, since another value of a may show the torus. A closer search finds more onsets, so
+    those of a study are a sample: the claim fails if the 95 % interval of the fraction lies below `loose_share`.
 
     loose_share : fraction of the onsets of chaos from which the claim holds loosely
     """
@@ -135,11 +140,11 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         own = bifurcations["law"].values == name
         before, after, kinds = (bifurcations[key].values for key in ("motion_before", "motion_after", "kind"))
         changes = own & (bifurcations["change"].values != Change.PASSED) & np.isin(after, CHAOS)
-        changes &= ~_chaotic_before(bifurcations, evidence.summary("refined").sel(law=name))
+        changes &= ~_was_chaotic(bifurcations, evidence.summary("refined").sel(law=name))
         onset = changes & np.isin(before, (MotionKind.SYNCHRONIZED, *REGULAR))
         unknown = changes & (before == MotionKind.UNDETERMINED)
         places = {
-            (float(bifurcations["grid_low"].values[k]), int(bifurcations["to_branch"].values[k])): _doubt(
+            (float(bifurcations["grid_low"].values[k]), int(bifurcations["to_branch"].values[k])): _possible_precursor(
                 before[k], kinds[k]
             )
             for k in np.flatnonzero(onset)
@@ -148,44 +153,48 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
             raise NotTestableError(f"no branch of attractors becomes chaotic under the {name} law")
         count = Counter(places.values())
         least, most = (Share(hits, len(places)) for hits in (count[""], len(places) - count[TORUS]))
-        if by_share(most, loose_share) == NOT_TESTABLE:
+        if judge_share(most, loose_share) == NOT_TESTABLE:
             raise NotTestableError(
-                f"a closed orbit comes before chaos at {least.hits} to {most.hits} of {len(places)} places ({name}), "
-                f"and the 95 % interval of that share reaches {most.interval[1]:.2f}: whether it is {loose_share:g} is "
-                f"not resolved with changes along a located within {resolution:g}"
+                f"in {least.hits} to {most.hits} of {len(places)} cases ({name}) a periodic orbit precedes chaos, and "
+                f"the 95 % interval of this share includes {loose_share:g} (its upper end is {most.interval[1]:.2f}), "
+                f"so the statement cannot be decided at this resolution of a, {resolution:g}"
             )
         if not share_is_decided(least.hits, most.hits, len(places), loose_share):
             raise NotTestableError(
-                f"before chaos there is {UNFOLLOWED} at {count[UNFOLLOWED]} of {len(places)} places ({name})"
+                f"in {count[UNFOLLOWED]} of {len(places)} cases ({name}) {UNFOLLOWED} precedes chaos"
             )
         shares[name] = least
         texts.append(f"{least.hits} of {len(places)} ({name})")
-        measured.append(Measured(f"share of the beginnings of chaos at which a closed orbit ends, {name}", least.value))
+        measured.append(Measured(f"share of the onsets of chaos that a periodic orbit precedes, {name}", least.value))
         ends = Counter(int(bifurcations["kind"].values[k]) for k in np.flatnonzero(onset))
         for kind, often in sorted(ends.items()):
             measured.append(Measured(f"bifurcations there, {BifurcationKind(kind).name.lower()}, {name}", often))
         if unknown.any():
             values = np.unique(bifurcations["a"].values[unknown])
-            others.append(f"the motion before is unknown at a = {', '.join(f'{a:.5g}' for a in values)} ({name})")
-        for doubt in (TORUS, UNFOLLOWED):
-            if there := sorted(place for (place, _), one in places.items() if one == doubt):
-                others.append(f"{doubt} before chaos above a = {', '.join(f'{a:g}' for a in there)} ({name})")
+            others.append(
+                f"the motion before chaos is undetermined at a = {', '.join(f'{a:.5g}' for a in values)} ({name})"
+            )
+        for precursor in (TORUS, UNFOLLOWED):
+            if there := sorted(place for (place, _), one in places.items() if one == precursor):
+                others.append(
+                    f"{precursor} precedes chaos just above a = {', '.join(f'{a:g}' for a in there)} ({name})"
+                )
     reason = (
-        "Where a branch of attractors becomes chaotic as a grows, a closed orbit precedes chaos, not a torus: "
-        f"{', '.join(texts)}."
+        "Where a branch of attractors becomes chaotic as a grows, a periodic orbit, not a torus, precedes chaos in "
+        f"{join_words(texts)} cases."
     )
-    return Verdict(verdict_of(shares, loose_share), reason, measured, "; ".join(others))
+    return Verdict(judge_worst_share(shares, loose_share), reason, measured, "; ".join(others))
 
 
-def _doubt(before: int, bifurcation: int) -> str:
-    """Return what may precede chaos at a bifurcation instead of a closed orbit; empty if a closed orbit does."""
+def _possible_precursor(before: int, bifurcation: int) -> str:
+    """Return what may precede chaos at a bifurcation instead of a periodic orbit; empty if a periodic orbit does."""
     if before == MotionKind.QUASIPERIODIC:
         return TORUS
     return UNFOLLOWED if bifurcation == BifurcationKind.UNDETERMINED else ""
 
 
-def _chaotic_before(bifurcations: xarray.Dataset, refined: xarray.Dataset) -> np.ndarray:
-    """Tell at which bifurcations a branch ends on another one that was chaotic already, shape (bifurcation,)."""
+def _was_chaotic(bifurcations: xarray.Dataset, refined: xarray.Dataset) -> np.ndarray:
+    """Return at which bifurcations a branch ends on another one that was already chaotic, shape (bifurcation,)."""
     a, kind = refined["a"].values, refined["kind"].values
     result = np.zeros(bifurcations.sizes["bifurcation"], dtype=bool)
     for k in np.flatnonzero(bifurcations["change"].values == Change.END):

@@ -1,10 +1,10 @@
-"""The margin of a verdict: the claim is judged again with other tolerances and on other grids.
+"""The margin of a verdict: which other tolerances and grids would change it.
 
 A tolerance is a choice. A reader should see which other sensible choices would change a verdict, or leave too little
-data to judge. Tried are: a tolerance of the claim or of the study within a factor of two; every second value of a; the
-neighbour of a named value of a; one compared value of a less; and other amplitudes of the inner blocks, detunings,
-levels of J, or parts of the runs for which there are data. If the claim depends on convention or reading, the verdicts
-under each count as well.
+data to judge. The claim is judged again with each tolerance of the claim or of the study within a factor of two; with
+every second value of a; at the neighbour of a named value of a; without one of the values of a at which solvers are
+compared; and with other amplitudes of the inner blocks, detunings, levels of J, or parts of the runs for which there
+are data. If the claim depends on convention or reading, the verdicts under each count as well.
 """
 
 from __future__ import annotations
@@ -19,101 +19,112 @@ import numpy as np
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.verdict import CONVENTION, NOT_TESTABLE, READING, Verdict
 
-# Parameters of judges that are our choice; others may choose values larger or smaller by this factor.
-CHOSEN = ("tolerance", "loose", "near", "relative", "much")
+# Parameters of judges that are our choice, with descriptions. Others may choose values that differ by up to FACTOR.
+TOLERANCES = {
+    "tolerance": "the tolerance",
+    "loose": "the loose tolerance",
+    "near": "the distance that counts as near",
+    "relative": "the relative tolerance",
+    "much": "the ratio that counts as large",
+}
 FACTOR = 2.0
 
 # The same for parameters whose distance from 1 is the choice.
-SHARES = ("share", "loose_share", "correlation")
+SHARES = {
+    "share": "the required share of states",
+    "loose_share": "the share from which the claim holds loosely",
+    "correlation": "the correlation that counts as antiphase",
+}
 
-# Parameters with data for a few values only, and the summary whose coordinate lists these.
-LISTED = {"inner_share": "phases", "level": "mean_distance", "detuning": "rotation"}
+# Parameters with data for a few values only: their description, and the summary whose coordinate lists these values.
+LISTED = {
+    "inner_share": ("the amplitude of the inner block over A", "phases"),
+    "level": ("the level below which J counts as 0", "mean_distance"),
+    "detuning": ("the detuning", "rotation"),
+}
 
 #: The parts of a run that can judge a claim: the averaging window, or the whole run with its transient.
-PARTS = ("window", "run")
+PARTS = {"window": "the window", "run": "the whole run"}
 
-# Number of halvings of the factor at which a verdict changes, which gives it to 2 %.
-HALVINGS = 5
+# Number of bisections of the exponent of FACTOR at which a verdict changes, which determine the tolerance to 2 %.
+BISECTIONS = 5
 
 Judge = Callable[[Evidence, Mapping[str, Any]], Verdict]
+# Returns the changed verdict of a claim from evidence and parameters; "" if it is unchanged.
+ChangedVerdict = Callable[[Evidence, Mapping[str, Any]], str]
 
 
-def turns(
+def changing_choices(
     judge: Judge,
     evidence: Evidence,
     parameters: Mapping[str, Any],
     verdict: Verdict,
     others: Iterable[tuple[str, Evidence]] = (),
 ) -> list[str]:
-    """Return what would change a verdict, each as «verdict: condition»; empty if nothing tried does.
+    """Return the choices that would change a verdict, each as «verdict if condition»; empty if none does.
 
     judge : judges the claim from evidence and parameters; verdict : its verdict for the given ones
-    others : evidence for other tolerances of the study, each with its name, see `choices`
+    others : evidence for other tolerances of the study, each with its description, see `choices`
     """
     if verdict.verdict == NOT_TESTABLE:
         return []
 
-    def turned(evidence: Evidence, parameters: Mapping[str, Any]) -> str:
+    def changed_verdict(evidence: Evidence, parameters: Mapping[str, Any]) -> str:
         return difference(verdict, judge(evidence, parameters))
 
     return [
-        *_by_tolerance(turned, evidence, parameters),
-        *_by_grid(turned, evidence, parameters),
-        *_by_neighbour(turned, evidence, parameters),
-        *_by_listed(turned, evidence, parameters),
-        *(f"{found}: {name}" for name, other in others if (found := turned(other, parameters))),
+        *_tolerance_choices(changed_verdict, evidence, parameters),
+        *_grid_choices(changed_verdict, evidence, parameters),
+        *_neighbour_choices(changed_verdict, evidence, parameters),
+        *_listed_choices(changed_verdict, evidence, parameters),
+        *(f"{found} if {name}" for name, other in others if (found := changed_verdict(other, parameters))),
     ]
 
 
 def difference(verdict: Verdict, other: Verdict) -> str:
-    """Return the other verdict if it differs, under some convention or reading; "" if it is the same.
-
-    If only conventions or readings differ, they are listed.
-    """
+    """Return the other verdict if it differs, also under some convention or reading only; "" if it is the same."""
     if other.verdict != verdict.verdict:
         return other.verdict
     if verdict.verdict not in (CONVENTION, READING):
         return ""
     known = verdict.conventions
-    changed = [f"{name} {found}" for name, found in other.conventions.items() if found != known.get(name)]
-    changed += [f"{name} {NOT_TESTABLE}" for name in known if name not in other.conventions]
-    return f"{verdict.verdict} ({', '.join(changed)})" if changed else ""
+    changed = [f"{name}: {found}" for name, found in other.conventions.items() if found != known.get(name)]
+    changed += [f"{name}: {NOT_TESTABLE}" for name in known if name not in other.conventions]
+    return f"{verdict.verdict} ({'; '.join(changed)})" if changed else ""
 
 
-# Returns the changed verdict of a claim from evidence and parameters; "" if it is unchanged.
-Turned = Callable[[Evidence, Mapping[str, Any]], str]
-
-
-def _by_tolerance(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
-    for name in (*CHOSEN, *SHARES):
+def _tolerance_choices(
+    changed_verdict: ChangedVerdict, evidence: Evidence, parameters: Mapping[str, Any]
+) -> Iterator[str]:
+    for name, words in {**TOLERANCES, **SHARES}.items():
         if name not in parameters:
             continue
 
-        def at(exponent: float, name: str = name) -> str:
-            return turned(evidence, {**parameters, name: _changed(parameters[name], name, exponent)})
+        def verdict_at(exponent: float, name: str = name) -> str:
+            return changed_verdict(evidence, {**parameters, name: _scaled(parameters[name], name, exponent)})
 
-        found = [(side, *_nearest(at, side)) for side in (-1.0, 1.0)]
+        found = [(side, *_nearest_change(verdict_at, side)) for side in (-1.0, 1.0)]
         if len({other for _, _, other in found if other}) == 1 and not any(same for _, same, _ in found):
-            yield f"{found[0][2]}: any other {name} ({parameters[name]:g})"
+            yield f"{found[0][2]} if {words} is not exactly {parameters[name]:g}"
             continue
         for side, same, other in found:
             if other:
-                last = _changed(parameters[name], name, same)
-                relation = "above" if _changed(parameters[name], name, side) > parameters[name] else "below"
-                yield f"{other}: {name} {relation} {last:.3g} ({parameters[name]:g})"
+                last = _scaled(parameters[name], name, same)
+                relation = "above" if _scaled(parameters[name], name, side) > parameters[name] else "below"
+                yield f"{other} if {words} is {relation} {last:.3g} (here {parameters[name]:g})"
 
 
-def _nearest(turned: Callable[[float], str], side: float) -> tuple[float, str]:
+def _nearest_change(verdict_at: Callable[[float], str], side: float) -> tuple[float, str]:
     """Return the largest exponent towards a side at which the verdict is unchanged, and the verdict beyond it.
 
     "" if the verdict is unchanged at the side itself.
     """
-    same, end, other = 0.0, side, turned(side)
+    same, end, other = 0.0, side, verdict_at(side)
     if not other:
         return side, ""
-    for _ in range(HALVINGS):
+    for _ in range(BISECTIONS):
         middle = 0.5 * (same + end)
-        found = turned(middle)
+        found = verdict_at(middle)
         if found:
             end, other = middle, found
         else:
@@ -121,48 +132,52 @@ def _nearest(turned: Callable[[float], str], side: float) -> tuple[float, str]:
     return same, other
 
 
-def _changed(value: float, name: str, exponent: float) -> float:
-    """Return a tolerance multiplied by a power of FACTOR."""
+def _scaled(value: float, name: str, exponent: float) -> float:
+    """Return a tolerance, or the distance of a share from 1, multiplied by a power of FACTOR."""
     factor = FACTOR**exponent
     if name not in SHARES:
         return value * factor
     return math.copysign(min(max(1.0 - factor * (1.0 - abs(value)), 0.0), 1.0), value)
 
 
-def _by_grid(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
+def _grid_choices(changed_verdict: ChangedVerdict, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
     """Judge on both halves of the grid, or without each of the few values at which solvers are compared."""
     if "relative" in parameters:
         if "solvers" in evidence.summaries:
-            yield from _by_solved(turned, evidence, parameters)
+            yield from _solver_choices(changed_verdict, evidence, parameters)
         return
     halves = {}
     for half, first in zip(evidence.halves, ("first", "second"), strict=True):
         # A single value has no second half.
         if not all(dataset.sizes.get("a", 1) for dataset in half.summaries.values()):
             continue
-        other = turned(half, parameters)
+        other = changed_verdict(half, parameters)
         # If one half lacks the only value of a in a claim, this is not another choice.
         if other != NOT_TESTABLE or "at" not in parameters:
             halves[first] = other
     found = set(halves.values())
     if len(halves) == 2 and len(found) == 1:
-        yield from (f"{other}: every second value of a" for other in found if other)
+        yield from (f"{other} if only every second value of a is used" for other in found if other)
     else:
-        yield from (
-            f"{other}: every second value of a, from the {first} on" for first, other in halves.items() if other
-        )
+        for first, other in halves.items():
+            if other:
+                yield f"{other} if only every second value of a is used, starting with the {first}"
 
 
-def _by_solved(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
+def _solver_choices(
+    changed_verdict: ChangedVerdict, evidence: Evidence, parameters: Mapping[str, Any]
+) -> Iterator[str]:
     solvers = evidence.summaries["solvers"]
     for a in solvers["a"].values.tolist():
         without = {**evidence.summaries, "solvers": solvers.sel(a=solvers["a"] != a)}
-        other = turned(replace(evidence, summaries=without), parameters)
+        other = changed_verdict(replace(evidence, summaries=without), parameters)
         if other:
-            yield f"{other}: without a = {a:g}"
+            yield f"{other} if a = {a:g} is left out"
 
 
-def _by_neighbour(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
+def _neighbour_choices(
+    changed_verdict: ChangedVerdict, evidence: Evidence, parameters: Mapping[str, Any]
+) -> Iterator[str]:
     """Judge a claim about one value of a at the neighbouring values of the grid."""
     if "at" not in parameters:
         return
@@ -170,20 +185,22 @@ def _by_neighbour(turned: Turned, evidence: Evidence, parameters: Mapping[str, A
     grid = max((values for values in grids if parameters["at"] in values), key=len, default=np.array([]))
     place = int(np.searchsorted(grid, parameters["at"]))
     for value in grid[[k for k in (place - 1, place + 1) if 0 <= k < len(grid)]].tolist():
-        other = turned(evidence, {**parameters, "at": value})
+        other = changed_verdict(evidence, {**parameters, "at": value})
         if other and other != NOT_TESTABLE:
-            yield f"{other}: at a = {value:g} ({parameters['at']:g})"
+            yield f"{other} if a is {value:g} (here {parameters['at']:g})"
 
 
-def _by_listed(turned: Turned, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
-    for name, summary in LISTED.items():
+def _listed_choices(
+    changed_verdict: ChangedVerdict, evidence: Evidence, parameters: Mapping[str, Any]
+) -> Iterator[str]:
+    for name, (words, summary) in LISTED.items():
         if name not in parameters or summary not in evidence.summaries:
             continue
         for value in evidence.summaries[summary][name].values.tolist():
-            other = turned(evidence, {**parameters, name: value})
+            other = changed_verdict(evidence, {**parameters, name: value})
             if other:
-                yield f"{other}: {name} = {value:g} ({parameters[name]:g})"
-    for part in PARTS if "part" in parameters else ():
-        other = turned(evidence, {**parameters, "part": part})
+                yield f"{other} if {words} is {value:g} (here {parameters[name]:g})"
+    for part, words in PARTS.items() if "part" in parameters else ():
+        other = changed_verdict(evidence, {**parameters, "part": part})
         if other:
-            yield f"{other}: by the {'whole run' if part == 'run' else part}"
+            yield f"{other} if {words} is used (here {PARTS[parameters['part']]})"

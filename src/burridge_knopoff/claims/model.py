@@ -16,13 +16,13 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
-    by_value,
+    describe_where,
     extremes,
-    told_where,
-    worst,
+    judge_value,
+    worst_verdict,
 )
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.study.formatting import with_error
+from burridge_knopoff.study.formatting import span, with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 
@@ -64,10 +64,12 @@ def equilibrium_unstable(evidence: Evidence, a: Range) -> Verdict:
                 f"largest difference from the growth seen in simulations, {law}", float(np.abs(growth - seen).max())
             )
         )
-    reason = f"With {a} the largest real part is at least {min(m.value for m in measured[::2]):.3g}."
+    reason = f"For {a} the largest real part is at least {min(m.value for m in measured[::2]):.3g}."
     whole = evidence.summary("equilibrium")
     stable = (whole["eigenvalue"].sel(part="real").max(dim="mode") <= 0.0).any(dim="law").values
-    return Verdict(worst(verdicts), reason, measured, "".join(told_where("no growth", whole["a"].values, stable)))
+    return Verdict(
+        worst_verdict(verdicts), reason, measured, "".join(describe_where("no growth", whole["a"].values, stable))
+    )
 
 
 @judge("equilibrium")
@@ -78,11 +80,9 @@ def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, 
     values = found["a"].values
     ratio = found["growth_rate"].values / evidence.weakening(law, values)
     measured = extremes("growth rate over −F'(v), in simulations", ratio)
-    verdict = worst(by_value(item.value, claimed, tolerance, loose) for item in measured)
+    verdict = worst_verdict(judge_value(item.value, claimed, tolerance, loose) for item in measured)
     rate = with_error(float(ratio.mean()), float(np.ptp(ratio)))
-    reason = (
-        f"Perturbations of uniform sliding grow at {rate} times −F'(v) with {a} ({law}); the claim says {claimed:g}."
-    )
+    reason = f"For {a} ({law}) perturbations grow at {rate} times −F'(v); the paper says {claimed:g}."
     return Verdict(verdict, reason, measured)
 
 
@@ -99,7 +99,7 @@ def near_equilibrium(
     for name in initial:
         evidence.check_state(name)
     position = evidence.at(evidence.summary("equilibrium").sel(law=law), at)["equilibrium_position"].values
-    run = evidence.at(evidence.of_state("stick_slip", initial[0]).sel(law=law), at)
+    run = evidence.at(evidence.state_summary("stick_slip", initial[0]).sel(law=law), at)
     amplitude = run["position_amplitude"].values[0]
     if not np.isfinite(amplitude):
         raise NotTestableError(f"the run from {initial[0]} at a = {at:g} under the {law} law did not complete")
@@ -124,16 +124,16 @@ def friction_keeps_sign(evidence: Evidence, initial: Sequence[str], law: str, a:
     least, where = np.inf, ""
     negative = []
     for state in initial:
-        runs = evidence.choose(evidence.of_state("mean_distance", state), a).sel(law=law)
+        runs = evidence.choose(evidence.state_summary("mean_distance", state), a).sel(law=law)
         friction = runs["least_friction"].values
         if not len(finite(friction)):
             raise NotTestableError(f"no run from {state} completed with {a}")
         lowest = int(np.nanargmin(friction))
         if friction[lowest] < least:
             least, where = float(friction[lowest]), f"{state}, a = {runs['a'].values[lowest]:g}"
-        negative += told_where("not positive", runs["a"].values, friction <= 0.0, state)
-    reason = f"The least friction on a slipping block with {a} ({law}) is {least:.3f}, in the run {where}."
-    return Verdict(HOLDS if least > 0.0 else FAILS, reason, [Measured("least Φ(U')", least)], "; ".join(negative))
+        negative += describe_where("not positive", runs["a"].values, friction <= 0.0, state)
+    reason = f"The smallest friction on a slipping block for {a} ({law}) is {least:.3f}, in the run {where}."
+    return Verdict(HOLDS if least > 0.0 else FAILS, reason, [Measured("smallest Φ(U')", least)], "; ".join(negative))
 
 
 @judge("equilibrium")
@@ -152,8 +152,8 @@ def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdic
     ]
     verdict = HOLDS if (counts == claimed).all() else LOOSELY if (pairs == claimed).all() else FAILS
     reason = (
-        f"With {a} a position has at most {max(counts)} exponentials, in {max(pairs)} complex pairs; "
-        f"the claim says {claimed}."
+        f"For {a} a position has at most {max(counts)} exponentials, in {max(pairs)} complex pairs; "
+        f"the paper says {claimed}."
     )
     return Verdict(verdict, reason, measured)
 
@@ -162,30 +162,31 @@ def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdic
 def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed: int, a: Range) -> Verdict:
     """Judge the dimension of the map from event to event; the claim holds loosely if some directions vanish.
 
-    A state has two numbers a block: position relative to the driver, and velocity. Each Lyapunov exponent of −∞ is a
-    direction that sticking has removed for good.
+    A state has two components per block: position relative to the driver, and velocity. Each Lyapunov exponent of −∞
+    is a direction that sticking has removed permanently.
     """
     evidence.check_blocks()
     lost = np.concatenate(
         [
-            finite(evidence.choose(evidence.of_state("lyapunov", name), a)["lyapunov_infinite_count"].sel(law=law))
+            finite(evidence.choose(evidence.state_summary("lyapunov", name), a)["lyapunov_infinite_count"].sel(law=law))
             for name in initial
         ]
     )
     # Without exponents the count is −1.
     lost = lost[lost >= 0.0]
     if not len(lost):
-        raise NotTestableError(f"the Lyapunov exponents are unknown with {a}")
+        raise NotTestableError(f"the Lyapunov exponents are not known with {a}")
     numbers = 2 * len(evidence.summary("equilibrium")["block"])
     left = numbers - lost
     measured = [
-        Measured("numbers in a state", float(numbers)),
+        Measured("components of a state", float(numbers)),
         *extremes("number of exponents of −∞", lost),
     ]
     verdict = FAILS if numbers != claimed else HOLDS if left.min() == claimed else LOOSELY
+    removed, remaining = (span(f"{found.min():.0f}", f"{found.max():.0f}") for found in (lost, left))
     reason = (
-        f"A state has {numbers} numbers; sticking removes {lost.min():.0f} to "
-        f"{lost.max():.0f} directions for good ({law}), so that the map acts on {left.min():.0f} to {left.max():.0f}."
+        f"A state has {numbers} components. Sticking permanently removes {removed} of these dimensions ({law}), "
+        f"so that the map acts on {remaining}."
     )
     return Verdict(verdict, reason, measured)
 
@@ -200,9 +201,9 @@ def stable_where_friction_grows(evidence: Evidence, law: str, a: Range) -> Verdi
     found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
     growth = found["strengthening_growth_rate"].values
     if not len(finite(growth)):
-        raise NotTestableError(f"the mirror image of the {law} law is no friction law with {a}")
+        raise NotTestableError(f"the mirror image of the {law} law is not a friction law with {a}")
     largest = float(np.nanmax(growth))
     words = f"decay at a rate of {-largest:.3g} or more" if largest < 0.0 else f"grow, at a rate of up to {largest:.3g}"
-    reason = f"With {a} perturbations {words} if the slope of the {law} law is reversed."
-    changes = "".join(told_where("growth", found["a"].values, growth >= 0.0))
+    reason = f"For {a} perturbations {words} if the slope of the {law} law is reversed."
+    changes = "".join(describe_where("growth", found["a"].values, growth >= 0.0))
     return Verdict(HOLDS if largest < 0.0 else FAILS, reason, [Measured("largest growth rate", largest)], changes)

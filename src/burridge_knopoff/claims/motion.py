@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings, under_conventions
+from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence, finite
 from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
-from burridge_knopoff.claims.outcomes import reached_at
+from burridge_knopoff.claims.outcomes import reached_attractor
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -21,15 +21,15 @@ from burridge_knopoff.claims.verdict import (
     Range,
     Share,
     Verdict,
-    at_values,
-    by_value,
+    count_share,
+    describe_where,
     extremes,
+    format_shares,
+    format_values,
     judge_shares,
-    share_of,
-    shares_text,
-    told_where,
-    verdict_of,
-    worst,
+    judge_value,
+    judge_worst_share,
+    worst_verdict,
 )
 from burridge_knopoff.study.formatting import span, with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -38,15 +38,15 @@ if TYPE_CHECKING:
     import xarray
 
 #: The readings of a stick-slip cycle.
-ONE_BLOCK, ANY_BLOCK = "from stop to stop of one block", "from a stop of any block to the next one"
+ONE_BLOCK, ANY_BLOCK = "between successive stops of one block", "between successive stops of any blocks"
 
 
 @judge("stick_slip", "attractors")
 def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence[str], at: float) -> Verdict:
-    """Judge whether each block stops again and again at one a, from each state and under some laws."""
+    """Judge whether each block stops repeatedly at one a, from each state and under some laws."""
     verdicts, measured, never = [], [], []
     for state in initial:
-        runs = evidence.choose(evidence.of_state("stick_slip", state), Range(above=0.0))
+        runs = evidence.choose(evidence.state_summary("stick_slip", state), Range(above=0.0))
         for law in laws:
             rate = evidence.at(runs, at)["stop_rate"].sel(law=law).values
             if not np.isfinite(rate).all():
@@ -58,25 +58,25 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
             everywhere = runs["stop_rate"].sel(law=law).values
             known = np.isfinite(everywhere).all(axis=-1)
             some = known & ~(everywhere > 0.0).all(axis=-1)
-            never += told_where("a block never stops", runs["a"].values, some, f"{law}, {state}")
+            never += describe_where("a block never stops", runs["a"].values, some, f"{law}, {state}")
     right = sum(verdict == HOLDS for verdict in verdicts)
-    reason = f"At a = {at:g} all three blocks stop again and again in {right} of {len(verdicts)} runs."
+    reason = f"At a = {at:g} all three blocks stop repeatedly in {right} of {len(verdicts)} runs."
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         found = {
             f"{law}, {state}": Share(int((rate[0] > 0.0).all()), 1)
             for state in initial
             for law in laws
-            if (rate := reached_at(attractors, at, state, law, "stop_rate"))
+            if (rate := reached_attractor(attractors, at, state, law, "stop_rate"))
         }
         return judge_shares(found, 1.0)
 
-    return under_conventions(evidence, worst(verdicts), reason, measured, never, of_branches)
+    return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, never, judge_attractors)
 
 
 @judge("equilibrium", "attractors")
 def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
-    """Judge whether in every motion some block stops again and again.
+    """Judge whether in every motion some block stops repeatedly.
 
     While all blocks slip, the energy ½|U' − v|² + ½ x·Kx of their motion about uniform sliding grows, unless they slide
     uniformly, if friction falls with velocity. Oscillations that grow without bound bring some velocity to 0
@@ -94,26 +94,29 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
     for law in PAPER_LAWS:
         real = equilibrium["eigenvalue"].sel(law=law, part="real").values
         slope = evidence.weakening(law, equilibrium["a"].values)
-        shares[f"values of a, {law}"] = share_of(np.all(real > 0.0, axis=-1))
+        shares[f"values of a, {law}"] = count_share(np.all(real > 0.0, axis=-1))
         measured += extremes("real part of an eigenvalue over −F'(v)", real / slope[:, None], law)
         found = attractors.sel(law=law)
         there = found["branch"].values >= 0
         if not there.any():
             raise NotTestableError(f"no attractor is known under the {law} law with {a}")
         stops = found["stop_rate"].values[there] > 0.0
-        shares[f"attractors, {law}"], every[law] = share_of(np.any(stops, axis=-1)), share_of(np.all(stops, axis=-1))
+        shares[f"attractors, {law}"], every[law] = (
+            count_share(np.any(stops, axis=-1)),
+            count_share(np.all(stops, axis=-1)),
+        )
         measured += [
             Measured(f"share of attractors in which some block stops, {law}", shares[f"attractors, {law}"].value),
             Measured(f"share of attractors in which every block stops, {law}", every[law].value),
         ]
     modes = equilibrium.sizes["mode"]
     reason = (
-        f"All {modes} eigenvalues of uniform sliding have positive real parts, and some block stops again and again in "
-        f"each attractor: true at {shares_text(shares)} with {a}. Every block stops in {shares_text(every)} of the "
+        f"All {modes} eigenvalues of uniform sliding have positive real parts, and some block stops repeatedly on each "
+        f"attractor: true of {format_shares(shares)} with {a}. Every block stops on {format_shares(every)} of the "
         "attractors."
     )
-    changes = "it does not hold for every block" if any(share.value < 1.0 for share in every.values()) else ""
-    return Verdict(verdict_of(shares, loose_share), reason, measured, changes)
+    changes = "it is not true of every block" if any(share.value < 1.0 for share in every.values()) else ""
+    return Verdict(judge_worst_share(shares, loose_share), reason, measured, changes)
 
 
 @judge("stick_slip", "attractors")
@@ -122,27 +125,27 @@ def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation
 
     The claim holds loosely if the correlation is negative.
     """
-    runs = evidence.of_state("stick_slip", initial).sel(law=law)
+    runs = evidence.state_summary("stick_slip", initial).sel(law=law)
     value = evidence.at(runs, at)["velocity_correlation"].item()
     if not np.isfinite(value):
-        raise NotTestableError(f"the correlation of the end blocks from {initial} at a = {at:g} is unknown")
-    verdict = _in_antiphase(value, correlation)
+        raise NotTestableError(f"the correlation of the end blocks from {initial} at a = {at:g} is not known")
+    verdict = _judge_antiphase(value, correlation)
     everywhere = runs["velocity_correlation"].values
     negative = np.isfinite(everywhere) & (everywhere < 0.0)
     reason = f"The correlation of U₁' and U₃' from {initial} at a = {at:g} ({law}) is {with_error(round(value, 2))}."
-    exceptions = [f"negative {at_values(runs['a'].values, negative)}, not elsewhere"] if negative.any() else []
+    exceptions = [f"negative only {format_values(runs['a'].values, negative)}"] if negative.any() else []
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = reached_at(attractors, at, initial, law, "velocity_correlation")
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = reached_attractor(attractors, at, initial, law, "velocity_correlation")
         if not found or not np.isfinite(found[0]):
             return "", ""
-        return _in_antiphase(found[0], correlation), with_error(round(float(found[0]), 2))
+        return _judge_antiphase(found[0], correlation), with_error(round(float(found[0]), 2))
 
     measured = [Measured("correlation of U₁' and U₃'", value)]
-    return under_conventions(evidence, verdict, reason, measured, exceptions, of_branches)
+    return judge_conventions(evidence, verdict, reason, measured, exceptions, judge_attractors)
 
 
-def _in_antiphase(value: float, correlation: float) -> str:
+def _judge_antiphase(value: float, correlation: float) -> str:
     return HOLDS if value <= correlation else LOOSELY if value < 0.0 else FAILS
 
 
@@ -150,11 +153,11 @@ def _in_antiphase(value: float, correlation: float) -> str:
 def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: float) -> Verdict:
     """Judge whether end blocks in antiphase in a run stay so: the run is on its attractor.
 
-    Antiphase means a negative correlation of their velocities in the window. `settled` of agreement.nc tells whether
+    Antiphase means a negative correlation of their velocities in the window. `settled` of agreement.nc states whether
     the run is on its attractor: a transient would be followed by another motion.
     """
-    runs = evidence.choose(evidence.of_state("stick_slip", initial), a)
-    ends = evidence.choose(evidence.of_state("agreement", initial), a)
+    runs = evidence.choose(evidence.state_summary("stick_slip", initial), a)
+    ends = evidence.choose(evidence.state_summary("agreement", initial), a)
 
     def cases() -> Iterator[Case]:
         for law in PAPER_LAWS:
@@ -162,9 +165,11 @@ def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: 
             settled = ends["settled"].sel(law=law).values
             if not opposed.any():
                 raise NotTestableError(f"no run from {initial} under the {law} law is in antiphase with {a}")
-            where = at_values(grid, opposed & ~(settled >= 0))
-            unknown = f"whether the run from {initial} under the {law} law is on its attractor is unknown {where}"
-            yield Case(law, grid, settled == 1, settled >= 0, unknown, about=opposed)
+            where = format_values(grid, opposed & ~(settled >= 0))
+            unknown = (
+                f"it is undetermined whether the run from {initial} under the {law} law is on its attractor {where}"
+            )
+            yield Case(law, grid, settled == 1, settled >= 0, unknown, applies=opposed)
 
     found = for_all(loose_share, cases())
     measured = found.measured(
@@ -172,7 +177,7 @@ def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: 
         lambda case: [Measured(f"values of a with a run in antiphase, {case.name}", float(case.share.count))],
     )
     reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase, {found} stay in antiphase."
-    return Verdict(found.verdict, reason, measured, "; ".join(found.exceptions("transient", "unknown")))
+    return Verdict(found.verdict, reason, measured, "; ".join(found.exceptions("transient", "undetermined")))
 
 
 @judge("stick_slip", "attractors")
@@ -183,13 +188,13 @@ def half_frequency(
 
     Both ratios have to agree with the claim.
     """
-    run = evidence.at(evidence.of_state("stick_slip", initial).sel(law=law), at)
+    run = evidence.at(evidence.state_summary("stick_slip", initial).sel(law=law), at)
     frequency, error, stops = (
         run[name].values for name in ("velocity_frequency", "velocity_frequency_error", "stop_rate")
     )
     if not np.isfinite(frequency).all() or not frequency[1] or not stops[1]:
         raise NotTestableError(
-            f"the frequencies from {initial} at a = {at:g} are unknown, or the middle block never stops"
+            f"the frequencies from {initial} at a = {at:g} are not known, or the middle block never stops"
         )
     ratios, verdicts = [], []
     for end, name in ((0, "block 1"), (-1, "block 3")):
@@ -199,24 +204,24 @@ def half_frequency(
             Measured(f"frequency of the velocity of {name} over that of block 2", float(ratio), float(spread))
         )
         ratios.append(Measured(f"stops of {name} over stops of block 2", float(stops[end] / stops[1])))
-    verdicts = [by_value(item.value, claimed, tolerance, loose) for item in ratios]
+    verdicts = [judge_value(item.value, claimed, tolerance, loose) for item in ratios]
     reason = (
-        f"From {initial} at a = {at:g} ({law}) the frequency of the end blocks over that of the middle block is "
-        f"{with_error(ratios[0].value, ratios[0].error)} by the peaks of their spectra and {ratios[1].value:.3f} by "
-        f"stops; the claim says {claimed:g}."
+        f"From {initial} at a = {at:g} ({law}) the end blocks have "
+        f"{with_error(ratios[0].value, ratios[0].error)} times the frequency of the middle block by the peaks of their "
+        f"spectra, and {ratios[1].value:.3f} times by the number of stops; the paper says {claimed:g}."
     )
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = reached_at(attractors, at, initial, law, "velocity_frequency", "stop_rate")
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = reached_attractor(attractors, at, initial, law, "velocity_frequency", "stop_rate")
         if not found or not np.isfinite(found[0]).all():
             return "", ""
         if not found[1][1] > 0.0:
             return FAILS, "the middle block never stops"
         ratios = [item[end] / item[1] for item in found for end in (0, -1)]
-        verdict = worst(by_value(ratio, claimed, tolerance, loose) for ratio in ratios)
+        verdict = worst_verdict(judge_value(ratio, claimed, tolerance, loose) for ratio in ratios)
         return verdict, f"{ratios[0]:.3f} by the peaks, {ratios[2]:.3f} by stops"
 
-    return under_conventions(evidence, worst(verdicts), reason, ratios, [], of_branches)
+    return judge_conventions(evidence, worst_verdict(verdicts), reason, ratios, [], judge_attractors)
 
 
 @judge("stick_slip")
@@ -239,10 +244,10 @@ def cycle_time(
     stop of any block, which is the inverse of the total rate of stops; or as the time between two stops of the middle
     block in the figure of the last state, where it is the shortest cycle to be seen.
     """
-    middle = f"from stop to stop of the middle block, from {initial[-1]} at a = {shown:g}"
+    middle = f"between successive stops of the middle block, from {initial[-1]} at a = {shown:g}"
     readings: dict[str, dict[str, np.ndarray]] = {ONE_BLOCK: {}, ANY_BLOCK: {}, middle: {}}
     for state in initial:
-        runs = evidence.choose(evidence.of_state("stick_slip", state), a)
+        runs = evidence.choose(evidence.state_summary("stick_slip", state), a)
         for law in PAPER_LAWS:
             one = runs.sel(law=law)
             for block in runs["block"].values:
@@ -256,13 +261,13 @@ def cycle_time(
         medians = {name: float(np.median(part)) for name, part in times.items() if len(part)}
         if not medians:
             continue
-        verdicts[reading] = worst(
-            by_value(max(low - median, median - high, 0.0), 0.0, tolerance, loose) for median in medians.values()
+        verdicts[reading] = worst_verdict(
+            judge_value(max(low - median, median - high, 0.0), 0.0, tolerance, loose) for median in medians.values()
         )
         measured += [Measured(f"median time {reading}, {name}", median) for name, median in medians.items()]
         least, most = (f"{f(medians.values()):.2f}" for f in (min, max))
         texts.append(f"{span(least, most)} {reading} ({verdicts[reading]})")
     if ONE_BLOCK not in verdicts:
         raise NotTestableError(f"no block stops twice in a run with {a}")
-    reason = f"The median time with {a} is {'; '.join(texts)}. The claim says {low:g} to {high:g}."
-    return by_readings(verdicts, reason, measured)
+    reason = f"The median time for {a} is {'; '.join(texts)}. The paper says {low:g} to {high:g}."
+    return combine_readings(verdicts, reason, measured)

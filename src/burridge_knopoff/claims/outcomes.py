@@ -1,4 +1,4 @@
-"""What the paper's initial states lead to: in the runs, and by the attractors reached under one convention."""
+"""The outcome of the paper's initial states: in the runs, or the attractors reached under one convention."""
 
 from __future__ import annotations
 
@@ -14,35 +14,35 @@ from burridge_knopoff.motion.kind import MotionKind, merge_chaos
 if TYPE_CHECKING:
     import xarray
 
-CLOSED = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
+PERIODIC_KINDS = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
 
 
 def synchrony(evidence: Evidence, initial: str, a: Range, inside: xarray.Dataset | None = None) -> xarray.DataArray:
-    """Return where an initial state leads to synchrony in a range of a, over (law, a): 1 or 0, NaN where unknown.
+    """Return where an initial state leads to synchrony in a range of a, over (law, a): 1 or 0, NaN where undetermined.
 
-    inside : the attractors there under one convention, to tell it of the branch reached and not of the runs
+    inside : the attractors there under one convention, to judge by the branch reached instead of the runs
     """
     if inside is None:
-        return evidence.choose(evidence.of_state("mean_distance", initial), a)["synchronized"]
+        return evidence.choose(evidence.state_summary("mean_distance", initial), a)["synchronized"]
     branch = inside["initial_branch"].sel(initial=initial)
     return (branch == 0).where(branch >= 0)
 
 
-def kinds_of(
+def motion_kinds(
     evidence: Evidence, initial: str, law: str, a: Range, inside: xarray.Dataset | None = None
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return (a, kind of motion) from a state in a range of a, UNDETERMINED where unknown; all chaos is one kind.
+    """Return (a, kind of motion) from a state in a range of a; all chaos is one kind.
 
-    inside : the attractors there under one convention, to tell it of the attractor reached and not of the runs
+    inside : the attractors there under one convention, to judge by the attractor reached instead of the runs
     """
     if inside is None:
-        runs = evidence.choose(evidence.of_state("agreement", initial), a).sel(law=law)
+        runs = evidence.choose(evidence.state_summary("agreement", initial), a).sel(law=law)
         return runs["a"].values, merge_chaos(runs["kind"].values)
     return inside["a"].values, kinds_reached(inside, initial, law)
 
 
 def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> np.ndarray:
-    """Return the kind of motion reached from a state, shape (a,), UNDETERMINED where unknown; all chaos is one kind.
+    """Return the kind of motion reached from a state, shape (a,); all chaos is one kind.
 
     attractors : under one convention
     """
@@ -50,7 +50,9 @@ def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> np.ndar
     return np.where(known, merge_chaos(kind), MotionKind.UNDETERMINED)
 
 
-def reached_at(attractors: xarray.Dataset, at: float, initial: str, law: str, *names: str) -> tuple[Any, ...] | None:
+def reached_attractor(
+    attractors: xarray.Dataset, at: float, initial: str, law: str, *names: str
+) -> tuple[Any, ...] | None:
     """Return variables of the attractor that an initial state reaches at one a; None if none is known.
 
     attractors : under one convention

@@ -7,18 +7,18 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from burridge_knopoff.attractors.lookup import reached_values
-from burridge_knopoff.claims.conventions import under_conventions
-from burridge_knopoff.claims.evidence import LEAST_VALUES, Evidence
+from burridge_knopoff.claims.conventions import judge_conventions
+from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence
 from burridge_knopoff.claims.for_all import Case, for_all, judge_cases
 from burridge_knopoff.claims.judge import judge
-from burridge_knopoff.claims.outcomes import CLOSED
+from burridge_knopoff.claims.outcomes import PERIODIC_KINDS
 from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Range,
     Verdict,
-    at_values,
-    told_where,
+    describe_where,
+    format_values,
 )
 from burridge_knopoff.motion.kind import MotionKind
 
@@ -30,22 +30,22 @@ if TYPE_CHECKING:
 def one_section_point(evidence: Evidence, initial: str, law: str, a: Range, loose_share: float) -> Verdict:
     """Judge whether the section W = 0, crossed upward, shows one point at each a of a range.
 
-    Closed motion whose section points do not repeat yet has not settled and is left out.
+    Periodic motion whose section points do not repeat yet has not settled and is left out.
     """
-    kind = evidence.choose(evidence.of_state("agreement", initial), a).sel(law=law)["kind"].values
-    runs = evidence.choose(evidence.of_state("lyapunov", initial), a).sel(law=law)
+    kind = evidence.choose(evidence.state_summary("agreement", initial), a).sel(law=law)["kind"].values
+    runs = evidence.choose(evidence.state_summary("lyapunov", initial), a).sel(law=law)
     grid, period = runs["a"].values, runs["section_period"].values
-    known = (period > 0) | ~np.isin(kind, (*CLOSED, MotionKind.UNDETERMINED))
-    unknown = f"the section of the run from {initial} is unknown {at_values(grid, ~known)}"
+    known = (period > 0) | ~np.isin(kind, (*PERIODIC_KINDS, MotionKind.UNDETERMINED))
+    unknown = f"the number of section points of the run from {initial} is not known {format_values(grid, ~known)}"
     case = Case(law, grid, period == 1, known, unknown)
     found = for_all(loose_share, [case])
     share = found.share
     reason = (
         f"The section of runs from {initial} ({law}) is one point at {share} of the {share.count} values of a with {a} "
-        "at which it is known."
+        "at which the motion has settled."
     )
     measured = [Measured("share of a with one section point", share.value)]
-    return Verdict(found.verdict, reason, measured, "; ".join(case.exceptions("more than one", "unknown")))
+    return Verdict(found.verdict, reason, measured, "; ".join(case.exceptions("more than one point", "not settled")))
 
 
 @judge("lyapunov", "bifurcation_diagram", "attractors")
@@ -59,12 +59,12 @@ def cloud_at_lower_velocities(
     A cloud is lower if its mean W' is below that of the other state.
     """
     grid, line, cloud = _sections(evidence, initial, law, a)
-    known = _crossed(line, initial[0], a)
-    many, empty = _many(cloud, points), np.array([len(other) == 0 for other in cloud])
+    known = _has_crossings(line, initial[0], a)
+    many, empty = _are_clouds(cloud, points), np.array([len(other) == 0 for other in cloud])
     pairs = [known[k] and not empty[k] for k in range(len(grid))]
     lower = np.array([both and other.mean() < one.mean() for both, one, other in zip(pairs, line, cloud, strict=True)])
     entirely = np.array([both and other.max() < one.min() for both, one, other in zip(pairs, line, cloud, strict=True)])
-    case = Case(law, grid, many & lower, known, about=known)
+    case = Case(law, grid, many & lower, known, applies=known)
     found = for_all(loose_share, [case])
     measured = [
         Measured(f"share of a with more than {points} section points from {initial[1]}", float(many[known].mean())),
@@ -76,17 +76,19 @@ def cloud_at_lower_velocities(
         f"of the values of a with {a}."
     )
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         inside = evidence.choose(attractors, a)
-        (there, first), (also, second) = (reached_values(inside, name, law, "section_count") for name in initial)
+        (first_known, first), (second_known, second) = (
+            reached_values(inside, name, law, "section_count") for name in initial
+        )
         (_, above), (_, below) = (reached_values(inside, name, law, "section_velocity_mean") for name in initial)
-        seen = there & also & (first > 0) & (second >= 0)
+        seen = first_known & second_known & (first > 0) & (second >= 0)
         case = Case(law, inside["a"].values, (second > points) & (below < above), seen)
         verdict, text = judge_cases(loose_share, [case])
-        return verdict, text + "".join(told_where(", no point at all", case.a, seen & (second == 0)))
+        return verdict, text + "".join(describe_where(", no point at all", case.a, seen & (second == 0)))
 
-    exceptions = case.exceptions("no lower cloud") + told_where("no point at all", grid, known & empty)
-    return under_conventions(evidence, found.verdict, reason, measured, exceptions, of_branches)
+    exceptions = case.exceptions("no lower cloud") + describe_where("no point at all", grid, known & empty)
+    return judge_conventions(evidence, found.verdict, reason, measured, exceptions, judge_attractors)
 
 
 @judge("lyapunov", "bifurcation_diagram", "agreement", "attractors")
@@ -100,13 +102,15 @@ def cloud_not_periodic(
     Motion that repeats within `motion.longest_period` is periodic.
     """
     grid, _, cloud = _sections(evidence, (initial, initial), law, a)
-    many = _many(cloud, points)
+    many = _are_clouds(cloud, points)
     if not many.any():
         raise NotTestableError(f"no section of a run from {initial} is a cloud with {a}")
-    kind = evidence.of_state("agreement", initial).sel(law=law, a=grid[many])["kind"].values
+    kind = evidence.state_summary("agreement", initial).sel(law=law, a=grid[many])["kind"].values
     known = kind != MotionKind.UNDETERMINED
-    unknown = f"the kind of motion from {initial} under the {law} law is unknown {at_values(grid[many], ~known)}"
-    case = Case(law, grid[many], ~np.isin(kind, CLOSED), known, unknown)
+    unknown = (
+        f"the kind of motion from {initial} under the {law} law is undetermined {format_values(grid[many], ~known)}"
+    )
+    case = Case(law, grid[many], ~np.isin(kind, PERIODIC_KINDS), known, unknown)
     found = for_all(loose_share, [case])
     measured = [
         Measured("values of a with a cloud", float(many.sum())),
@@ -118,17 +122,19 @@ def cloud_not_periodic(
         f"{found.share} of them the motion does not repeat within {longest:g} time units, or is chaotic."
     )
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         inside = evidence.choose(attractors, a)
-        (there, count), (_, kind) = (reached_values(inside, initial, law, name) for name in ("section_count", "kind"))
-        seen = there & (count > points)
+        (is_known, count), (_, kind) = (
+            reached_values(inside, initial, law, name) for name in ("section_count", "kind")
+        )
+        seen = is_known & (count > points)
         known = kind != MotionKind.UNDETERMINED
-        case = Case(law, inside["a"].values, ~np.isin(kind, CLOSED), known, about=seen)
+        case = Case(law, inside["a"].values, ~np.isin(kind, PERIODIC_KINDS), known, applies=seen)
         verdict, text = judge_cases(loose_share, [case])
-        return verdict, text and f"{text} of {seen.sum()} values with a cloud"
+        return verdict, text and f"{text} of {seen.sum()} values of a with a cloud"
 
-    exceptions = case.exceptions("periodic", "unknown")
-    return under_conventions(evidence, found.verdict, reason, measured, exceptions, of_branches)
+    exceptions = case.exceptions("periodic", "undetermined motion")
+    return judge_conventions(evidence, found.verdict, reason, measured, exceptions, judge_attractors)
 
 
 @judge("lyapunov", "bifurcation_diagram", "attractors")
@@ -141,29 +147,31 @@ def line_disappears(
     near : a point is on the line if its W' differs from that of the other state at this a by at most this fraction
     """
     grid, line, other = _sections(evidence, initial, law, a)
-    known = _crossed(line, initial[0], a)
-    there = np.array(
+    known = _has_crossings(line, initial[0], a)
+    on_line = np.array(
         [
             k and (np.abs(found - one.mean()) <= near * one.mean()).any()
             for k, one, found in zip(known, line, other, strict=True)
         ]
     )
-    case = Case(law, grid, ~there, known, about=known)
+    case = Case(law, grid, ~on_line, known, applies=known)
     found = for_all(loose_share, [case])
     reason = (
         f"From {initial[1]} ({law}) no section point lies within {100.0 * near:g} % of the line from {initial[0]} at "
         f"{found.share} of the values of a with {a}."
     )
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         inside = evidence.choose(attractors, a)
-        (also, first), (there, second) = (reached_values(inside, name, law, "branch") for name in initial)
-        case = Case(law, inside["a"].values, first != second, also & there)
+        (first_known, first), (second_known, second) = (reached_values(inside, name, law, "branch") for name in initial)
+        case = Case(law, inside["a"].values, first != second, first_known & second_known)
         verdict, text = judge_cases(loose_share, [case])
         return verdict, text and f"another attractor than from {initial[0]} at {case.share}"
 
     measured = [Measured("share of a without a point on the line", found.share.value)]
-    return under_conventions(evidence, found.verdict, reason, measured, case.exceptions("on the line"), of_branches)
+    return judge_conventions(
+        evidence, found.verdict, reason, measured, case.exceptions("on the line"), judge_attractors
+    )
 
 
 def _sections(
@@ -172,7 +180,7 @@ def _sections(
     """Return the values of a in a range at which the runs from two states completed, and the section points of both."""
     from burridge_knopoff.summaries.bifurcation_diagram import section_points
 
-    completed = [evidence.of_state("lyapunov", name).sel(law=law)["status"].notnull() for name in initial]
+    completed = [evidence.state_summary("lyapunov", name).sel(law=law)["status"].notnull() for name in initial]
     grid = completed[0]["a"].values
     grid = grid[a.choose(grid) & completed[0].values & completed[1].values]
     if not len(grid):
@@ -182,19 +190,19 @@ def _sections(
     return grid, first, second
 
 
-def _crossed(sections: list[np.ndarray], initial: str, a: Range) -> np.ndarray:
+def _has_crossings(sections: list[np.ndarray], initial: str, a: Range) -> np.ndarray:
     """Return at which values of a runs from a state cross the section; raises NotTestableError if these are too few."""
     known = np.array([len(one) > 0 for one in sections], dtype=bool)
-    if known.sum() < LEAST_VALUES:
+    if known.sum() < MIN_VALUES:
         raise NotTestableError(
-            f"a statement on all {a} needs {LEAST_VALUES} values of a at which the run from {initial} crosses the "
+            f"a statement on all {a} needs {MIN_VALUES} values of a at which the run from {initial} crosses the "
             f"section; there are {known.sum()}"
         )
     return known
 
 
-def _many(sections: list[np.ndarray], points: int) -> np.ndarray:
-    """Tell which sections have more than `points` points in the second half of the run."""
+def _are_clouds(sections: list[np.ndarray], points: int) -> np.ndarray:
+    """Return which sections have more than `points` points in the second half of the run."""
     from burridge_knopoff.summaries.attractor_observables import count_distinct
 
     return np.array([count_distinct(velocity[len(velocity) // 2 :]) > points for velocity in sections], dtype=bool)

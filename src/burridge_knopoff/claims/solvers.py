@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import by_readings, under_conventions
+from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
@@ -20,10 +20,10 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
+    count_share,
+    format_shares,
     judge_shares,
-    share_of,
-    shares_text,
-    verdict_of,
+    judge_worst_share,
 )
 from burridge_knopoff.motion.kind import MotionKind, is_same_result
 from burridge_knopoff.running.status import Status
@@ -47,18 +47,18 @@ def solutions_agree(
     a : range in which the laws are to agree; solvers are compared wherever they were tried
     loose_share : fraction of points, and of the values of a, from which the claim holds loosely
     """
-    solved, measured, apart = _solved(evidence, initial, relative)
-    solvers = {"solvers": share_of(np.array(solved))}
+    solved, measured, differences = _compare_solvers(evidence, initial, relative)
+    solvers = {"solvers": count_share(np.array(solved))}
 
-    def of_runs() -> Iterator[Case]:
+    def run_cases() -> Iterator[Case]:
         for state in initial:
-            runs = evidence.choose(evidence.of_state("agreement", state), a)
+            runs = evidence.choose(evidence.state_summary("agreement", state), a)
             kinds = runs["kind"].sel(law=list(PAPER_LAWS)).values
             known = ~(np.isnan(kinds) | (kinds == MotionKind.UNDETERMINED)).any(axis=0)
-            unknown = f"the kind of motion from {state} is unknown"
+            unknown = f"the kind of motion from {state} is undetermined"
             yield Case(f"laws, {state}", runs["a"].values, is_same_result(*kinds), known, unknown)
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         """Judge as if the solvers agreed at the same points under every convention."""
         inside, cases = evidence.choose(attractors, a), []
         for state in initial:
@@ -69,28 +69,28 @@ def solutions_agree(
             return "", ""
         return judge_shares({**solvers, **{case.name: case.share for case in cases}}, loose_share)
 
-    found = for_all(loose_share, of_runs())
+    found = for_all(loose_share, run_cases())
     for state, case in zip(initial, found.cases, strict=True):
-        apart += [f"{text} ({state})" for text in case.exceptions("the laws differ")]
+        differences += [f"{text} ({state})" for text in case.exceptions("the laws differ")]
     shares = {**solvers, **found.shares}
-    own = verdict_of(shares, loose_share)
-    laws = shares_text({state: shares[f"laws, {state}"] for state in initial})
+    own = judge_worst_share(shares, loose_share)
+    laws = format_shares({state: shares[f"laws, {state}"] for state in initial})
     reason = (
-        f"The solvers of each law agree on ⟨J⟩ at {sum(solved)} of {len(solved)} points (states and a), and the laws "
-        f"have the same result, synchrony, other regular motion or chaos, at {laws} of the values of a with {a}."
+        f"The solvers of each law agree on ⟨J⟩ at {sum(solved)} of {len(solved)} points (initial state, a), and the "
+        f"laws have the same result (synchrony, other regular motion or chaos) at {laws} of the values of a with {a}."
     )
     numbers = [Measured(f"share with agreement of the {name}", share.value) for name, share in shares.items()]
-    return under_conventions(evidence, own, reason, [*numbers, *measured], apart, of_branches)
+    return judge_conventions(evidence, own, reason, [*numbers, *measured], differences, judge_attractors)
 
 
-def _solved(
+def _compare_solvers(
     evidence: Evidence, initial: Sequence[str], relative: float
 ) -> tuple[list[bool], list[Measured], list[str]]:
     """Return whether the solvers agree at each point, the largest differences, and where they differ, in words.
 
     Raises NotTestableError if no point was completed by all solvers.
     """
-    solved, measured, apart = [], [], []
+    solved, measured, differences = [], [], []
     threshold = evidence.summary("agreement").attrs["synchronization_threshold"]
     for state in initial:
         evidence.check_state(state)
@@ -101,7 +101,7 @@ def _solved(
                 found[name].values for name in ("mean_distance", "difference", "difference_error")
             )
             there = np.isfinite(difference)
-            # A solver that cannot do a law has not failed.
+            # A solver that cannot treat a law has not failed.
             if (found["status"].values > Status.COMPLETED).any() or (there.sum(axis=-1) < 2).all():
                 continue
             allowed = np.maximum.reduce(
@@ -111,10 +111,10 @@ def _solved(
             largest = float(np.abs(difference[there]).max())
             measured.append(Measured(f"largest |Δ⟨J⟩| between solvers, {state}, a = {value:g}", largest))
             if not solved[-1]:
-                apart.append(f"the solvers differ at a = {value:g} ({state})")
+                differences.append(f"the solvers differ at a = {value:g} ({state})")
     if not solved:
-        raise NotTestableError("there is no point at which all solvers completed")
-    return solved, measured, apart
+        raise NotTestableError("no point was completed by all solvers")
+    return solved, measured, differences
 
 
 @judge("solvers")
@@ -125,10 +125,10 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
     the same equations from event to event.
 
     steps : the paper's time steps per unit time
-    much, loose : ratio of their steps to those of the map from which the claim holds, and from which it holds loosely
+    much, loose : ratio of their steps to those of the map above which the claim holds, and above which it holds loosely
 
-    Steps do not depend on the machine, as times do. One of the map is a solution between two events, or part of one;
-    it takes as long as a few of Runge-Kutta.
+    Unlike times, steps do not depend on the machine. A step of the map is a solution between two events, or part of
+    one; it takes as long as a few Runge-Kutta steps.
     """
     evidence.check_blocks()
     found = evidence.summary("solvers").sel(law="linearized")
@@ -157,13 +157,13 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
         for name, ratio in ratios.items()
     }
     texts = [
-        f"{name} takes {taken[name]:.4g}, {_more(ratio)} ({readings[f'compared with {name}']})"
+        f"{name} takes {taken[name]:.4g}, {_format_ratio(ratio)} ({readings[f'compared with {name}']})"
         for name, ratio in ratios.items()
     ]
     reason = f"The map takes at most {largest:.2f} steps per unit time; {'; '.join(texts)}."
-    return by_readings(readings, reason, measured)
+    return combine_readings(readings, reason, measured)
 
 
-def _more(times: float) -> str:
-    """Describe a ratio of steps: «no more steps», «20 times as many»."""
+def _format_ratio(times: float) -> str:
+    """Return a ratio of steps as text: «no more steps», «20 times as many»."""
     return f"{times:.4g} times as many" if f"{times:.4g}" != "1" else "no more steps"

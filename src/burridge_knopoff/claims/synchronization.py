@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import under_conventions
+from burridge_knopoff.claims.conventions import judge_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
-from burridge_knopoff.claims.outcomes import reached_at, synchrony
+from burridge_knopoff.claims.outcomes import reached_attractor, synchrony
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -20,9 +20,10 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Range,
     Verdict,
-    by_interval,
-    by_value,
-    worst,
+    join_words,
+    judge_interval,
+    judge_value,
+    worst_verdict,
 )
 from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -37,8 +38,9 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
 
     loose_share : fraction of the values of a from which the claim holds loosely
     """
-    runs = evidence.choose(evidence.of_state("mean_distance", initial), a)
+    runs = evidence.choose(evidence.state_summary("mean_distance", initial), a)
     here, elsewhere = ("synchrony", "no synchrony") if synchronized else ("no synchrony", "synchrony")
+    verb = "synchronize" if synchronized else "do not synchronize"
 
     def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
         found = synchrony(evidence, initial, a, inside)
@@ -54,10 +56,15 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
             yield Measured(f"{name} ⟨J⟩ there, {case.name}", float(value))
 
     found = for_all(loose_share, cases())
-    reason = f"There is {here} from {initial} at {found} of the values of a with {a}."
+    reason = f"From {initial} the end blocks {verb} at {found} of the values of a with {a}."
     measured = found.measured(f"share of a with {here}", extreme)
-    return under_conventions(
-        evidence, found.verdict, reason, measured, found.exceptions(elsewhere), found.reached(evidence, a, cases)
+    return judge_conventions(
+        evidence,
+        found.verdict,
+        reason,
+        measured,
+        found.exceptions(elsewhere),
+        found.convention_judge(evidence, a, cases),
     )
 
 
@@ -69,7 +76,7 @@ def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, toleranc
     run is too short to get there. If the synchronized orbit loses stability between the two values, the edge is a_c.
     """
     verdicts, measured, texts = [], [], []
-    for law, grid, synchronized in _reached(evidence, initial):
+    for law, grid, synchronized in _reached_synchrony(evidence, initial):
         low, high = _edge(grid, synchronized)
         if not np.isfinite(low + high):
             raise NotTestableError(f"the grid does not hold the edge of synchrony from {initial}, {law} law")
@@ -79,14 +86,16 @@ def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, toleranc
         critical, error = proved or evidence.critical_a(law)
         if low <= critical <= high:
             name = f"a_c, at which the synchronized orbit loses stability, {law}"
-            verdicts.append(by_value(critical, claimed, tolerance, loose))
+            verdicts.append(judge_value(critical, claimed, tolerance, loose))
             measured.append(Measured(name, critical, error, proved=proved is not None))
             certain = ", proved" if proved else ""
-            texts[-1] = f"at a_c = {critical:.5g}, where the synchronized orbit loses stability ({law}{certain})"
+            texts[-1] = f"at a_c = {critical:.5g} ({law}{certain})"
         else:
-            verdicts.append(by_interval(low, high, claimed, tolerance, loose))
-    reason = f"The largest a with synchrony from {initial} lies {'; '.join(texts)}; the claim says {claimed:g}."
-    return Verdict(worst(verdicts), reason, measured)
+            verdicts.append(judge_interval(low, high, claimed, tolerance, loose))
+    reason = f"Synchrony from {initial} ends {join_words(texts)}; the paper says {claimed:g}."
+    if any("a_c" in text for text in texts):
+        reason += " At a_c the synchronized orbit loses stability."
+    return Verdict(worst_verdict(verdicts), reason, measured)
 
 
 @judge("attractors")
@@ -97,20 +106,20 @@ def beginning_of_synchrony(evidence: Evidence, initial: str, claimed: float, tol
     The claim holds if it is not larger than the claimed one.
     """
     verdicts, measured, texts = [], [], []
-    for law, grid, synchronized in _reached(evidence, initial):
+    for law, grid, synchronized in _reached_synchrony(evidence, initial):
         if not synchronized.any():
             raise NotTestableError(f"no a with synchrony from {initial} is known, {law} law")
         first = int(np.argmax(synchronized))
         low, high = float(grid[first - 1]) if first else 0.0, float(grid[first])
         # Synchrony that begins earlier is there from the claimed value on.
-        verdicts.append(by_interval(max(low, claimed), max(high, claimed), claimed, tolerance, loose))
+        verdicts.append(judge_interval(max(low, claimed), max(high, claimed), claimed, tolerance, loose))
         measured.append(Measured(f"smallest a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
         texts.append(f"between {low:g} and {high:g} ({law})")
-    reason = f"The smallest a with synchrony from {initial} lies {'; '.join(texts)}; the claim says {claimed:g}."
-    return Verdict(worst(verdicts), reason, measured)
+    reason = f"The smallest a with synchrony from {initial} lies {join_words(texts)}; the paper says {claimed:g}."
+    return Verdict(worst_verdict(verdicts), reason, measured)
 
 
-def _reached(evidence: Evidence, initial: str) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+def _reached_synchrony(evidence: Evidence, initial: str) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
     """Yield (law, the values of a > 0 at which the branch reached from a state is known, whether it is synchrony)."""
     evidence.check_state(initial)
     attractors = evidence.choose(evidence.own_attractors(), Range(above=0.0))
@@ -130,54 +139,53 @@ def mean_distance_at(
     evidence: Evidence, initial: str, laws: Sequence[str], at: float, claimed: float, tolerance: float, loose: float
 ) -> Verdict:
     """Judge ⟨J⟩ from an initial state at one a, under some laws, and under each convention by the attractor reached."""
-    runs = evidence.at(evidence.of_state("mean_distance", initial), at)
+    runs = evidence.at(evidence.state_summary("mean_distance", initial), at)
     verdicts, measured, texts = [], [], []
     for law in laws:
         value, error = (runs[name].sel(law=law).item() for name in ("mean_distance", "mean_distance_error"))
         if not np.isfinite(value):
             raise NotTestableError(f"the run from {initial} at a = {at:g} under the {law} law did not complete")
-        verdicts.append(by_value(value, claimed, tolerance, loose))
+        verdicts.append(judge_value(value, claimed, tolerance, loose))
         measured.append(Measured(f"⟨J⟩, {law}", value, error))
         texts.append(f"{with_error(value, error)} ({law})")
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {law: reached_at(attractors, at, initial, law, "mean_distance") for law in laws}
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
+        found = {law: reached_attractor(attractors, at, initial, law, "mean_distance") for law in laws}
         means = {law: mean[0] for law, mean in found.items() if mean}
         if not means:
             return "", ""
-        verdict = worst(by_value(mean, claimed, tolerance, loose) for mean in means.values())
+        verdict = worst_verdict(judge_value(mean, claimed, tolerance, loose) for mean in means.values())
         return verdict, "⟨J⟩ = " + ", ".join(f"{mean:.4f} ({law})" for law, mean in means.items())
 
-    reason = f"⟨J⟩ from {initial} at a = {at:g} is {' and '.join(texts)}; the claim says {claimed:g}."
-    return under_conventions(evidence, worst(verdicts), reason, measured, [], of_branches)
+    reason = f"⟨J⟩ from {initial} at a = {at:g} is {join_words(texts)}; the paper says {claimed:g}."
+    return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, [], judge_attractors)
 
 
 @judge("mean_distance", "agreement", "attractors")
 def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -> Verdict:
-    """Judge whether J fluctuates stationarily and does not vanish: the run is on its attractor, which is no synchrony.
+    """Judge whether J fluctuates stationarily: the run is on its attractor, which is not synchronized.
 
     On an attractor all means are stationary; that of J has the error of its batch means.
     """
-    run = evidence.at(evidence.of_state("mean_distance", initial), at).sel(law=law)
+    run = evidence.at(evidence.state_summary("mean_distance", initial), at).sel(law=law)
     mean, error, synchronized = (run[name].item() for name in ("mean_distance", "mean_distance_error", "synchronized"))
-    settled = evidence.at(evidence.of_state("agreement", initial), at)["settled"].sel(law=law).item()
+    settled = evidence.at(evidence.state_summary("agreement", initial), at)["settled"].sel(law=law).item()
     if not np.isfinite(mean):
         raise NotTestableError(f"the run from {initial} at a = {at:g} under the {law} law did not complete")
     if not settled >= 0:
-        raise NotTestableError(f"whether the run from {initial} at a = {at:g} is on its attractor is unknown")
+        raise NotTestableError(f"it is undetermined whether the run from {initial} at a = {at:g} is on its attractor")
 
-    def of_branches(attractors: xarray.Dataset) -> tuple[str, str]:
-        if not (found := reached_at(attractors, at, initial, law, "branch")):
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
+        if not (found := reached_attractor(attractors, at, initial, law, "branch")):
             return "", ""
         return (HOLDS, "no synchrony") if found[0] else (FAILS, "synchrony, J = 0")
 
     words = "is on its attractor" if settled else "is not on its attractor yet"
     reason = (
-        f"The run from {initial} at a = {at:g} ({law}) {words}; the batches of its window give ⟨J⟩ = "
-        f"{with_error(mean, error)}."
+        f"The run from {initial} at a = {at:g} ({law}) {words}; its batch means give ⟨J⟩ = {with_error(mean, error)}."
     )
     own = HOLDS if settled and not synchronized else FAILS
-    return under_conventions(evidence, own, reason, [Measured("⟨J⟩", mean, error)], [], of_branches)
+    return judge_conventions(evidence, own, reason, [Measured("⟨J⟩", mean, error)], [], judge_attractors)
 
 
 @judge("mean_distance", "orbits")
@@ -185,7 +193,7 @@ def distance_vanishes(
     evidence: Evidence, initial: str, law: str, at: float, by: float, level: float, loose: float
 ) -> Verdict:
     """Judge whether J falls below a level for good by a time, loosely by `loose` times that time."""
-    runs = evidence.at(evidence.of_state("mean_distance", initial), at).sel(law=law)
+    runs = evidence.at(evidence.state_summary("mean_distance", initial), at).sel(law=law)
     if level not in runs["level"].values:
         raise NotTestableError(f"mean_distance.nc has no settling time for J < {level:g}")
     if not np.isfinite(runs["mean_distance"].item()):
@@ -195,22 +203,23 @@ def distance_vanishes(
         for height, value in zip(runs["level"].values, runs["settling_time"].values, strict=True)
     ]
     settled = float(runs["settling_time"].sel(level=level).item())
-    text = f"is below {level:g} from τ = {settled:g} on" if np.isfinite(settled) else f"does not stay below {level:g}"
+    text = (
+        f"stays below {level:g} from τ = {settled:g} on" if np.isfinite(settled) else f"does not stay below {level:g}"
+    )
     verdict = HOLDS if settled <= by else LOOSELY if settled <= loose * by else FAILS
-    rate, expected = _decay(runs, level), _transverse_rate(evidence, law, at)
+    rate, expected = _decay_rate(runs, level), _transverse_rate(evidence, law, at)
     decay = ""
     if np.isfinite(rate):
         measured.append(Measured("rate at which J falls", rate))
-        decay = f", falling as exp(−{rate:.3g} τ)"
+        decay = f" It falls as exp(−{rate:.3g} τ)."
     if np.isfinite(expected):
-        measured.append(Measured("rate by the transverse multiplier of synchrony", expected))
-        decay += f"; the transverse multiplier of synchrony gives a rate of {expected:.3g}"
-    return Verdict(
-        verdict, f"J from {initial} at a = {at:g} ({law}) {text}{decay}. The claim says τ = {by:g}.", measured
-    )
+        measured.append(Measured("rate by the transverse multiplier of the synchronized orbit", expected))
+        decay += f" The transverse multiplier of the synchronized orbit gives a rate of {expected:.3g}."
+    reason = f"J from {initial} at a = {at:g} ({law}) {text}.{decay} The paper says τ = {by:g}."
+    return Verdict(verdict, reason, measured)
 
 
-def _decay(runs: xarray.Dataset, least: float) -> float:
+def _decay_rate(runs: xarray.Dataset, least: float) -> float:
     """Return the decay rate of J between the two lowest levels above `least`; NaN if it reaches only one of them."""
     levels = runs["level"].values
     times = runs["settling_time"].values

@@ -47,14 +47,14 @@ class Measured:
 
 @dataclass(frozen=True)
 class Verdict:
-    """A judgement: the verdict, its reason, the measured numbers, and where the verdict would differ.
+    """A judgement: the verdict, its reason, the measured numbers, and where the verdict differs.
 
-    changes : ranges of a, conventions, readings, or states that round to the paper's, for which the verdict changes or
-        may change; empty if there are none
+    changes : ranges of a, conventions, readings, or states that round to the paper's, for which the verdict differs or
+        may differ, separated by «; »; empty if there are none
     conventions : verdict under each convention «contact, start», or under each reading of the claim, where it can be
         judged under each
     own : verdict under the study's convention, or under the first reading
-    turns : other choices of tolerances and grid that would change the verdict, see `margins`
+    changing_choices : other tolerances and grids that would change the verdict, see `margins`
     """
 
     verdict: str
@@ -63,7 +63,7 @@ class Verdict:
     changes: str = ""
     conventions: Mapping[str, str] = field(default_factory=dict)
     own: str = ""
-    turns: Sequence[str] = ()
+    changing_choices: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -114,15 +114,15 @@ class Share:
         return fraction_interval(self.hits, self.count)[1:]
 
     def __str__(self) -> str:
-        return f"{100 * self.value:.1f} %"
+        return "100 %" if self.hits == self.count else "0 %" if not self.hits else f"{100 * self.value:.1f} %"
 
 
-def share_of(right: ArrayLike) -> Share:
+def count_share(right: ArrayLike) -> Share:
     """Return the fraction of true values, shape (n,)."""
     return Share(int(np.count_nonzero(right)), np.size(right))
 
 
-def worst(verdicts: Iterable[str]) -> str:
+def worst_verdict(verdicts: Iterable[str]) -> str:
     """Return the worst of the verdicts holds, holds loosely, not testable and fails.
 
     One that fails decides; one that cannot be tested leaves the others open.
@@ -130,12 +130,12 @@ def worst(verdicts: Iterable[str]) -> str:
     return max(verdicts, key=_RANK.index)
 
 
-def by_share(share: Share, loose: float) -> str:
-    """Judge «for all» from a sample: the one rule for every fraction.
+def judge_share(share: Share, loose: float) -> str:
+    """Judge a statement on all values from a sample: the one rule for every fraction.
 
-    It holds if all values are as claimed, and loosely from the fraction `loose` on. It fails if the 95 % Wilson
-    interval of the fraction lies below `loose`; if the interval reaches `loose` the values are too few to say so: not
-    testable.
+    It holds if all values are as claimed, and loosely if the fraction is at least `loose`. It fails if the 95 % Wilson
+    interval of the fraction lies below `loose`. If the fraction is smaller but its interval includes `loose`, the
+    values are too few to decide: not testable.
     """
     if share.hits == share.count:
         return HOLDS
@@ -145,42 +145,48 @@ def by_share(share: Share, loose: float) -> str:
 
 
 def share_is_decided(least: int, most: int, count: int, loose: float) -> bool:
-    """Return whether «for all» is decided by bounds on the number of true values."""
-    worst_case, best_case = (by_share(Share(hits, count), loose) for hits in (least, most))
+    """Return whether bounds on the number of true values decide a statement on all values."""
+    worst_case, best_case = (judge_share(Share(hits, count), loose) for hits in (least, most))
     return worst_case == best_case or {worst_case, best_case} == {HOLDS, LOOSELY}
 
 
-def shares_text(shares: Mapping[str, Share]) -> str:
-    """Return fractions as text: «97.0 % (linearized), 100.0 % (nonlinear)»."""
-    return ", ".join(f"{share} ({name})" for name, share in shares.items())
+def format_shares(shares: Mapping[str, Share]) -> str:
+    """Return fractions as text: «97.0 % (linearized) and 100 % (nonlinear)»."""
+    return join_words([f"{share} ({name})" for name, share in shares.items()])
 
 
-def verdict_of(shares: Mapping[str, Share], loose: float) -> str:
-    """Return the verdict for the worst of some named fractions, by `by_share`.
+def join_words(words: Sequence[str], conjunction: str = "and") -> str:
+    """Return words as a list in a sentence: «one, two and three»."""
+    *first, last = words
+    return f"{', '.join(first)} {conjunction} {last}" if first else last
 
-    Raises NotTestableError if it is open, with the fraction and its interval.
+
+def judge_worst_share(shares: Mapping[str, Share], loose: float) -> str:
+    """Return the verdict for the worst of some named fractions, by `judge_share`.
+
+    Raises NotTestableError, with the fraction and its interval, if the values are too few to decide.
     """
-    verdicts = {name: by_share(share, loose) for name, share in shares.items()}
-    found = worst(verdicts.values())
+    verdicts = {name: judge_share(share, loose) for name, share in shares.items()}
+    found = worst_verdict(verdicts.values())
     if found == NOT_TESTABLE:
         name = next(name for name, verdict in verdicts.items() if verdict == NOT_TESTABLE)
         share = shares[name]
         raise NotTestableError(
-            f"it is so at {share.hits} of {share.count} ({name}), and the 95 % interval of that share reaches "
-            f"{share.interval[1]:.2f}: whether it is {loose:g} is not resolved"
+            f"it is true in {share.hits} of {share.count} cases ({name}), and the 95 % interval of this share includes "
+            f"{loose:g} (its upper end is {share.interval[1]:.2f}), so there are too few cases to decide"
         )
     return found
 
 
 def judge_shares(shares: Mapping[str, Share], loose: float) -> tuple[str, str]:
-    """Return (the verdict for the worst share, the shares as text); no verdict, "", if there is none or it is open."""
+    """Return (the verdict for the worst share, the shares as text); the verdict is "" if it is open."""
     if not shares:
         return "", ""
-    verdict = worst(by_share(share, loose) for share in shares.values())
-    return ("" if verdict == NOT_TESTABLE else verdict), shares_text(shares)
+    verdict = worst_verdict(judge_share(share, loose) for share in shares.values())
+    return ("" if verdict == NOT_TESTABLE else verdict), format_shares(shares)
 
 
-def by_value(value: float, claimed: float, tolerance: float, loose: float) -> str:
+def judge_value(value: float, claimed: float, tolerance: float, loose: float) -> str:
     """Judge a number: it holds within `tolerance` of the claimed value, loosely within `loose`; fails if not finite."""
     distance = abs(value - claimed)
     if not math.isfinite(distance):
@@ -188,7 +194,7 @@ def by_value(value: float, claimed: float, tolerance: float, loose: float) -> st
     return HOLDS if distance <= tolerance else LOOSELY if distance <= loose else FAILS
 
 
-def by_interval(low: float, high: float, claimed: float, tolerance: float, loose: float) -> str:
+def judge_interval(low: float, high: float, claimed: float, tolerance: float, loose: float) -> str:
     """Judge a number known to lie in (low, high], by a verdict that is right for the whole interval.
 
     Raises NotTestableError if only part of the interval agrees with the claim: the grid of a is too coarse.
@@ -203,11 +209,11 @@ def by_interval(low: float, high: float, claimed: float, tolerance: float, loose
         return FAILS
     if tolerance < nearest and farthest <= loose:
         return LOOSELY
-    raise NotTestableError(f"between {low:g} and {high:g} the grid of a is too coarse to tell")
+    raise NotTestableError(f"the grid of a is too coarse between {low:g} and {high:g}")
 
 
-def at_values(a: np.ndarray, chosen: np.ndarray) -> str:
-    """Return in words where the chosen values of a grid lie, joining neighbours: «at a = 0.0025 to 0.02, 0.0475».
+def format_values(a: np.ndarray, chosen: np.ndarray) -> str:
+    """Return the chosen values of a grid as text, joining neighbours: «at a = 0.0025 to 0.02, 0.0475».
 
     More than MOST_SPANS spans are counted: «at 44 of the 80 values of a from 0.1025 to 0.3».
 
@@ -234,6 +240,6 @@ def extremes(quantity: str, values: np.ndarray, name: str = "") -> list[Measured
     return [Measured(f"{word} {quantity}{end}", float(value)) for word, value in ends]
 
 
-def told_where(words: str, a: np.ndarray, chosen: np.ndarray, name: str = "") -> list[str]:
-    """Return what is so at the chosen values, by `at_values`, with the name of a case; empty if none is chosen."""
-    return [f"{words} {at_values(a, chosen)}{f' ({name})' if name else ''}"] if np.any(chosen) else []
+def describe_where(words: str, a: np.ndarray, chosen: np.ndarray, name: str = "") -> list[str]:
+    """Describe where something is true: words, the chosen values, the name of a case; empty if none is chosen."""
+    return [f"{words} {format_values(a, chosen)}{f' ({name})' if name else ''}"] if np.any(chosen) else []

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from burridge_knopoff.claims.formats import by_topic, untestable
+from burridge_knopoff.claims.formats import group_by_topic, group_untestable
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING
 from burridge_knopoff.provenance.seal import BadFile
 
@@ -45,4 +45,4 @@ def read_verdicts(path: str | Path | None) -> Verdicts:
         claims, counts, independent = (content.pop(key) for key in ("claims", "counts", "independent_counts"))
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise BadFile(path, f"is not a file of verdicts ({type(error).__name__}: {error})") from None
-    return Verdicts(counts, independent, by_topic(claims), untestable(claims), content)
+    return Verdicts(counts, independent, group_by_topic(claims), group_untestable(claims), content)
