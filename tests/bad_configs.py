@@ -113,7 +113,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "unknown_kind": (f"{GOOD}laws: {{mine: {{law: cubic}}}}\n", ["laws.mine.law: got 'cubic', expected", *LAWS]),
     "unknown_number": (
         f"{GOOD}laws: {{stribeck: {{sigm: 0.1}}}}\n",
-        ["laws.stribeck.sigm: not a number", "sigma | eta"],
+        ["laws.stribeck.sigm: not a parameter", "sigma | eta"],
     ),
     "no_laws": (f"{GOOD}laws: {{}}\n", ["laws: {}", "at least 1"]),
     "list_of_laws": (f"{GOOD}laws: [linearized]\n", ["laws: ['linearized']", "named entries"]),

@@ -240,7 +240,7 @@ def test_no_events(tmp_path):
         ),
         (["orbit", *RUN[1:5], "--v", "0.1", "--v=0.2"], "--v: given 2 times, expected once"),
         (["orbit", *RUN[1:3], "--a", "3"], "on the way to a = 3.0"),
-        (["orbit", *RUN[1:5], "--threshold", "1,2,3"], "got one that is not its own mirror image"),
+        (["orbit", *RUN[1:5], "--threshold", "1,2,3"], "got a chain that is not its own mirror image"),
         (["show", "x.nc"], "x.nc: is missing"),
         (["prune", "."], "not the results of a study"),
         (["completion", "csh"], "'csh'"),

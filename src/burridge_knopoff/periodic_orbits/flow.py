@@ -16,7 +16,7 @@ class OrbitError(ValueError):
     ...     synchronized_orbit(Model(Chain(3, threshold=(1, 1, 2)), law_of("linearized", 0.08)))
     ... except OrbitError as error:
     ...     print(error)
-    chain: got one that is not its own mirror image, expected one in which blocks move as one
+    chain: got a chain that is not its own mirror image, expected one that is
     """
 
 
