@@ -55,7 +55,7 @@ def test_a_study_without_what_is_proved_is_told_so_and_goes_on(tmp_path, other):
     run = study.run("proof")
     assert run.returncode != 0
     assert (
-        "study tiny: nothing to prove: the proof is of the paper's chain of 3 blocks and its two laws"
+        "study tiny: nothing to prove: the proof covers the paper's chain of 3 blocks and its two laws"
         in run.stdout + run.stderr
     )
     assert "Traceback" not in run.stdout + run.stderr

@@ -76,7 +76,7 @@ if "chunk" in JOBS.existing:
             runtime=120,
         params:
             folder=lambda wildcards: RESULTS,
-            points=identity(canonical(STUDY.points)),
+            points=identity(canonical_json(STUDY.points)),
             sources=source_fingerprint(ROOT / "workflow/scripts/chunk.py"),
         message:
             snakemake_message(CHUNKS.message)
