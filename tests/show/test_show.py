@@ -144,6 +144,11 @@ def test_a_part_of_a_summary_is_described_and_not_drawn(small_studies, tmp_path,
         assert out.startswith(f"{path}: {name.capitalize()}")
         words = "no picture of a part of a summary; plot the whole summary"
         assert error == f"bk show: {path}: {words}: {results / f'summary/{name}.nc'}\n"
+    returns = results / "returns" / "linearized.nc"
+    assert main(["show", str(returns), "--plot", str(tmp_path / "x.png")]) == 2
+    out, error = capsys.readouterr()
+    assert out.startswith(f"{returns}: Section returns")
+    assert error == f"bk show: {returns}: there is no picture of such a file\n"
     assert not (tmp_path / "x.png").exists()
 
 

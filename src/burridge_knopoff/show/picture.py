@@ -53,6 +53,8 @@ def write_picture(result: Result, path: str | Path) -> str:
         return f"{path}: slips in space and time, their recurrence, rates, extents and intervals"
     if result.is_part:
         summary = f"summary/{result.name}.nc"
+        if result.study and summary not in result.files:
+            raise ValueError(f"{result.path}: there is no picture of such a file")
         whole = f": {result.study_path(summary)}" if summary in result.files else ""
         raise ValueError(f"{result.path}: no picture of a part of a summary; plot the whole summary{whole}")
     figure = _figure_of(result)
@@ -77,7 +79,7 @@ def _figure_of(result: Result) -> Description:
         if result.name in figure.inputs and (result.study or set(figure.from_study) <= WITHOUT_STUDY.keys())
     ]
     if not figures:
-        raise ValueError(f"{result.path}: there is no picture of {result.name}")
+        raise ValueError(f"{result.path}: there is no picture of such a file")
     return min(figures, key=lambda figure: (figure.name != result.name, len(figure.inputs)))
 
 
