@@ -7,7 +7,7 @@ import xarray
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
 from burridge_knopoff.motion.kind import MotionKind
-from burridge_knopoff.running.status import ENDS, Status
+from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.show.digests import NO_EVENT, catalogue, lyapunov, mean_distance, slip_events, values_where
 from burridge_knopoff.show.formatting import table, wrap_lines
 
@@ -58,7 +58,7 @@ def test_where_each_state_is_chaotic():
 
 def test_catalogues_without_events():
     """Those of runs that did not complete count as failed, not as empty."""
-    status = (("law", "a"), np.array([[0, 3, 0]], "i1"), flag("i1", ENDS))
+    status = (("law", "a"), np.array([[0, 3, 0]], "i1"), flag("i1", STATUS_WORDS))
     data = xarray.Dataset({"status": status, "event_count": (("law", "a"), [[7, 0, 0]])})
     assert catalogue(data) == f"no slip event at 1 of 3 values: {NO_EVENT}"
     assert catalogue(data.isel(a=[0, 1])) == ""
