@@ -10,10 +10,12 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.transforms import blended_transform_factory
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.continuation.branch_changes import Change
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, named_colors
+from burridge_knopoff.figures.branches import branch_colors, named_colors, side_color
+from burridge_knopoff.figures.palette import OTHER_BRANCHES
 from burridge_knopoff.figures.style import (
     begin_at_zero,
     label_panels,
@@ -29,12 +31,12 @@ TITLE = "Bifurcations of the attractors"
 CATEGORY = "Attractors"
 INPUTS = ("attractors", "bifurcations")
 CAPTION = """\
-Above: ⟨J⟩ of periodic orbits versus a for each law, in the colour of their branch of attractors: solid where stable,
-dashed where unstable and followed a little beyond a bifurcation. Grey points: all attractors. Middle: the ends and
+Top: ⟨J⟩ of periodic orbits versus a for each law, in the colour of their branch of attractors: solid where stable,
+dashed where unstable and continued a little beyond a bifurcation. Pale points: all attractors. Middle: the ends and
 changes of branches, a row for each type, in the colour of the branch that begins, ends or changes. Crises and
-undetermined changes are only known to lie in a range of a, the width of the bar. Below, if the study covers it: the
-route from period one to chaos, enlarged, with a symbol for each bifurcation and the number of stops of each block in a
-period.
+undetermined changes are only known to lie in a range of a, the width of the bar. Bottom, if the study covers it: the
+route from period one to chaos, enlarged, with the symbol of its type at each bifurcation. Numbers next to an orbit are
+the stops of each block in a period.
 """
 
 MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.7}
@@ -60,7 +62,7 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
     for number, column in enumerate(panels.T):
         law = attractors.sel(law=laws[number])
         for panel in (column[0], *column[2:]):
-            _attractors(panel, law)
+            _attractors(panel, law, colors)
             _orbits(panel, bifurcations, laws[number], colors)
         begin_at_zero(column[0])
         show_all(column[0], attractors["a"].values)
@@ -73,12 +75,14 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
             _marks(panel, bifurcations, laws[number])
             _stops(panel, bifurcations, laws[number])
             panel.set(xlim=ROAD[0], ylim=ROAD[1])
+            words = "numbers: stops of each\nblock in a period"
+            panel.text(0.03, 0.96, words, va="top", fontsize=7.5, transform=panel.transAxes)
         for panel in column[1:]:
             panel.set_xlabel("$a$")
     for panel in (panels[0, 0], *panels[2:, 0]):
         panel.set_ylabel(r"$\langle J\rangle$")
     figure.align_ylabels()
-    _legend(figure, bifurcations, colors, branch_names(attractors), rows > 2)
+    _legend(figure, bifurcations, colors, branch_names(attractors))
     label_panels(
         panels.flat, [f"{law} law{end}" for end in ("", ": bifurcations", ": route to chaos")[:rows] for law in laws]
     )
@@ -86,16 +90,19 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
 
 
 def _covers_road(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> bool:
-    """Tell whether the values of a reach beyond the route to chaos, and orbits of every law lie on it."""
+    """Return whether the values of a reach beyond the route to chaos, and orbits of every law lie on it."""
     a, mean, law = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "law"))
     inside = (a > ROAD[0][0]) & (a < ROAD[0][1]) & (mean > ROAD[1][0]) & (mean < ROAD[1][1])
     return bool(attractors["a"].values[-1] >= ROAD[0][1] and len(np.unique(law[inside])) == attractors.sizes["law"])
 
 
-def _attractors(panel: Axes, attractors: xarray.Dataset) -> None:
-    there = attractors["branch"].values >= 0
-    a = np.broadcast_to(attractors["a"].values[:, None], there.shape)[there]
-    panel.plot(a, attractors["mean_distance"].values[there], ".", color="#bbbbbb", markersize=2.0, zorder=0)
+def _attractors(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
+    branch = attractors["branch"].values
+    for number in np.unique(branch[branch >= 0]).tolist():
+        there = branch == number
+        a = np.broadcast_to(attractors["a"].values[:, None], there.shape)[there]
+        pale = side_color(colors[number], -1)
+        panel.plot(a, attractors["mean_distance"].values[there], ".", color=pale, markersize=3.0, zorder=0)
 
 
 def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str]) -> None:
@@ -104,7 +111,7 @@ def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[in
     a, mean, stable = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "stable"))
     for one in np.unique(number[own]):
         chosen = np.flatnonzero(own & (number == one))
-        color = colors.get(int(branch[chosen[0]]), OTHER_COLOR)
+        color = colors.get(int(branch[chosen[0]]), OTHER_BRANCHES)
         ends = np.flatnonzero(np.diff(stable[chosen])) + 1
         for first, last in zip([0, *ends], [*ends, len(chosen)], strict=True):
             # An unstable piece is drawn from the stable orbit before it to the stable orbit after it.
@@ -114,7 +121,7 @@ def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[in
 
 
 def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str]) -> None:
-    """Draw each bifurcation into the row of its type: a line where it is located, else its range of a."""
+    """Draw each bifurcation into the row of its type: a line where it is located, otherwise its range of a."""
     a, error, kind = (bifurcations[name].values for name in ("a", "a_error", "kind"))
     # Branches that begin are drawn above, all others below.
     branch = np.where(
@@ -122,11 +129,15 @@ def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: d
     )
     for row, one in enumerate(ROWS):
         for k in np.flatnonzero((bifurcations["law"].values == law) & (kind == one)):
-            color = colors.get(int(branch[k]), OTHER_COLOR)
+            color = colors.get(int(branch[k]), OTHER_BRANCHES)
             width = 0.0 if one.mark else 2.0 * error[k]
             panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6, alpha=0.8)
     panel.set_yticks(range(len(ROWS)), [one.words for one in ROWS], fontsize=7.0)
-    panel.tick_params(axis="y", length=0)
+    panel.tick_params(axis="y", length=0, pad=11)
+    if panel.get_subplotspec().is_first_col():
+        beside = blended_transform_factory(panel.transAxes, panel.transData)
+        for row, one in enumerate(ROWS):
+            panel.plot(-0.022, row, one.mark or "None", transform=beside, clip_on=False, **MARK)
     panel.set_ylim(len(ROWS) - 0.4, -0.6)
 
 
@@ -140,7 +151,7 @@ def _marks(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
 
 
 def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
-    """Write the number of stops of each block in a period beside the longer pieces of stable orbits."""
+    """Write the number of stops of each block in a period next to the longer pieces of stable orbits."""
     own = (bifurcations["orbit_law"].values == law) & (bifurcations["orbit_stable"].values == 1)
     number, a, mean = (bifurcations[f"orbit_{name}"].values for name in ("segment", "a", "mean_distance"))
     for one in np.unique(number[own]):
@@ -154,24 +165,15 @@ def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
         panel.annotate(stops, (a[middle], mean[middle]), (6, -9), textcoords="offset points", ha="left", fontsize=7.5)
 
 
-def _legend(
-    figure: Figure, bifurcations: xarray.Dataset, colors: dict[int, str], names: dict[int, str], marked: bool
-) -> None:
-    """Put a legend below all panels; marked : whether there are symbols of bifurcations."""
-    drawn = {int(number): colors.get(int(number), OTHER_COLOR) for number in bifurcations["orbit_branch"].values}
+def _legend(figure: Figure, bifurcations: xarray.Dataset, colors: dict[int, str], names: dict[int, str]) -> None:
+    drawn = {int(number): colors.get(int(number), OTHER_BRANCHES) for number in bifurcations["orbit_branch"].values}
     stable = bifurcations["orbit_stable"].values
-    located = bifurcations["kind"].values[np.isfinite(bifurcations["mean_distance"].values)]
     orbits: Any = [(1, 1.3, "-", "stable orbits"), (0, 0.7, "--", "unstable orbits")]
     handles = [
         *(
             Line2D([], [], color="#555555", linewidth=width, linestyle=line, label=name)
             for number, width, line, name in orbits
             if number in stable
-        ),
-        *(
-            Line2D([], [], linestyle="", marker=one.mark, label=one.words, **MARK)
-            for one in BifurcationKind
-            if marked and one.mark and one in located
         ),
         *(Line2D([], [], color=color, linewidth=1.3, label=name) for name, color in named_colors(drawn, names).items()),
     ]

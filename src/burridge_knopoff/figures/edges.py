@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.figures.style import begin_at_zero, label_panels, legend_below, page_width, say, show_all, styled
 from burridge_knopoff.motion.kind import MotionKind
 
@@ -70,7 +70,7 @@ def _saddles(panel: Axes, edges: xarray.Dataset, law: str) -> None:
 
 def _edges(panel: Axes, edges: xarray.Dataset, name: str) -> None:
     for crossing, (mark, size) in MARKS.items():
-        for kind, color in KIND_COLORS.items():
+        for kind, color in KINDS.items():
             chosen = (edges["kind"].values == kind) & (edges["has_crossing"].values == crossing)
             values: Any = edges["a"].values[chosen], edges[name].values[chosen]
             panel.plot(
@@ -89,7 +89,7 @@ def _handles(edges: xarray.Dataset) -> list[Line2D]:
     style: Any = {"linestyle": "", "markeredgecolor": "0.3", "markeredgewidth": 0.3}
     return [
         *(
-            Line2D([], [], marker="o", markersize=4.0, color=KIND_COLORS[kind], label=MotionKind(kind).words, **style)
+            Line2D([], [], marker="o", markersize=4.0, color=KINDS[kind], label=MotionKind(kind).words, **style)
             for kind in shown
         ),
         *(

@@ -7,7 +7,7 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.figures.style import label_panels, legend_below, new_figure, page_width, say, styled
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.summaries.plateaux import locked_share, plateaux
@@ -57,13 +57,13 @@ def _curve(panel: Axes, rotation: xarray.Dataset) -> None:
         chosen = (rotation["locked"].values == locked) & np.isfinite(number)
         if chosen.any():
             panel.plot(
-                a[chosen], number[chosen], "o", markersize=2.0, color=KIND_COLORS[kind], label=name, zorder=locked
+                a[chosen], number[chosen], "o", markersize=2.0, color=KINDS[kind], label=name, zorder=locked
             )
     found = sorted(plateaux(rotation), key=lambda one: one.first - one.last)[:NAMED]
     for one in found:
         if one.last > one.first:
             height = one.ratio.numerator / one.ratio.denominator
-            panel.plot([one.first, one.last], [height, height], color=KIND_COLORS[MotionKind.PERIODIC], zorder=1)
+            panel.plot([one.first, one.last], [height, height], color=KINDS[MotionKind.PERIODIC], zorder=1)
             panel.annotate(
                 f"{one.ratio.numerator}/{one.ratio.denominator}",
                 (one.first, height),

@@ -41,7 +41,7 @@ class BifurcationKind(IntEnum):
         kind._value_, kind.words, kind.mark = number, words, mark
         return kind
 
-    UNDETERMINED = -1, "unknown"
+    UNDETERMINED = -1, "undetermined"
     GRAZING = 0, "grazing", "v"
     FOLD = 1, "fold", "s"
     PERIOD_DOUBLING = 2, "period doubling", "D"
