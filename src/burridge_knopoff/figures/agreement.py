@@ -22,10 +22,10 @@ from burridge_knopoff.figures.style import (
     panel_table,
     say,
     say_nothing,
+    scale_to_decades,
     shade,
     shade_entry,
     styled,
-    to_decades,
 )
 
 TITLE = "Agreement of the laws"
@@ -77,7 +77,7 @@ def draw(agreement: xarray.Dataset) -> Figure:
         for column, initial in enumerate(states):
             _comparison(block[:, column], agreement.sel(initial=initial, other_law=other), agreement.attrs)
         for panel in block[:, 0]:
-            to_decades(panel)
+            scale_to_decades(panel)
         laws = f", {other} law" if len(others) > 1 else ""
         titles += [f"{initial}{laws}: {name}" for name in NAMES for initial in states]
     points = f"{others[0] if len(others) == 1 else 'each'} law compared with the {first} law"

@@ -14,8 +14,8 @@ from matplotlib.transforms import blended_transform_factory
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.continuation.branch_changes import Change
-from burridge_knopoff.figures.branches import branch_colors, named_colors, side_color
-from burridge_knopoff.figures.palette import OTHER_BRANCHES
+from burridge_knopoff.figures.branches import branch_colors, named_colors
+from burridge_knopoff.figures.palette import OTHER_BRANCHES, pale
 from burridge_knopoff.figures.style import (
     begin_at_zero,
     label_panels,
@@ -44,7 +44,7 @@ MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "m
 ROWS = sorted(BifurcationKind, key=lambda kind: kind < 0)
 
 #: Ranges of a and ⟨J⟩ in the lower panels.
-ROAD = ((0.108, 0.182), (0.0412, 0.0488))
+ROUTE = ((0.108, 0.182), (0.0412, 0.0488))
 
 # Stable orbits that extend at least this far in a are labelled with their stops there.
 NAMED = 0.01
@@ -54,7 +54,7 @@ NAMED = 0.01
 def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
     """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and the bifurcations by type, for each law."""
     laws = [str(law) for law in attractors["law"].values]
-    rows = 2 + _covers_road(attractors, bifurcations)
+    rows = 2 + _covers_route(attractors, bifurcations)
     heights = [3.0, 1.3, 2.6][:rows]
     figure = Figure(figsize=(page_width(len(laws)), 1.2 + sum(heights)), layout="constrained")
     panels = figure.subplots(rows, len(laws), sharey="row", squeeze=False, height_ratios=heights)
@@ -74,7 +74,7 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
         for panel in column[2:]:
             _marks(panel, bifurcations, laws[number])
             _stops(panel, bifurcations, laws[number])
-            panel.set(xlim=ROAD[0], ylim=ROAD[1])
+            panel.set(xlim=ROUTE[0], ylim=ROUTE[1])
             words = "numbers: stops of each\nblock in a period"
             panel.text(0.03, 0.96, words, va="top", fontsize=7.5, transform=panel.transAxes)
         for panel in column[1:]:
@@ -89,11 +89,11 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
     return figure
 
 
-def _covers_road(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> bool:
+def _covers_route(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> bool:
     """Return whether the values of a reach beyond the route to chaos, and orbits of every law lie on it."""
     a, mean, law = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "law"))
-    inside = (a > ROAD[0][0]) & (a < ROAD[0][1]) & (mean > ROAD[1][0]) & (mean < ROAD[1][1])
-    return bool(attractors["a"].values[-1] >= ROAD[0][1] and len(np.unique(law[inside])) == attractors.sizes["law"])
+    inside = (a > ROUTE[0][0]) & (a < ROUTE[0][1]) & (mean > ROUTE[1][0]) & (mean < ROUTE[1][1])
+    return bool(attractors["a"].values[-1] >= ROUTE[0][1] and len(np.unique(law[inside])) == attractors.sizes["law"])
 
 
 def _attractors(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
@@ -101,8 +101,8 @@ def _attractors(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str])
     for number in np.unique(branch[branch >= 0]).tolist():
         there = branch == number
         a = np.broadcast_to(attractors["a"].values[:, None], there.shape)[there]
-        pale = side_color(colors[number], -1)
-        panel.plot(a, attractors["mean_distance"].values[there], ".", color=pale, markersize=3.0, zorder=0)
+        hue = pale(colors[number])
+        panel.plot(a, attractors["mean_distance"].values[there], ".", color=hue, markersize=3.0, zorder=0)
 
 
 def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str]) -> None:
@@ -156,8 +156,8 @@ def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
     number, a, mean = (bifurcations[f"orbit_{name}"].values for name in ("segment", "a", "mean_distance"))
     for one in np.unique(number[own]):
         chosen = np.flatnonzero(own & (number == one))
-        inside = chosen[(mean[chosen] > ROAD[1][0]) & (mean[chosen] < ROAD[1][1]) & (a[chosen] > ROAD[0][0])]
-        inside = inside[a[inside] < ROAD[0][1]]
+        inside = chosen[(mean[chosen] > ROUTE[1][0]) & (mean[chosen] < ROUTE[1][1]) & (a[chosen] > ROUTE[0][0])]
+        inside = inside[a[inside] < ROUTE[0][1]]
         if not len(inside) or np.ptp(a[inside]) < NAMED:
             continue
         middle = inside[np.abs(a[inside] - a[inside].mean()).argmin()]

@@ -10,7 +10,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.attractors.lookup import branch_names
-from burridge_knopoff.figures.palette import BRANCHES, OTHER_BRANCHES, OTHER_SHADES, UNDETERMINED
+from burridge_knopoff.figures.palette import BRANCHES, OTHER_BRANCHES, OTHER_SHADES, UNDETERMINED, pale
 from burridge_knopoff.model.sampling import fraction_interval
 
 OTHERS = "other branches"
@@ -104,7 +104,7 @@ def map_parts(one: xarray.Dataset, colors: Mapping[int, str], names: Mapping[int
             b,
             s,
             "undetermined" if b < 0 else _side_name(names[b], s),
-            UNDETERMINED if b < 0 else side_color(colors[b], s),
+            UNDETERMINED if b < 0 else colors[b] if s >= 0 else pale(colors[b]),
             (branch == b) & (side == s),
         )
         for b, s in sorted(present, key=lambda pair: (pair[0] < 0, pair[0], -pair[1]))
@@ -114,11 +114,3 @@ def map_parts(one: xarray.Dataset, colors: Mapping[int, str], names: Mapping[int
 def _side_name(name: str, side: int) -> str:
     """Return the name of one side of a branch; a motion with two sides is one of a mirror pair at that a."""
     return f"{name.replace('alternating', 'mirror pair')} ({'+' if side > 0 else '−'})" if side else name
-
-
-def side_color(color: str, side: int) -> str:
-    """Return the colour of one side of a branch, both #rrggbb: lighter for the side −1."""
-    if side >= 0:
-        return color
-    parts = (int(color[k : k + 2], 16) for k in (1, 3, 5))
-    return "#" + "".join(f"{round(0.45 * part + 0.55 * 255):02x}" for part in parts)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
@@ -15,8 +14,8 @@ CATEGORY = "Model"
 INPUTS = ("equilibrium",)
 CAPTION = """\
 The growth rate of perturbations of uniform sliding versus a, for each law. Lines: the largest real part of the
-eigenvalues λ of the stability matrix. Symbols: growth rates of the simulated tangent flow. Dotted: a/2, the value of the
-paper's chain with the linearized law.
+eigenvalues λ of the stability matrix. Symbols: growth rates of the simulated tangent flow. Broad line: a/2, the value
+of the paper's chain with the linearized law.
 """
 
 
@@ -25,7 +24,7 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
     """Draw the largest real part of the eigenvalues versus a, and growth rates of the simulated tangent flow."""
     figure, (panel,) = new_figure(0.6 * PAGE, 2.9)
     a = equilibrium["a"].values
-    panel.plot(a, 0.5 * a, ":", color="black", linewidth=1.4, label="$a/2$")
+    panel.plot(a, 0.5 * a, color="0.85", linewidth=5.0, solid_capstyle="butt", label="$a/2$")
     for n, law in enumerate(equilibrium["law"].values):
         one = equilibrium.sel(law=law)
         look = {"color": law_color(n), "linestyle": dashes(n), "marker": lone_marker(a)}

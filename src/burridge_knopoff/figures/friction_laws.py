@@ -63,7 +63,9 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
             left.plot(speed, law.at(a)(speed), **look)
         for k, initial in enumerate(mean_distance["initial"].values):
             least = least_friction.sel(initial=initial, law=law.name)
-            right.plot(mean_distance["a"], least, **{**state_symbol(k, SIZE), **look}, markevery=max(1, least.size // 8))
+            right.plot(
+                mean_distance["a"], least, **{**state_symbol(k, SIZE), **look}, markevery=max(1, least.size // 8)
+            )
     left.set(xlabel="velocity $U$′", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, 1.25 * fastest))
     for a in a_values:
         # A bracket joins the ends of the curves of one a.
@@ -82,10 +84,7 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     right.legend(handles=states, loc="lower left")
     legend_below(
         figure,
-        [
-            Line2D([], [], color=law_color(n), linestyle=dashes(n), label=_entry(law))
-            for n, law in enumerate(laws)
-        ],
+        [Line2D([], [], color=law_color(n), linestyle=dashes(n), label=_entry(law)) for n, law in enumerate(laws)],
     )
     label_panels((left, right), ["friction versus velocity", "least friction in each run"])
     return figure

@@ -80,7 +80,9 @@ def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
             panel.axvspan(left, right, STRIP, 1.0, color=KINDS[int(kind)], linewidth=0)
         panel.axvspan(edges[0], edges[-1], STRIP, 1.0, facecolor="none", edgecolor="black", linewidth=0.5)
         if number % len(states) == 0:
-            panel.text(-0.01, 0.5 * (STRIP + 1.0), "kind", ha="right", va="center", transform=panel.transAxes, fontsize=7)
+            panel.text(
+                -0.01, 0.5 * (STRIP + 1.0), "kind", ha="right", va="center", transform=panel.transAxes, fontsize=7
+            )
         panel.xaxis.set_minor_locator(NullLocator())
         show_all(panel, a)
     patches = [

@@ -1,8 +1,8 @@
 """The colours of figures and charts: a palette for each family of things, so that no colour has two meanings.
 
 Branches of attractors, kinds of motion and blocks have hues of their own; the synchronized branch and synchronized
-motion, which are the same, share theirs. Laws and solvers are black and grey, with line styles and markers. Values of an
-ordered quantity are shades of one ramp. Within a family, colours differ in lightness or hue for colour-blind readers.
+motion, which are the same, share one. Laws and solvers are black and grey, with line styles and markers. Ascending
+values of one quantity are shades of a ramp. Within a family, colours also differ for colour-blind readers.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ UNDETERMINED = "#000000"
 #: Branches beyond those in a map, where each needs a shade.
 OTHER_SHADES = (OTHER_BRANCHES, "#666666", "#CCCCCC", "#444444")
 
-#: {number of a kind of motion: colour}. Undetermined motion is white; from periodic to chaotic motion the colour darkens.
+#: {number of a kind of motion: colour}. Undetermined motion is white; from periodic to chaotic motion colours darken.
 KINDS = {-1: "#FFFFFF", 0: SYNCHRONIZED, 1: "#DCCBEA", 2: "#B58AD1", 3: "#4A0D63", 4: "#F4A3B5", 5: "#7BA7D9"}
 
 #: Blocks. Of three, the end blocks have a light and a dark shade of one hue, the middle block another hue.
@@ -56,7 +56,7 @@ def dashes(index: int) -> Any:
 
 
 def law_symbol(index: int, size: float = 3.0) -> dict[str, Any]:
-    """Return the look of a law's points: small and filled for the first, larger and open for others, to be seen around.
+    """Return the look of a law's points: small and filled for the first law, larger and open for others.
 
     size : of the symbol of the first law
     """
@@ -82,3 +82,9 @@ def state_symbol(index: int, size: float = 1.9) -> dict[str, Any]:
 def ramp(count: int) -> list[str]:
     """Return the colours of `count` ascending values of one quantity, from light to dark."""
     return [to_hex(mpl.colormaps["viridis_r"](0.15 + 0.8 * k / max(1, count - 1))) for k in range(count)]
+
+
+def pale(color: str) -> str:
+    """Return a lighter shade of a colour, both #rrggbb."""
+    parts = (int(color[k : k + 2], 16) for k in (1, 3, 5))
+    return "#" + "".join(f"{round(0.45 * part + 0.55 * 255):02x}" for part in parts)

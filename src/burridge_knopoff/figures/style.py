@@ -62,8 +62,8 @@ class StyledFigure(Figure):
     """A figure that is drawn in the common look wherever a user shows or saves it."""
 
     def draw(self, renderer: RendererBase) -> None:
-        """Draw it."""
-        # Ticks, among others, are made as they are drawn.
+        """Draw the figure."""
+        # Ticks, among others, are created only now.
         with mpl.rc_context(STYLE):
             super().draw(renderer)
 
@@ -150,7 +150,7 @@ def begin_at_zero(panel: Axes) -> None:
     panel.set_ylim(-0.03 * top, 1.1 * top)
 
 
-def to_decades(panel: Axes) -> None:
+def scale_to_decades(panel: Axes) -> None:
     """Scale the logarithmic y axis of a row of panels between powers of ten, so that only these have tick labels."""
     rows = [each.dataLim for each in panel.get_shared_y_axes().get_siblings(panel)]
     low, high = min(row.minposy for row in rows), max(row.y1 for row in rows)
@@ -220,7 +220,7 @@ def _wrapped(title: str, letters: int) -> str:
     return "\n".join(lines)
 
 
-def evenly_spaced(count: int, most: int) -> np.ndarray:
+def even_indices(count: int, most: int) -> np.ndarray:
     """Return the places of at most so many of `count` items, evenly spaced, with the first and the last."""
     return np.unique(np.linspace(0, count - 1, min(most, count)).round().astype(int))
 
@@ -268,7 +268,7 @@ def say(panel: Axes, words: str) -> None:
 
 
 def say_nothing(panel: Axes, reason: str) -> None:
-    """Leave a panel empty except for the reason."""
+    """Replace the axes of a panel by the reason for its being empty."""
     say(panel, reason)
     panel.set_axis_off()
 
