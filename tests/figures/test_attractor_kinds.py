@@ -31,11 +31,11 @@ def test_a_bar_ends_halfway_to_the_next_value_and_continues_where_only_others_we
     branch = [[0, 1], [0, 1], [0, -1], [-1, -1], [1, -1], [1, -1], [-1, -1]]
     bars = draw(refined(a, branch, [1, 1, 0, 0, 1, 1, 0])).axes[1].patches
     first, second = ([bar for bar in bars if round(bar.get_y() + 0.4) == row] for row in (0, 1))
-    assert [bar.get_x() for bar in first] == pytest.approx([0.0, 0.05, 0.125])
+    assert [bar.get_x() for bar in first] == pytest.approx([-0.05, 0.05, 0.125])
     assert first[-1].get_x() + first[-1].get_width() == pytest.approx(0.155)
-    assert [bar.get_x() for bar in second] == pytest.approx([0.0, 0.05, 0.15, 0.25])
+    assert [bar.get_x() for bar in second] == pytest.approx([-0.05, 0.05, 0.15, 0.25])
     assert second[1].get_x() + second[1].get_width() == pytest.approx(0.15)
-    assert second[-1].get_x() + second[-1].get_width() == pytest.approx(0.3)
+    assert second[-1].get_x() + second[-1].get_width() == pytest.approx(0.35)
 
 
 @pytest.mark.parametrize("grid", [[0.0, 0.1, 0.2, 0.3], [0.0, 0.1, 0.2, 0.5]])
@@ -43,7 +43,7 @@ def test_no_bar_continues_over_a_value_at_which_the_branch_is_not(grid):
     """Also where a wider step of the grid lies elsewhere."""
     drawn = draw(refined(grid, [[0], [-1], [0], [0]], [1] * 4)).axes[1].patches
     bars = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in drawn]
-    assert bars[:2] == [pytest.approx((0.0, 0.05)), pytest.approx((0.15, 0.5 * (0.2 + grid[3])))]
+    assert bars[:2] == [pytest.approx((-0.05, 0.05)), pytest.approx((0.15, 0.5 * (0.2 + grid[3])))]
 
 
 def test_a_branch_of_a_single_value_has_no_bar():
