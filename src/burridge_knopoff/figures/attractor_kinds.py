@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
@@ -70,7 +72,7 @@ def _points(panel: Axes, refined: xarray.Dataset) -> None:
         say(panel, "no attractor")
     for number, color in KINDS.items():
         chosen = kind == number
-        look = {"markersize": 2.6, "markeredgecolor": "0.3", "markeredgewidth": 0.3}
+        look: Any = {"markersize": 2.6, "markeredgecolor": "0.3", "markeredgewidth": 0.3}
         panel.plot(a[chosen], mean[chosen], "o", color=color, **look)
 
 

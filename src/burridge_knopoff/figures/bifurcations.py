@@ -68,7 +68,7 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
         show_all(column[0], attractors["a"].values)
         if (law["branch"] < 0).all():
             say_nothing(column[0], "no attractor was found")
-        _bifurcations(column[1], bifurcations, laws[number], colors)
+        _bifurcations(column[1], bifurcations, laws[number], colors, is_first=number == 0)
         column[1].sharex(column[0])
         column[0].tick_params(labelbottom=False)
         for panel in column[2:]:
@@ -120,8 +120,13 @@ def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[in
             panel.plot(a[piece], mean[piece], linestyle=style, linewidth=width, color=color, zorder=1)
 
 
-def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str]) -> None:
-    """Draw each bifurcation into the row of its type: a line where it is located, otherwise its range of a."""
+def _bifurcations(
+    panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str], *, is_first: bool
+) -> None:
+    """Draw each bifurcation into the row of its type: a line where it is located, otherwise its range of a.
+
+    is_first : whether it is the first panel of its row, which has the symbols next to the names of the types
+    """
     a, error, kind = (bifurcations[name].values for name in ("a", "a_error", "kind"))
     # Branches that begin are drawn above, all others below.
     branch = np.where(
@@ -134,10 +139,10 @@ def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: d
             panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6, alpha=0.8)
     panel.set_yticks(range(len(ROWS)), [one.words for one in ROWS], fontsize=7.0)
     panel.tick_params(axis="y", length=0, pad=11)
-    if panel.get_subplotspec().is_first_col():
-        beside = blended_transform_factory(panel.transAxes, panel.transData)
+    if is_first:
+        outside = blended_transform_factory(panel.transAxes, panel.transData)
         for row, one in enumerate(ROWS):
-            panel.plot(-0.022, row, one.mark or "None", transform=beside, clip_on=False, **MARK)
+            panel.plot(-0.022, row, one.mark or "None", transform=outside, clip_on=False, **MARK)
     panel.set_ylim(len(ROWS) - 0.4, -0.6)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray
@@ -69,8 +70,8 @@ def _draw_fraction(panel: Axes, chain: xarray.Dataset) -> None:
         bars = [fraction - run["synchronized_low"].values, run["synchronized_high"].values - fraction]
         shifted = a + index * SHIFT * step
         name = f", {law}" if index or chain.sizes["law"] > 1 else ""
-        look = {"color": law_color(index), "markeredgewidth": 0.6}
-        line = {"fmt": "o", "linestyle": dashes(index), "markersize": 2.4, "linewidth": 0.8, "elinewidth": 0.6}
+        look: Any = {"color": law_color(index), "markeredgewidth": 0.6}
+        line: Any = {"fmt": "o", "linestyle": dashes(index), "markersize": 2.4, "linewidth": 0.8, "elinewidth": 0.6}
         panel.errorbar(shifted, fraction, np.maximum(bars, 0.0), label=f"synchronized{name}", **line, **look)
         unknown = run["undetermined_fraction"].values
         places, totals = shifted[unknown > 0.0], (fraction + unknown)[unknown > 0.0]

@@ -113,6 +113,8 @@ def draw_section(panel: Axes, point: xarray.Dataset) -> None:
     limits = _limits(upward)
     panel.set(xlabel="$W$′ at an upward crossing of $W=0$", ylabel="$W$′ at the next", xlim=limits, ylim=limits)
     panel.locator_params(nbins=5)
+    if len(np.unique(upward.round(6))) == 1:
+        panel.text(0.5, 0.6, "a single point:\nevery crossing is the same", ha="center", transform=panel.transAxes)
 
 
 def _section_times(panel: Axes, point: xarray.Dataset) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
@@ -66,7 +68,7 @@ def _curve(panel: Axes, rotation: xarray.Dataset) -> None:
     for locked, (kind, edge, name) in enumerate(LOOKS):
         chosen = (rotation["locked"].values == locked) & np.isfinite(number)
         if chosen.any():
-            look = {"color": KINDS[kind], "markeredgecolor": "0.2", "markeredgewidth": edge, "markersize": 2.6}
+            look: Any = {"color": KINDS[kind], "markeredgecolor": "0.2", "markeredgewidth": edge, "markersize": 2.6}
             panel.plot(a[chosen], number[chosen], "o", label=name, zorder=2 + locked, **look)
     found = sorted(plateaux(rotation), key=lambda one: one.first - one.last)[:NAMED]
     for one in found:
