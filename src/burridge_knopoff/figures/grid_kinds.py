@@ -25,7 +25,7 @@ exponents and the section points of the run. White: undetermined, or the run did
 
 @styled
 def draw(grid: xarray.Dataset) -> Figure:
-    """Draw the kinds as a map over two parameters, in panels for each value of further ones, or as a strip over one."""
+    """Draw the kinds as a map over two parameters, in panels for each value of others, or as a strip over one."""
     figure, _, _ = draw_panels(grid, "", _strip, _colors)
     legend_below(
         figure,

@@ -1,4 +1,4 @@
-"""Legends: lists of the page, so that they wrap on a narrow screen and stand once for all charts of a section."""
+"""Legends: lists of the page, which wrap on a narrow screen and serve all charts of a section."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ _FORMS["hexagon2"] = _FORMS["hexagon"]
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of a legend: what a mark of this form and colour is; `edge` is the colour of its outline, if another."""
+    """An entry of a legend: the name of a mark of this form and colour; `edge` is the colour of its outline, if another."""
 
     name: str
     color: str
