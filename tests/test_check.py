@@ -336,7 +336,8 @@ OF_STAGES = """
 attractors/linearized.nc refined/linearized.nc bifurcations/nonlinear.nc phases/nonlinear.nc returns/linearized.nc
 basins/linearized/a0.0800/tile0.nc
 summary/attractors.nc summary/attractors.txt summary/refined.nc summary/bifurcations.nc summary/basins.txt
-summary/proof.nc figures/basin_fractions.pdf figures/windows.png logs/attractors.log logs/attractors/linearized.log
+summary/proof.nc figures/basin_fractions.pdf figures/attractor_kinds.png
+logs/attractors.log logs/attractors/linearized.log
 logs/figure_bifurcations.log benchmarks/proof.tsv benchmarks/basins/linearized/a0.0800/pairs.tsv
 """
 

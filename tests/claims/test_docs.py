@@ -14,7 +14,7 @@ import xarray
 from PIL import Image
 
 from burridge_knopoff.claims import ledger
-from burridge_knopoff.figures.branches import COLORS
+from burridge_knopoff.figures.palette import BRANCHES
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.yaml_file import read_config
@@ -100,6 +100,6 @@ def test_every_figure_of_the_page_is_there(content: dict) -> None:
 
 def test_the_colours_of_the_branches_survive() -> None:
     picture = np.asarray(Image.open(ROOT / "docs/figures/basin_fractions.png").convert("RGB"), dtype=int).reshape(-1, 3)
-    for name in COLORS:
+    for name in BRANCHES:
         wanted = np.array([int(name[k : k + 2], 16) for k in (1, 3, 5)])
         assert (np.abs(picture - wanted).sum(axis=1) <= 24).sum() > 100, name

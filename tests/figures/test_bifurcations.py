@@ -34,7 +34,7 @@ def test_a_bifurcation_that_is_not_located_is_as_wide_as_its_error():
     assert (bar.get_x(), bar.get_width()) == pytest.approx((0.13, 0.02))
     assert to_hex(bar.get_facecolor()).upper() == branch_colors(attractors)[1]
     assert rows.get_yticklabels()[round(bar.get_y() + 0.4)].get_text() == "crisis"
-    assert panel.get_xlim() == pytest.approx((0.098, 0.202))
+    assert panel.get_xlim() == pytest.approx((0.047, 0.253))
 
 
 def test_the_legend_names_the_branches_whose_orbits_are_drawn():

@@ -3,7 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from burridge_knopoff.figures.branches import COLORS, OTHER_COLOR, branch_colors, map_colors
+from burridge_knopoff.figures.branches import branch_colors, map_colors, map_parts
+from burridge_knopoff.figures.palette import BRANCHES, OTHER_BRANCHES
 
 NAMES = ("branch", "basin_count")
 
@@ -22,11 +23,11 @@ def attractors(values, reached=0):
 
 
 def test_branches_at_few_values_share_a_colour():
-    count = len(COLORS) + 3
+    count = len(BRANCHES) + 3
     colors = branch_colors(attractors({number: number + 1 for number in range(count)}))
-    assert [number for number, color in colors.items() if color == OTHER_COLOR] == [3, 2, 1]
-    assert colors[0] == COLORS[0]
-    assert len(set(colors.values())) == len(COLORS) + 1
+    assert [number for number, color in colors.items() if color == OTHER_BRANCHES] == [3, 2, 1]
+    assert colors[0] == BRANCHES[0]
+    assert len(set(colors.values())) == len(BRANCHES) + 1
 
 
 def test_files_with_more_or_fewer_branches_agree_on_the_colours_of_the_first():
@@ -35,21 +36,28 @@ def test_files_with_more_or_fewer_branches_agree_on_the_colours_of_the_first():
     assert {number: colors[number] for number in (0, 1, 2)} == branch_colors(few)
     assert len(set(colors.values())) == 6
     # Branch 9 would have the colour of branch 1, and branch 10 that of branch 2.
-    assert [colors[number] for number in (2, 9, 10)] == [COLORS[place] for place in (2, 3, 4)]
+    assert [colors[number] for number in (2, 9, 10)] == [BRANCHES[place] for place in (2, 3, 4)]
 
 
 def test_a_large_basin_at_few_values_has_a_colour_before_a_small_one_at_many():
-    count = len(COLORS) + 1
+    count = len(BRANCHES) + 1
     colors = branch_colors(attractors({number: 10 - (number == 2) for number in range(count)}, {2: 90, 4: 5, 5: 6}))
-    assert colors[2] == COLORS[2]
-    assert [number for number, color in colors.items() if color == OTHER_COLOR] == [count - 1]
+    assert colors[2] == BRANCHES[2]
+    assert [number for number, color in colors.items() if color == OTHER_BRANCHES] == [count - 1]
 
 
-def test_a_map_has_the_colours_of_the_other_figures_and_tells_grey_branches_apart():
-    found = attractors({number: 20 - number for number in range(len(COLORS) + 3)})
+def test_a_map_has_the_colours_of_the_other_figures_and_distinguishes_grey_branches():
+    found = attractors({number: 20 - number for number in range(len(BRANCHES) + 3)})
     known = branch_colors(found)
-    grey = [number for number, color in known.items() if color == OTHER_COLOR]
+    grey = [number for number, color in known.items() if color == OTHER_BRANCHES]
     colors = map_colors(found, [-1, 0, 3, *grey])
     assert sorted(colors) == [0, 3, *grey]
     assert {number: colors[number] for number in (0, 3)} == {number: known[number] for number in (0, 3)}
     assert len(set(colors.values())) == 2 + len(grey)
+
+
+def test_one_of_two_mirror_images_is_not_called_alternating():
+    """A branch has the name of most of its attractors; at some a its motion may be one of a mirror pair."""
+    pixels = xr.Dataset({name: ("pixel", values) for name, values in {"branch": [7, 7, 7], "side": [0, 1, -1]}.items()})
+    parts = map_parts(pixels, {7: BRANCHES[2]}, {7: "alternating (7)"})
+    assert [part.name for part in parts] == ["mirror pair (7) (+)", "alternating (7)", "mirror pair (7) (−)"]

@@ -5,8 +5,8 @@ import pytest
 import xarray as xr
 from matplotlib.colors import to_hex
 
-from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.lyapunov import STRIP, draw
+from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.motion.kind import MotionKind
 
 
@@ -62,4 +62,4 @@ def test_the_strip_shows_the_kinds_that_verdicts_are_on():
     told = np.array([[[MotionKind.PERIODIC, MotionKind.CHAOTIC]]])
     (panel,) = draw(runs, xr.Dataset({"kind": (tuple(labels), told)}, labels)).axes
     strip = [to_hex(patch.get_facecolor()) for patch in panel.patches[:2]]
-    assert strip == [to_hex(KIND_COLORS[kind]) for kind in told.ravel().tolist()]
+    assert strip == [to_hex(KINDS[kind]) for kind in told.ravel().tolist()]

@@ -1,4 +1,4 @@
-"""⟨J⟩ against a: a gap where a run has no result, and the colours of the branches that are reached."""
+"""⟨J⟩ versus a: a gap where a run has no result, a_c, and the colours of the branches that are reached."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ WITH_A_GAP = np.array([[[0.0, np.nan, 0.2]], [[0.0, 0.1, 0.3]]])
 
 
 def test_a_gap_where_a_run_has_no_result(attractors):
-    panels = draw(means(WITH_A_GAP), attractors).axes
+    panels = draw(means(WITH_A_GAP), attractors=attractors).axes
     known, run = (line for line in panels[0].get_lines() if len(line.get_ydata()) in (2, 3))
     assert np.array_equal(run.get_ydata(), WITH_A_GAP[0, 0], equal_nan=True)
     assert known.get_ydata().tolist() == [0.1, 0.2]
@@ -53,8 +53,16 @@ def test_runs_alone_where_attractors_are_left_out():
     assert np.array_equal(panels[0].get_lines()[0].get_ydata(), WITH_A_GAP[0, 0], equal_nan=True)
 
 
+def test_no_line_joins_runs_and_a_c_is_marked_where_there_is_one():
+    orbits = xr.Dataset({"critical_a": ("law", [0.087, np.nan])}, {"law": RUN["law"]})
+    first, second = draw(means(WITH_A_GAP), orbits).axes
+    assert first.get_lines()[0].get_linestyle() == "None"
+    assert [line.get_xdata() for line in first.get_lines()[1:]] == [[0.087, 0.087]]
+    assert len(second.get_lines()) == 1
+
+
 def test_the_branch_reached_is_coloured_and_an_undetermined_one_is_white(attractors):
-    strips = draw(means(np.zeros((2, 1, 3))), attractors).axes[2]
+    strips = draw(means(np.zeros((2, 1, 3))), attractors=attractors).axes[2]
     picture = strips.collections[0].get_array()
     assert picture.shape == (4, 3, 3)
     assert np.allclose(picture[0, 1], to_rgb(branch_colors(attractors)[1]))

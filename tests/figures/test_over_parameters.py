@@ -6,8 +6,8 @@ import xarray as xr
 from matplotlib.colors import to_rgb
 
 from burridge_knopoff.figures import grid_distance, grid_exponents, grid_kinds
-from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.over_parameters import MOST
+from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.figures.style import write_figure
 
 
@@ -45,7 +45,7 @@ def test_a_map_has_the_first_parameter_to_the_right_and_the_second_upward(tmp_pa
             expected = numbers.sel(law="drop", initial=initial).transpose("sigma", "a").values
             assert np.array_equal(drawn.get_array(), expected)
         assert [panel.get_xlabel() for panel in figure.axes[:2]] == ["$a$"] * 2
-        assert figure.axes[0].get_ylabel() == r"$\mathrm{sigma}$"
+        assert figure.axes[0].get_ylabel() == r"$\sigma$"
 
 
 @pytest.mark.parametrize(
@@ -72,7 +72,7 @@ def test_kinds_have_their_colours():
     for i, a in enumerate(A):
         for j, sigma in enumerate(SIGMA):
             kind = found["run_kind"].sel(law="drop", initial="plus", a=a, sigma=sigma).item()
-            assert tuple(drawn[j, i]) == pytest.approx(to_rgb(KIND_COLORS[kind]))
+            assert tuple(drawn[j, i]) == pytest.approx(to_rgb(KINDS[kind]))
 
 
 def test_a_third_parameter_has_a_panel_for_each_of_a_few_values():

@@ -15,8 +15,8 @@ from burridge_knopoff.figures.style import (
     legend_below,
     legend_entries,
     panel_table,
+    scale_to_decades,
     styled,
-    to_decades,
 )
 
 
@@ -40,6 +40,21 @@ def test_a_legend_has_as_few_rows_as_fit_all_of_one_length(width, rows):
     assert [text.get_text()[-2] for text in in_rows] == list("012345")
     assert list(tops.values()) == [6 // rows] * rows
     assert rows == 6 or legend.get_window_extent().width <= figure.bbox.width
+
+
+def test_each_group_of_a_legend_begins_a_row():
+    @styled
+    def draw() -> Figure:
+        figure = Figure((6.0, 3.0), layout="constrained")
+        figure.subplots()
+        legend_below(figure, *([Line2D([], [], label=f"{name} {k}") for k in range(3)] for name in ("one", "two")))
+        return figure
+
+    figure = draw()
+    figure.draw_without_rendering()
+    (legend,) = figure.legends
+    rows = {text.get_text(): round(text.get_window_extent().y0) for text in legend.get_texts()}
+    assert rows["one 0"] == rows["one 2"] > rows["two 0"] == rows["two 2"]
 
 
 def test_a_legend_names_what_some_panel_shows_a_point_of_once():
@@ -82,13 +97,13 @@ def test_a_logarithmic_scale_reaches_from_a_power_of_ten_to_another(drawn, ends)
     left.set_yscale("log")
     right.plot(drawn)
     before = left.get_ylim()
-    to_decades(left)
+    scale_to_decades(left)
     limits = np.log10(left.get_ylim())
     assert limits == pytest.approx(np.log10(before) if ends is None else (ends[0] - 0.155, ends[1] + 0.146), abs=1e-3)
 
 
-def test_cells_meet_halfway_and_end_with_the_values():
-    assert cells(np.array([0.0, 0.1, 0.3])) == pytest.approx([0.0, 0.05, 0.2, 0.3])
+def test_cells_meet_halfway_and_extend_as_far_to_the_outside_as_to_the_inside():
+    assert cells(np.array([0.0, 0.1, 0.3])) == pytest.approx([-0.05, 0.05, 0.2, 0.4])
 
 
 def test_only_several_panels_have_letters():

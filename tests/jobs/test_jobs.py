@@ -61,7 +61,7 @@ def test_stages_that_are_left_out_take_with_them_what_needs_their_results():
 def test_figures_of_a_study_without_attractors():
     there = jobs_of(without=["attractors"]).existing
     assert {"figure_mean_distance", "figure_bifurcation_diagram", "figure_distance"} <= there.keys()
-    assert not {"figure_bifurcations", "figure_branches_reached", "figure_bifurcation_diagram_refined"} & there.keys()
+    assert not {"figure_bifurcations", "figure_branches_reached", "figure_attractor_kinds"} & there.keys()
 
 
 def test_longer_chains_are_made_by_name_or_by_the_config():

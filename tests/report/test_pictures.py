@@ -8,7 +8,7 @@ import pytest
 from matplotlib.colors import to_rgb
 from PIL import Image
 
-from burridge_knopoff.figures.branches import COLORS
+from burridge_knopoff.figures.palette import BRANCHES
 from burridge_knopoff.report.pictures import read_picture
 
 
@@ -16,7 +16,7 @@ def test_pictures_keep_every_pixel(tmp_path):
     """Colours tell curves apart: none may change."""
     pixels = np.full((900, 2100, 3), 255, dtype="u1")
     pixels[:300] = np.arange(2100, dtype="u1")[:, None]
-    for n, color in enumerate(COLORS):
+    for n, color in enumerate(BRANCHES):
         pixels[400 + 20 * n, 100:1400] = np.round(255 * np.array(to_rgb(color)))
     path = tmp_path / "bifurcation_diagram.png"
     Image.fromarray(pixels).convert("RGBA").save(path)

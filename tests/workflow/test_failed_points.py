@@ -44,7 +44,7 @@ def test_summaries_carry_the_status_and_have_no_value(summaries):
 
 
 def test_a_figure_leaves_a_gap(summaries):
-    figure = draw(summaries["mean_distance"], summaries["attractors"])
+    figure = draw(summaries["mean_distance"], attractors=summaries["attractors"])
     drawn = [line.get_ydata() for axes in figure.axes for line in axes.get_lines() if len(line.get_ydata()) == 2]
     assert any(np.isfinite(y[0]) and np.isnan(y[1]) for y in drawn)
 

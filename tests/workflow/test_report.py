@@ -19,8 +19,8 @@ CATEGORIES = {
     "Runs": ["distance.png", "motion_minus.png", "motion_plus.png", "stick_slip.png"],
     "Synchronization": ["bifurcation_diagram.png", "lyapunov.png", "mean_distance.png", "orbits.png", "proof.txt"],
     "Attractors": [
-        *("attractors.txt", "basin_fractions.png", "basins.png", "basins.txt", "bifurcation_diagram_refined.png"),
-        *("bifurcations.png", "bifurcations.txt", "branches_reached.png", "phases.png", "rotation.png", "windows.png"),
+        *("attractor_kinds.png", "attractors.txt", "basin_fractions.png", "basins.png", "basins.txt"),
+        *("bifurcations.png", "bifurcations.txt", "branches_reached.png", "phases.png", "rotation.png"),
     ],
     "Friction laws": ["agreement.csv", "agreement.png", "agreement.txt", "solvers.png", "two_blocks.png"],
 }

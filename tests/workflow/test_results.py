@@ -272,7 +272,7 @@ def test_what_a_smaller_study_leaves_over_is_known_by_its_names(results, key, na
     [
         (
             "attractors",
-            "(figure_)?(attractors|refined|returns|rotation|windows|bifurcations|basins|basin_fractions|bifurcation_diagram_refined|"
+            "(figure_)?(attractors|refined|returns|rotation|attractor_kinds|bifurcations|basins|basin_fractions|"
             "branches_reached|phases)",
         ),
         ("bifurcations", "(figure_)?bifurcations"),

@@ -107,7 +107,7 @@ def test_stages_that_the_config_leaves_out(tmp_path):
         "proof",
         "claims",
         "two_blocks",
-        "windows",
+        "attractor_kinds",
         "figure_agreement",
     )
     assert not [rule for rule in rules for word in words if word in rule]

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 import xarray
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.figures.style import (
-    color,
     label_panels,
     legend_below,
     legend_entries,
@@ -22,10 +22,10 @@ from burridge_knopoff.figures.style import (
     panel_table,
     say,
     say_nothing,
+    scale_to_decades,
     shade,
     shade_entry,
     styled,
-    to_decades,
 )
 
 TITLE = "Agreement of the laws"
@@ -35,17 +35,19 @@ CONDITION = "has_several_laws"
 CAPTION = """\
 Each law compared with the first law of the study, for each initial state, versus a: the difference of ⟨J⟩ with both
 tolerances, the Wasserstein distance between the section points W', and the time up to which both laws have the same
-order of events. Values of 0, and values below 10⁻¹⁵ (first row) or 10⁻⁷ (second row), are drawn at the lower edge.
-Shaded: the laws disagree in ⟨J⟩ or in the kind of motion. Open symbols: undecided, since the difference of ⟨J⟩ is close
-to the tolerance or a kind of motion is undetermined.
+order of events. Differences below 10⁻⁸ (⟨J⟩) or 10⁻⁷ (sections), including 0, are drawn at the lower edge; tolerances
+below it are not shown. Shaded: the laws disagree in ⟨J⟩ or in the kind of motion. Open symbols: undecided, since the
+difference of ⟨J⟩ is close to the tolerance or a kind of motion is undetermined.
 """
 
 # Smaller differences of ⟨J⟩ and of section points, including 0, are drawn here, so that they do not set the scale.
-FLOORS = (1e-15, 1e-7)
+FLOORS = (1e-8, 1e-7)
 
-POINT: dict[str, Any] = {"marker": "o", "markersize": 2.2, "color": color(0)}
+POINT: dict[str, Any] = {"marker": "o", "markersize": 2.2, "color": "black", "linestyle": ""}
 UNKNOWN: dict[str, Any] = {"markerfacecolor": "white", "markeredgewidth": 0.6}
 
+#: Titles and vertical axes of the panels of a comparison.
+NAMES = (r"difference of $\langle J\rangle$", "difference of the sections", "common event order")
 LABELS = (
     r"$|\Delta\langle J\rangle|$",
     "Wasserstein distance\nof section points $W$′",
@@ -75,13 +77,15 @@ def draw(agreement: xarray.Dataset) -> Figure:
         for column, initial in enumerate(states):
             _comparison(block[:, column], agreement.sel(initial=initial, other_law=other), agreement.attrs)
         for panel in block[:, 0]:
-            to_decades(panel)
-        titles += [f"{initial}, {other} against {first} law" for _ in LABELS for initial in states]
-    handles, _ = legend_entries(panels)
+            scale_to_decades(panel)
+        laws = f", {other} law" if len(others) > 1 else ""
+        titles += [f"{initial}{laws}: {name}" for name in NAMES for initial in states]
+    points = f"{others[0] if len(others) == 1 else 'each'} law compared with the {first} law"
+    handles: list[Artist] = [Line2D([], [], **POINT, label=points), *legend_entries(panels)[0]]
     if (agreement["agrees"] == Answer.NO).any():
         handles.append(shade_entry("the laws disagree"))
     if (agreement["agrees"] == Answer.UNDETERMINED).any():
-        handles.append(Line2D([], [], **POINT, **UNKNOWN, linestyle="", label="undecided"))
+        handles.append(Line2D([], [], **POINT, **UNKNOWN, label="undecided"))
     legend_below(figure, handles)
     label_panels(panels, titles)
     return figure
@@ -92,17 +96,17 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
     a = run["a"].values
     difference, sections, order = panels
     unknown = run["agrees"].values == Answer.UNDETERMINED
-    _curve(difference, a, abs(run["difference"]).clip(min=FLOORS[0]), unknown, label=LABELS[0])
+    _points(difference, a, abs(run["difference"]).clip(min=FLOORS[0]), unknown)
     if not run["difference"].any():
         say(difference, "0 at all $a$")
-    noise, share = (one.clip(min=FLOORS[0]) for one in tolerances(run, settings))
+    noise, share = (one.where(one >= FLOORS[0]) for one in tolerances(run, settings))
     name = f"{settings['standard_errors']:g} standard errors"
     alone: Any = {"marker": lone_marker(a), "markersize": 3.5}
-    difference.plot(a, noise, "--", linewidth=0.8, color=color(1), label=name, **alone)
+    difference.plot(a, noise, "--", linewidth=0.8, color="0.4", label=name, **alone)
     name = rf"{100 * settings['relative_tolerance']:g} % of $\langle J\rangle$"
-    difference.plot(a, share, ":", linewidth=0.9, color=color(2), label=name, **alone)
-    _curve(sections, a, run["section_distance"].clip(min=FLOORS[1]), unknown)
-    _curve(order, a, run["event_order_time"].where(run["event_order_time"] > 0.0), unknown)
+    difference.plot(a, share, ":", linewidth=1.1, color="0.4", label=name, **alone)
+    _points(sections, a, run["section_distance"].clip(min=FLOORS[1]), unknown)
+    _points(order, a, run["event_order_time"].where(run["event_order_time"] > 0.0), unknown)
     for panel in panels:
         shade(panel, a, run["agrees"].values == Answer.NO)
 
@@ -114,8 +118,8 @@ def tolerances(run: xarray.Dataset, settings: dict[str, float]) -> tuple[xarray.
     return noise, settings["relative_tolerance"] * pair.max("law", skipna=False)
 
 
-def _curve(panel: Axes, a: np.ndarray, values: xarray.DataArray, unknown: np.ndarray, **look: Any) -> None:
-    panel.plot(a, values, "-", linewidth=0.8, **POINT, **look)
-    panel.plot(a, values.where(unknown), "", **POINT, **UNKNOWN)
+def _points(panel: Axes, a: np.ndarray, values: xarray.DataArray, unknown: np.ndarray) -> None:
+    panel.plot(a, values, **POINT)
+    panel.plot(a, values.where(unknown), **POINT, **UNKNOWN)
     if not values.notnull().any():
         say(panel, "unknown at every $a$")

@@ -6,8 +6,9 @@ import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.branches import branch_colors, fraction_curves, undetermined_share
+from burridge_knopoff.figures.branches import OTHERS, branch_colors, fraction_curves, undetermined_share
 from burridge_knopoff.figures.style import (
     label_panels,
     legend_below,
@@ -23,9 +24,10 @@ TITLE = "Basin fractions and sweeps"
 CATEGORY = "Attractors"
 INPUTS = ("attractors",)
 CAPTION = """\
-Above: the fraction of sampled initial states that reach each branch of attractors, versus a, with 95 % Wilson
-intervals; crosses show the fraction of undetermined states. Below: ⟨J⟩ of the attractor followed while a is raised or
-lowered in small steps.
+Top: the fraction of sampled initial states that reach each branch of attractors, versus a, with 95 % Wilson intervals
+(bands). Branches with small basins are counted together (grey). Crosses show the fraction of undetermined states.
+Bottom: ⟨J⟩ of the attractor followed while a is raised (black) or lowered (open) in small steps; where they differ,
+there is hysteresis.
 """
 
 
@@ -47,7 +49,10 @@ def draw(attractors: xarray.Dataset) -> Figure:
     panels[0].set_ylabel("fraction of initial states")
     panels[0].set_ylim(-0.02, 1.02)
     panels[len(laws)].set_ylabel(r"$\langle J\rangle$ along a sweep")
-    legend_below(figure, legend_entries(panels)[0])
+    shares, paths = (legend_entries(row)[0] for row in (panels[: len(laws)], panels[len(laws) :]))
+    if shares:
+        shares.append(Patch(facecolor="0.8", edgecolor="none", label="95 % interval"))
+    legend_below(figure, shares, paths)
     titles = [f"{law} law: {what}" for what in ("basin fractions", "sweeps of $a$") for law in laws]
     label_panels(panels, titles)
     return figure
@@ -60,10 +65,13 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
         return
     for name, color, interval in fraction_curves(attractors, colors):
         there = np.isfinite(interval[:, 0])
-        panel.plot(a, interval[:, 0], "-o", markersize=1.6, linewidth=0.8, color=color, label=name)
-        panel.fill_between(a, interval[:, 1], interval[:, 2], color=color, alpha=0.2, linewidth=0)
+        # The other branches are not one: neither a line nor a band joins them.
+        line, is_one = ("o", False) if name == OTHERS else ("-o", True)
+        panel.plot(a, interval[:, 0], line, markersize=1.6, linewidth=0.8, color=color, label=name)
+        if is_one:
+            panel.fill_between(a, interval[:, 1], interval[:, 2], color=color, alpha=0.2, linewidth=0)
         # A band has no width at an isolated value.
-        alone = there & ~np.append(there[1:], False) & ~np.append(False, there[:-1])
+        alone = there & ~(is_one & (np.append(there[1:], False) | np.append(False, there[:-1])))
         panel.vlines(a[alone], interval[alone, 1], interval[alone, 2], color=color, alpha=0.4, linewidth=1.6)
     panel.plot(a, undetermined_share(attractors), "kx", markersize=3.5, markeredgewidth=0.8, label="undetermined")
 
@@ -73,9 +81,9 @@ def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:
         # Keep the axis: its numbers are also those of the panel above.
         say(panel, "no attractor to follow")
         return
-    # Grey, since colours stand for branches.
-    styles = {"upward": ("black", ">", 3.6, "-"), "downward": ("0.5", "<", 2.2, "--")}
-    for direction, (color, marker, size, dashes) in styles.items():
+    # Black and grey, since colours stand for branches; small on large, since most points coincide.
+    styles = {"downward": ("0.55", "<", 3.8, "none", "--"), "upward": ("black", ">", 1.8, "black", "-")}
+    for direction, (color, marker, size, face, dashes) in styles.items():
         for number in range(attractors.sizes["sweep"]):
             values = attractors["sweep_mean_distance"].sel(direction=direction).isel(sweep=number).values
             panel.plot(
@@ -83,8 +91,9 @@ def _sweeps(panel: Axes, attractors: xarray.Dataset) -> None:
                 values,
                 f"{dashes}{marker}",
                 markersize=size,
-                markeredgewidth=0,
+                markerfacecolor=face,
+                markeredgewidth=0.5,
                 linewidth=0.5,
                 color=color,
-                label=f"sweeps {direction}" if number == 0 else None,
+                label=f"sweep {direction} in $a$" if number == 0 else None,
             )

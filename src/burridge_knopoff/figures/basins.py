@@ -20,9 +20,9 @@ CATEGORY = "Attractors"
 INPUTS = ("basins", "attractors")
 FROM_STUDY = ("marked_states",)
 CAPTION = """\
-Basin maps over the initial positions U_1(0) and U_N(0) of the end blocks. Each pixel has the colour of the branch that
-is reached: a lighter shade for the mirror image of a branch, black for undetermined. Numbers mark the study's initial
-states in this plane.
+Basins of attraction in the plane of the initial positions U_1(0) and U_N(0) of the end blocks. Each pixel has the
+colour of the branch that its state reaches. Of a mirror pair, (+) and (−) are the two motions, the second in a lighter
+shade. Black: undetermined. Numbers mark the study's initial states in this plane.
 """
 
 COLUMNS = 2
@@ -72,7 +72,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
         if number % columns == 0:
             panel.set_ylabel(f"$U_{{{basins.attrs['plane_position'].size}}}(0)$")
     states = [Line2D([], [], **_number(index), label=f"state {name}") for index, name in enumerate(there)]
-    legend_below(figure, [*(shown[key] for key in sorted(shown)), *states])
+    legend_below(figure, [shown[key] for key in sorted(shown, key=lambda key: (key[0] < 0, *key))], states)
     label_panels(list(panels.flat)[:count], titles)
     return figure
 

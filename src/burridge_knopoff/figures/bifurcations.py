@@ -10,10 +10,12 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.transforms import blended_transform_factory
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.continuation.branch_changes import Change
-from burridge_knopoff.figures.branches import OTHER_COLOR, branch_colors, named_colors
+from burridge_knopoff.figures.branches import branch_colors, named_colors
+from burridge_knopoff.figures.palette import OTHER_BRANCHES, pale
 from burridge_knopoff.figures.style import (
     begin_at_zero,
     label_panels,
@@ -29,12 +31,12 @@ TITLE = "Bifurcations of the attractors"
 CATEGORY = "Attractors"
 INPUTS = ("attractors", "bifurcations")
 CAPTION = """\
-Above: ⟨J⟩ of periodic orbits versus a for each law, in the colour of their branch of attractors: solid where stable,
-dashed where unstable and followed a little beyond a bifurcation. Grey points: all attractors. Middle: the ends and
+Top: ⟨J⟩ of periodic orbits versus a for each law, in the colour of their branch of attractors: solid where stable,
+dashed where unstable and continued a little beyond a bifurcation. Pale points: all attractors. Middle: the ends and
 changes of branches, a row for each type, in the colour of the branch that begins, ends or changes. Crises and
-undetermined changes are only known to lie in a range of a, the width of the bar. Below, if the study covers it: the
-route from period one to chaos, enlarged, with a symbol for each bifurcation and the number of stops of each block in a
-period.
+undetermined changes are only known to lie in a range of a, the width of the bar. Bottom, if the study covers it: the
+route from period one to chaos, enlarged, with the symbol of its type at each bifurcation. Numbers next to an orbit are
+the stops of each block in a period.
 """
 
 MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.7}
@@ -42,7 +44,7 @@ MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "m
 ROWS = sorted(BifurcationKind, key=lambda kind: kind < 0)
 
 #: Ranges of a and ⟨J⟩ in the lower panels.
-ROAD = ((0.108, 0.182), (0.0412, 0.0488))
+ROUTE = ((0.108, 0.182), (0.0412, 0.0488))
 
 # Stable orbits that extend at least this far in a are labelled with their stops there.
 NAMED = 0.01
@@ -52,7 +54,7 @@ NAMED = 0.01
 def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
     """Draw ⟨J⟩ of stable and unstable orbits over the attractors, and the bifurcations by type, for each law."""
     laws = [str(law) for law in attractors["law"].values]
-    rows = 2 + _covers_road(attractors, bifurcations)
+    rows = 2 + _covers_route(attractors, bifurcations)
     heights = [3.0, 1.3, 2.6][:rows]
     figure = Figure(figsize=(page_width(len(laws)), 1.2 + sum(heights)), layout="constrained")
     panels = figure.subplots(rows, len(laws), sharey="row", squeeze=False, height_ratios=heights)
@@ -60,42 +62,47 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
     for number, column in enumerate(panels.T):
         law = attractors.sel(law=laws[number])
         for panel in (column[0], *column[2:]):
-            _attractors(panel, law)
+            _attractors(panel, law, colors)
             _orbits(panel, bifurcations, laws[number], colors)
         begin_at_zero(column[0])
         show_all(column[0], attractors["a"].values)
         if (law["branch"] < 0).all():
             say_nothing(column[0], "no attractor was found")
-        _bifurcations(column[1], bifurcations, laws[number], colors)
+        _bifurcations(column[1], bifurcations, laws[number], colors, is_first=number == 0)
         column[1].sharex(column[0])
         column[0].tick_params(labelbottom=False)
         for panel in column[2:]:
             _marks(panel, bifurcations, laws[number])
             _stops(panel, bifurcations, laws[number])
-            panel.set(xlim=ROAD[0], ylim=ROAD[1])
+            panel.set(xlim=ROUTE[0], ylim=ROUTE[1])
+            words = "numbers: stops of each\nblock in a period"
+            panel.text(0.03, 0.96, words, va="top", fontsize=7.5, transform=panel.transAxes)
         for panel in column[1:]:
             panel.set_xlabel("$a$")
     for panel in (panels[0, 0], *panels[2:, 0]):
         panel.set_ylabel(r"$\langle J\rangle$")
     figure.align_ylabels()
-    _legend(figure, bifurcations, colors, branch_names(attractors), rows > 2)
+    _legend(figure, bifurcations, colors, branch_names(attractors))
     label_panels(
         panels.flat, [f"{law} law{end}" for end in ("", ": bifurcations", ": route to chaos")[:rows] for law in laws]
     )
     return figure
 
 
-def _covers_road(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> bool:
-    """Tell whether the values of a reach beyond the route to chaos, and orbits of every law lie on it."""
+def _covers_route(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> bool:
+    """Return whether the values of a reach beyond the route to chaos, and orbits of every law lie on it."""
     a, mean, law = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "law"))
-    inside = (a > ROAD[0][0]) & (a < ROAD[0][1]) & (mean > ROAD[1][0]) & (mean < ROAD[1][1])
-    return bool(attractors["a"].values[-1] >= ROAD[0][1] and len(np.unique(law[inside])) == attractors.sizes["law"])
+    inside = (a > ROUTE[0][0]) & (a < ROUTE[0][1]) & (mean > ROUTE[1][0]) & (mean < ROUTE[1][1])
+    return bool(attractors["a"].values[-1] >= ROUTE[0][1] and len(np.unique(law[inside])) == attractors.sizes["law"])
 
 
-def _attractors(panel: Axes, attractors: xarray.Dataset) -> None:
-    there = attractors["branch"].values >= 0
-    a = np.broadcast_to(attractors["a"].values[:, None], there.shape)[there]
-    panel.plot(a, attractors["mean_distance"].values[there], ".", color="#bbbbbb", markersize=2.0, zorder=0)
+def _attractors(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
+    branch = attractors["branch"].values
+    for number in np.unique(branch[branch >= 0]).tolist():
+        there = branch == number
+        a = np.broadcast_to(attractors["a"].values[:, None], there.shape)[there]
+        hue = pale(colors[number])
+        panel.plot(a, attractors["mean_distance"].values[there], ".", color=hue, markersize=3.0, zorder=0)
 
 
 def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str]) -> None:
@@ -104,7 +111,7 @@ def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[in
     a, mean, stable = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "stable"))
     for one in np.unique(number[own]):
         chosen = np.flatnonzero(own & (number == one))
-        color = colors.get(int(branch[chosen[0]]), OTHER_COLOR)
+        color = colors.get(int(branch[chosen[0]]), OTHER_BRANCHES)
         ends = np.flatnonzero(np.diff(stable[chosen])) + 1
         for first, last in zip([0, *ends], [*ends, len(chosen)], strict=True):
             # An unstable piece is drawn from the stable orbit before it to the stable orbit after it.
@@ -113,8 +120,13 @@ def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[in
             panel.plot(a[piece], mean[piece], linestyle=style, linewidth=width, color=color, zorder=1)
 
 
-def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str]) -> None:
-    """Draw each bifurcation into the row of its type: a line where it is located, else its range of a."""
+def _bifurcations(
+    panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str], *, is_first: bool
+) -> None:
+    """Draw each bifurcation into the row of its type: a line where it is located, otherwise its range of a.
+
+    is_first : whether it is the first panel of its row, which has the symbols next to the names of the types
+    """
     a, error, kind = (bifurcations[name].values for name in ("a", "a_error", "kind"))
     # Branches that begin are drawn above, all others below.
     branch = np.where(
@@ -122,11 +134,15 @@ def _bifurcations(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: d
     )
     for row, one in enumerate(ROWS):
         for k in np.flatnonzero((bifurcations["law"].values == law) & (kind == one)):
-            color = colors.get(int(branch[k]), OTHER_COLOR)
+            color = colors.get(int(branch[k]), OTHER_BRANCHES)
             width = 0.0 if one.mark else 2.0 * error[k]
             panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6, alpha=0.8)
     panel.set_yticks(range(len(ROWS)), [one.words for one in ROWS], fontsize=7.0)
-    panel.tick_params(axis="y", length=0)
+    panel.tick_params(axis="y", length=0, pad=11)
+    if is_first:
+        outside = blended_transform_factory(panel.transAxes, panel.transData)
+        for row, one in enumerate(ROWS):
+            panel.plot(-0.022, row, one.mark or "None", transform=outside, clip_on=False, **MARK)
     panel.set_ylim(len(ROWS) - 0.4, -0.6)
 
 
@@ -140,13 +156,13 @@ def _marks(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
 
 
 def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
-    """Write the number of stops of each block in a period beside the longer pieces of stable orbits."""
+    """Write the number of stops of each block in a period next to the longer pieces of stable orbits."""
     own = (bifurcations["orbit_law"].values == law) & (bifurcations["orbit_stable"].values == 1)
     number, a, mean = (bifurcations[f"orbit_{name}"].values for name in ("segment", "a", "mean_distance"))
     for one in np.unique(number[own]):
         chosen = np.flatnonzero(own & (number == one))
-        inside = chosen[(mean[chosen] > ROAD[1][0]) & (mean[chosen] < ROAD[1][1]) & (a[chosen] > ROAD[0][0])]
-        inside = inside[a[inside] < ROAD[0][1]]
+        inside = chosen[(mean[chosen] > ROUTE[1][0]) & (mean[chosen] < ROUTE[1][1]) & (a[chosen] > ROUTE[0][0])]
+        inside = inside[a[inside] < ROUTE[0][1]]
         if not len(inside) or np.ptp(a[inside]) < NAMED:
             continue
         middle = inside[np.abs(a[inside] - a[inside].mean()).argmin()]
@@ -154,24 +170,15 @@ def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
         panel.annotate(stops, (a[middle], mean[middle]), (6, -9), textcoords="offset points", ha="left", fontsize=7.5)
 
 
-def _legend(
-    figure: Figure, bifurcations: xarray.Dataset, colors: dict[int, str], names: dict[int, str], marked: bool
-) -> None:
-    """Put a legend below all panels; marked : whether there are symbols of bifurcations."""
-    drawn = {int(number): colors.get(int(number), OTHER_COLOR) for number in bifurcations["orbit_branch"].values}
+def _legend(figure: Figure, bifurcations: xarray.Dataset, colors: dict[int, str], names: dict[int, str]) -> None:
+    drawn = {int(number): colors.get(int(number), OTHER_BRANCHES) for number in bifurcations["orbit_branch"].values}
     stable = bifurcations["orbit_stable"].values
-    located = bifurcations["kind"].values[np.isfinite(bifurcations["mean_distance"].values)]
     orbits: Any = [(1, 1.3, "-", "stable orbits"), (0, 0.7, "--", "unstable orbits")]
     handles = [
         *(
             Line2D([], [], color="#555555", linewidth=width, linestyle=line, label=name)
             for number, width, line, name in orbits
             if number in stable
-        ),
-        *(
-            Line2D([], [], linestyle="", marker=one.mark, label=one.words, **MARK)
-            for one in BifurcationKind
-            if marked and one.mark and one in located
         ),
         *(Line2D([], [], color=color, linewidth=1.3, label=name) for name, color in named_colors(drawn, names).items()),
     ]

@@ -1,4 +1,4 @@
-"""The colours of attractor branches, the same in every figure."""
+"""The colours and names of attractor branches, the same in every figure."""
 
 from __future__ import annotations
 
@@ -10,21 +10,14 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.attractors.lookup import branch_names, side_name
+from burridge_knopoff.figures.palette import BRANCHES, OTHER_BRANCHES, OTHER_SHADES, UNDETERMINED, pale
 from burridge_knopoff.model.sampling import fraction_interval
 
-OTHER_COLOR = "#999999"
 OTHERS = "other branches"
-UNDETERMINED_COLOR = "#000000"
-
-# The synchronized attractor has the first colour, branch 1 the second, and so on while colours last.
-COLORS = ("#0072B2", "#D55E00", "#999933", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#882255", "#332288")
-
-# Branches that share a colour in one map are distinguished by its lightness.
-OTHER_SHADES = (OTHER_COLOR, "#666666", "#cccccc", "#444444")
 
 
 def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
-    """Return the colour of each branch: its own for the branches that most states reach over all a, else grey.
+    """Return the colour of each branch: its own for the branches that most states reach over all a, otherwise grey.
 
     The branch number decides the colour, so that files of one model agree. If two branches would have the same colour,
     the lower number keeps it and the other branch takes the next free colour.
@@ -34,26 +27,26 @@ def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
     present = {int(n): branch == n for n in np.unique(branch) if n > 0}
     sizes = {n: (int(reached[where].sum()), int(where.any(axis=-1).sum())) for n, where in present.items()}
     ranked = sorted(sizes, key=lambda n: (-sizes[n][0], -sizes[n][1], n))
-    colors = {0: COLORS[0]} if (branch == 0).any() else {}
-    own = len(COLORS) - 1
+    colors = {0: BRANCHES[0]} if (branch == 0).any() else {}
+    own = len(BRANCHES) - 1
     free = dict.fromkeys(range(own))
     for number in sorted(ranked[:own]):
         place = min(free, key=lambda k: (k - number + 1) % own)
         del free[place]
-        colors[number] = COLORS[1 + place]
-    return colors | dict.fromkeys(ranked[own:], OTHER_COLOR)
+        colors[number] = BRANCHES[1 + place]
+    return colors | dict.fromkeys(ranked[own:], OTHER_BRANCHES)
 
 
 def map_colors(attractors: xarray.Dataset, shown: Collection[int]) -> dict[int, str]:
     """Return the colours of the branches in maps; branches that share a colour have different shades of it."""
     colors, shades = branch_colors(attractors), cycle(OTHER_SHADES)
-    return {n: next(shades) if colors[n] == OTHER_COLOR else colors[n] for n in sorted(shown) if n >= 0}
+    return {n: next(shades) if colors[n] == OTHER_BRANCHES else colors[n] for n in sorted(shown) if n >= 0}
 
 
 def named_colors(colors: Mapping[int, str], names: Mapping[int, str]) -> dict[str, str]:
     """Return the colours of branches by name, for a legend; the shared colour comes last."""
-    own = {names[branch]: color for branch, color in sorted(colors.items()) if color != OTHER_COLOR}
-    return own | ({OTHERS: OTHER_COLOR} if len(own) < len(colors) else {})
+    own = {names[branch]: color for branch, color in sorted(colors.items()) if color != OTHER_BRANCHES}
+    return own | ({OTHERS: OTHER_BRANCHES} if len(own) < len(colors) else {})
 
 
 def fraction_curves(attractors: xarray.Dataset, colors: Mapping[int, str]) -> Iterator[tuple[str, str, np.ndarray]]:
@@ -66,9 +59,9 @@ def fraction_curves(attractors: xarray.Dataset, colors: Mapping[int, str]) -> It
     """
     names, samples = branch_names(attractors), attractors["sample_count"].values.tolist()
     branch, count = attractors["branch"].values, attractors["basin_count"].values
-    own = [([number], names[number], color) for number, color in sorted(colors.items()) if color != OTHER_COLOR]
-    others = [number for number, color in colors.items() if color == OTHER_COLOR]
-    for numbers, name, color in (*own, (others, OTHERS, OTHER_COLOR)):
+    own = [([number], names[number], color) for number, color in sorted(colors.items()) if color != OTHER_BRANCHES]
+    others = [number for number, color in colors.items() if color == OTHER_BRANCHES]
+    for numbers, name, color in (*own, (others, OTHERS, OTHER_BRANCHES)):
         members = np.isin(branch, numbers)
         there = members.any(axis=1)
         if there.any():
@@ -110,17 +103,14 @@ def map_parts(one: xarray.Dataset, colors: Mapping[int, str], names: Mapping[int
         MapPart(
             b,
             s,
-            "undetermined" if b < 0 else side_name(names[b], s),
-            UNDETERMINED_COLOR if b < 0 else side_color(colors[b], s),
+            "undetermined" if b < 0 else _side_name(names[b], s),
+            UNDETERMINED if b < 0 else colors[b] if s >= 0 else pale(colors[b]),
             (branch == b) & (side == s),
         )
         for b, s in sorted(present, key=lambda pair: (pair[0] < 0, pair[0], -pair[1]))
     ]
 
 
-def side_color(color: str, side: int) -> str:
-    """Return the colour of one side of a branch, both #rrggbb: lighter for the side −1."""
-    if side >= 0:
-        return color
-    parts = (int(color[k : k + 2], 16) for k in (1, 3, 5))
-    return "#" + "".join(f"{round(0.45 * part + 0.55 * 255):02x}" for part in parts)
+def _side_name(name: str, side: int) -> str:
+    """Return the name of one side of a branch; a motion with two sides is one of a mirror pair at that a."""
+    return f"{name.replace('alternating', 'mirror pair')} ({'+' if side > 0 else '−'})" if side else name

@@ -9,17 +9,19 @@ from burridge_knopoff.figures import mean_distance as of_runs
 
 TITLE = "⟨J⟩ of the attractors, and the branch reached from each state"
 CATEGORY = "Attractors"
-INPUTS = ("mean_distance", "attractors")
+INPUTS = ("mean_distance", "orbits", "attractors")
 CAPTION = """\
-Coloured points: attractors, by branch. A branch has the same number (in brackets) and colour in all figures; branches
-found at few values of a are grey. Black: runs from each initial state, with bars of three standard errors. A run may
-end before it reaches its attractor. Below: the branch reached from each initial state, with a row for each state and
-convention. Contact one_sided: a stuck block holds against any backward pull; symmetric: it slips backward beyond its
-static friction. Start moving: all blocks slip at τ = 0; tested: blocks that friction can hold are stuck. A state whose
-motion does not attract is perturbed. White: undetermined.
+Top: ⟨J⟩ of the attractors, in the colour of their branch, and of the runs from each initial state (open symbols, with
+bars of three standard errors). A branch has the same number (in brackets) and colour in all figures; branches with
+small basins are grey. A run may end before it reaches its attractor. Dotted: a_c, at which the synchronized orbit
+changes its stability. At a = 0 the paper's laws are constant, and there is no attractor: ⟨J⟩ depends on the initial
+state. Bottom: the branch reached from each initial state, with a row for each state and convention; white where it is
+undetermined. A state from which a run reaches a motion that does not attract is perturbed. Contact one-sided: a stuck
+block holds against any backward pull; symmetric: it slips backward beyond its static friction. Start moving: all blocks
+slip at τ = 0; tested: blocks that friction can hold are stuck.
 """
 
 
-def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset) -> Figure:
+def draw(mean_distance: xarray.Dataset, orbits: xarray.Dataset, attractors: xarray.Dataset) -> Figure:
     """Draw ⟨J⟩(a) of the runs over the branches of attractors, and the branch that each initial state reaches."""
-    return of_runs.draw(mean_distance, attractors)
+    return of_runs.draw(mean_distance, orbits, attractors)

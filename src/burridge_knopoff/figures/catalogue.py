@@ -5,15 +5,16 @@ from __future__ import annotations
 import xarray
 from matplotlib.figure import Figure
 
+from burridge_knopoff.figures.palette import ramp
 from burridge_knopoff.figures.slip_events import (
     draw_extent,
     draw_interval,
     draw_rate,
-    no_events,
-    say_without,
+    figure_without_events,
+    label_if_empty,
     slope_words,
 )
-from burridge_knopoff.figures.style import color, evenly_spaced, label_panels, new_figure, page_width, styled
+from burridge_knopoff.figures.style import even_indices, label_panels, new_figure, page_width, styled
 
 TITLE = "Slip events"
 CATEGORY = "Slip events"
@@ -34,21 +35,22 @@ MOST = 6
 @styled
 def draw(catalogue: xarray.Dataset) -> Figure:
     """Draw rates, extents and intervals, a column for each law, a colour for each a."""
-    if (sentence := no_events(catalogue)) is not None:
+    if (sentence := figure_without_events(catalogue)) is not None:
         return sentence
-    laws, chosen = catalogue["law"].values, evenly_spaced(catalogue.sizes["a"], MOST)
+    laws, chosen = catalogue["law"].values, even_indices(catalogue.sizes["a"], MOST)
     figure, panels = new_figure(page_width(len(laws)), 7.5, rows=3, columns=len(laws), share_columns=False)
+    colors = ramp(len(chosen))
     for column, law in enumerate(laws):
         rate, extent, interval = panels[column :: len(laws)]
         for number, k in enumerate(chosen):
             run = catalogue.sel(law=law).isel(a=k)
-            draw_rate(rate, run, color(number))
-            draw_extent(extent, run, color(number))
-            draw_interval(interval, run, color(number))
-            rate.plot([], [], color=color(number), label=f"$a={run['a'].item():g}$: {slope_words(run)}")
+            draw_rate(rate, run, colors[number])
+            draw_extent(extent, run, colors[number])
+            draw_interval(interval, run, colors[number])
+            rate.plot([], [], color=colors[number], label=f"$a={run['a'].item():g}$: {slope_words(run)}")
         rate.legend(handlelength=1.2)
         for panel, name in ((rate, "magnitude_rate"), (extent, "mean_extent"), (interval, "interval_count")):
-            say_without(panel, catalogue.sel(law=law).isel(a=chosen), name)
+            label_if_empty(panel, catalogue.sel(law=law).isel(a=chosen), name)
         if column:
             for panel in (rate, extent, interval):
                 panel.set_ylabel("")

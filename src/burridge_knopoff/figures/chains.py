@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, legend_below, legend_entries, styled
+from burridge_knopoff.figures.palette import dashes, law_color
+from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, legend_entries, styled
 from burridge_knopoff.motion.chain_synchronization import STANDARD_ERRORS
 
 TITLE = "Longer chains"
 CATEGORY = "Longer chains"
 INPUTS = ("chains",)
 CAPTION = """\
-The fraction of sampled initial states, drawn anew at each a, that end in mirror synchrony, for each number of blocks N,
-with confidence intervals. Open circles include undetermined states. Squares mark values of a with stable synchrony.
+The fraction of random initial states, new ones at each a, that end in mirror synchrony, versus a for each number of
+blocks N, with 95 % Wilson intervals. Open circles count undetermined states as synchronized. Squares (row
+"stable") mark values of a at which synchrony is stable.
 """
 
 COLUMNS = 3
@@ -67,20 +70,17 @@ def _draw_fraction(panel: Axes, chain: xarray.Dataset) -> None:
         bars = [fraction - run["synchronized_low"].values, run["synchronized_high"].values - fraction]
         shifted = a + index * SHIFT * step
         name = f", {law}" if index or chain.sizes["law"] > 1 else ""
-        panel.errorbar(
-            shifted, fraction, np.maximum(bars, 0.0), fmt="-o", markersize=2.4, linewidth=0.8, elinewidth=0.6,
-            color=color(index), label=f"synchronized{name}",
-        )  # fmt: skip
-        open_questions = run["undetermined_fraction"].values > 0.0
-        panel.plot(
-            shifted[open_questions], (fraction + run["undetermined_fraction"].values)[open_questions], "o",
-            markersize=2.8, markeredgewidth=0.6, fillstyle="none", color=color(index), label=f"or undetermined{name}",
-        )  # fmt: skip
+        look: Any = {"color": law_color(index), "markeredgewidth": 0.6}
+        line: Any = {"fmt": "o", "linestyle": dashes(index), "markersize": 2.4, "linewidth": 0.8, "elinewidth": 0.6}
+        panel.errorbar(shifted, fraction, np.maximum(bars, 0.0), label=f"synchronized{name}", **line, **look)
+        unknown = run["undetermined_fraction"].values
+        places, totals = shifted[unknown > 0.0], (fraction + unknown)[unknown > 0.0]
+        panel.plot(places, totals, "o", markersize=2.8, fillstyle="none", label=f"or undetermined{name}", **look)
         below = run["symmetric_exponent"] + STANDARD_ERRORS * run["symmetric_error"] < 0.0
-        stable = below.any("symmetric_state").values
-        panel.plot(
-            a[stable], np.full(stable.sum(), 1.1 + 0.05 * index), "s", markersize=2.0, color=color(index),
-            label=f"stable synchrony{name}",
-        )  # fmt: skip
-    panel.set_ylim(-0.05, 1.15 + 0.05 * chain.sizes["law"])
-    panel.set_yticks([0.0, 0.5, 1.0])
+        stable = a[below.any("symmetric_state").values]
+        height = np.full(len(stable), 1.1 + 0.05 * index)
+        panel.plot(stable, height, "s", markersize=2.0, label=f"stable synchrony{name}", **look)
+    laws = chain.sizes["law"]
+    panel.axhline(1.05, color="0.6", linewidth=0.5)
+    panel.set_ylim(-0.05, 1.15 + 0.05 * laws)
+    panel.set_yticks([0.0, 0.5, 1.0, 1.1 + 0.025 * (laws - 1)], ["0", "0.5", "1", "stable"])

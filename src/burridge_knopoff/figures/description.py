@@ -44,31 +44,31 @@ class Description:
     def caption_of(self, wildcards: Mapping[str, str]) -> str:
         """Return the caption of a picture as one paragraph, with a reference to the paper's figure."""
         paper = f" Compare the paper's {self.paper}." if self.paper else ""
-        return _filled(f"{' '.join(self.caption.split())}{paper}", wildcards)
+        return _fill(f"{' '.join(self.caption.split())}{paper}", wildcards)
 
     def title_of(self, wildcards: Mapping[str, str]) -> str:
         """Return the title of a picture."""
-        return _filled(self.title, wildcards)
+        return _fill(self.title, wildcards)
 
 
-def _filled(text: str, wildcards: Mapping[str, str]) -> str:
+def _fill(text: str, wildcards: Mapping[str, str]) -> str:
     return text.replace("{initial}", wildcards.get("initial", ""))
 
 
 @cache
 def figure_descriptions() -> tuple[Description, ...]:
     """Return all figures: those of the paper first, then by name."""
-    found = [_described(path) for path in Path(__file__).parent.glob("*.py")]
+    found = [_description(path) for path in Path(__file__).parent.glob("*.py")]
     figures = [description for description in found if description is not None]
     return tuple(sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name)))
 
 
 def picture_names(states: Collection[str]) -> set[str]:
     """Return the names, without suffix, of all pictures of a study with the given initial states."""
-    return {_filled(figure.file, {"initial": state}) for figure in figure_descriptions() for state in states}
+    return {_fill(figure.file, {"initial": state}) for figure in figure_descriptions() for state in states}
 
 
-def described_picture(file: str) -> tuple[str, str]:
+def title_and_caption(file: str) -> tuple[str, str]:
     """Return title and caption of a picture from its file name.
 
     Raises ValueError if no figure has that name.
@@ -81,7 +81,7 @@ def described_picture(file: str) -> tuple[str, str]:
     raise ValueError(f"{file}: no figure of that name")
 
 
-def _described(path: Path) -> Description | None:
+def _description(path: Path) -> Description | None:
     constants, module = {}, ast.parse(path.read_text(encoding="utf-8"))
     for node in module.body:
         if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name):
@@ -89,6 +89,6 @@ def _described(path: Path) -> Description | None:
     if "CAPTION" not in constants:
         return None
     names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "FROM_STUDY", "CONDITION", "PAPER", "FILE")
-    told = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
+    given = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
     headline = (ast.get_docstring(module) or "").partition("\n")[0]
-    return Description(path.stem, headline[:1].lower() + headline[1:], **{"file": path.stem, **told})
+    return Description(path.stem, headline[:1].lower() + headline[1:], **{"file": path.stem, **given})

@@ -8,7 +8,7 @@ import numpy as np
 import xarray
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import color, label_panels, panel_table, say, styled, to_decades
+from burridge_knopoff.figures.style import label_panels, panel_table, say, scale_to_decades, styled
 
 TITLE = "J versus time"
 CATEGORY = "Runs"
@@ -38,14 +38,14 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     titles = []
     for (linear, logarithmic), (initial, point) in zip(table.T, runs.items(), strict=True):
         time, distance = point["time"], point["distance"].values
-        linear.plot(time, distance, color=color(0), linewidth=0.5)
+        linear.plot(time, distance, color="black", linewidth=0.5)
         top = linear_top(distance)
         linear.set_ylim(0.0, top)
         if top is not None and np.nanmax(distance) > top:
             linear.text(0.07, 0.95, f"$J(0)={distance[0]:.2g}$", va="top", transform=linear.transAxes)
-        logarithmic.plot(time, np.where(distance >= FLOOR, distance, np.nan), color=color(0), linewidth=0.5)
+        logarithmic.plot(time, np.where(distance >= FLOOR, distance, np.nan), color="black", linewidth=0.5)
         logarithmic.set_yscale("log")
-        to_decades(logarithmic)
+        scale_to_decades(logarithmic)
         for panel in (linear, logarithmic):
             panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="averaging begins")
             if not distance.any():

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.figures.style import begin_at_zero, label_panels, legend_below, page_width, say, show_all, styled
 from burridge_knopoff.motion.kind import MotionKind
 
@@ -18,10 +18,11 @@ TITLE = "Edge states"
 CATEGORY = "Attractors"
 INPUTS = ("attractors", "edges")
 CAPTION = """\
-The motion to which trajectories on the boundaries between basins settle, versus a for each law. Above: ⟨J⟩ of the
+The motion to which trajectories on the boundaries between basins settle, versus a for each law. Top: ⟨J⟩ of the
 attractors (grey) and of the edge states, in the colour of their kind of motion. Diamonds: the unstable manifold crosses
-the boundary, so that it is fractal; circles: no displaced state shows a crossing. Lines: saddle orbits, continued in a
-for as long as they have one unstable direction. Below: the mean time for which trajectories stay near an edge state.
+the boundary, which is therefore fractal; circles: no displaced state shows a crossing. Lines: saddle orbits, continued
+in a for as long as they have one unstable direction. Bottom: the mean time for which trajectories stay near an edge
+state.
 """
 
 SADDLE_COLOR = "#555555"
@@ -70,7 +71,7 @@ def _saddles(panel: Axes, edges: xarray.Dataset, law: str) -> None:
 
 def _edges(panel: Axes, edges: xarray.Dataset, name: str) -> None:
     for crossing, (mark, size) in MARKS.items():
-        for kind, color in KIND_COLORS.items():
+        for kind, color in KINDS.items():
             chosen = (edges["kind"].values == kind) & (edges["has_crossing"].values == crossing)
             values: Any = edges["a"].values[chosen], edges[name].values[chosen]
             panel.plot(
@@ -89,7 +90,7 @@ def _handles(edges: xarray.Dataset) -> list[Line2D]:
     style: Any = {"linestyle": "", "markeredgecolor": "0.3", "markeredgewidth": 0.3}
     return [
         *(
-            Line2D([], [], marker="o", markersize=4.0, color=KIND_COLORS[kind], label=MotionKind(kind).words, **style)
+            Line2D([], [], marker="o", markersize=4.0, color=KINDS[kind], label=MotionKind(kind).words, **style)
             for kind in shown
         ),
         *(

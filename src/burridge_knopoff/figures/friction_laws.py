@@ -12,7 +12,8 @@ import xarray
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from burridge_knopoff.figures.style import PAGE, color, dashes, label_panels, marker, new_figure, styled
+from burridge_knopoff.figures.palette import dashes, law_color, state_symbol
+from burridge_knopoff.figures.style import PAGE, label_panels, legend_below, new_figure, styled
 from burridge_knopoff.laws import Law, law_of
 from burridge_knopoff.running.status import Status
 
@@ -22,18 +23,21 @@ PAPER = "Fig. 2"
 INPUTS = ("mean_distance",)
 FROM_STUDY = ("law_descriptions", "shown_a")
 CAPTION = """\
-(a) The friction Φ of each law, as a fraction of the static friction, versus the velocity U' of a block, at the values
-of a beside the curves, up to the velocity that runs reach at the larger a. A stuck block (U' = 0, grey) is held by
-friction of up to 1. (b) The least friction on a slipping block in each completed run, versus a; symbols mark the
-initial state.
+(a) The friction Φ of each law, as a fraction of the static friction, versus the velocity U' of a block, for the values
+of a next to the brackets, up to the largest velocity of the runs at the larger a. A stuck block (U' = 0, thick line) is
+held by friction of up to 1. (b) The least friction on a slipping block in each completed run, versus a. Symbols, drawn
+at every few values of a, mark the initial state.
 """
 
-# Velocities that runs may reach; the whole range is drawn if the friction does not tell the velocity.
+# Velocities that runs may reach; the whole range is drawn if the velocity does not follow from the friction.
 SPEEDS = np.concatenate([[0.0], np.geomspace(1e-3, 1e4, 4001)])
 
 # Lines of a law in the legend, and letters in a line.
 LINES = 3
 LETTERS = 100
+
+# Size of the symbol of the first initial state.
+SIZE = 3.2
 
 
 @styled
@@ -54,44 +58,36 @@ def draw(mean_distance: xarray.Dataset, law_descriptions: Mapping[str, Mapping[s
     fastest = 1.1 * max(reached) or 3.0
     speed = np.linspace(0.0, fastest, 301)
     for n, law in enumerate(laws):
-        look: Any = {"color": color(n), "linestyle": dashes(n)}
+        look: Any = {"color": law_color(n), "linestyle": dashes(n)}
         for a in a_values:
             left.plot(speed, law.at(a)(speed), **look)
         for k, initial in enumerate(mean_distance["initial"].values):
             least = least_friction.sel(initial=initial, law=law.name)
-            right.plot(mean_distance["a"], least, **look, **_symbol(k, least.size))
-    left.set(xlabel="velocity $U$′", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, 1.2 * fastest))
+            right.plot(
+                mean_distance["a"], least, **{**state_symbol(k, SIZE), **look}, markevery=max(1, least.size // 8)
+            )
+    left.set(xlabel="velocity $U$′", ylabel=r"friction $\Phi$", xlim=(-0.05 * fastest, 1.25 * fastest))
     for a in a_values:
-        middle = np.mean([law.at(a)(speed[-1:])[0] for law in laws])
-        left.annotate(f"$a={a:g}$", (fastest, middle), (3, 0), textcoords="offset points", va="center", fontsize=8.0)
+        # A bracket joins the ends of the curves of one a.
+        ends = [law.at(a)(speed[-1:])[0] for law in laws]
+        left.plot(2 * [1.03 * fastest], [min(ends), max(ends)], color="0.5", linewidth=0.7)
+        at = (1.03 * fastest, np.mean([min(ends), max(ends)]))
+        left.annotate(f"$a={a:g}$", at, (3, 0), textcoords="offset points", va="center", fontsize=8.0)
     right.set(xlabel="$a$", ylabel=r"least $\Phi$")
     left.set_ylim(*left.get_ylim())
     left.plot([0.0, 0.0], [-1.0, 1.0], color="0.4", linewidth=2.0, solid_capstyle="butt", label="stuck block")
     left.legend(loc="lower left", bbox_to_anchor=(0.06, 0.0))
     states = [
-        Line2D([], [], color="0.3", linestyle="", **_symbol(k), label=f"run from {initial}")
+        Line2D([], [], **state_symbol(k, SIZE), label=f"run from {initial}")
         for k, initial in enumerate(mean_distance["initial"].values)
     ]
     right.legend(handles=states, loc="lower left")
-    figure.legend(
-        handles=[Line2D([], [], color=color(n), linestyle=dashes(n), label=_entry(law)) for n, law in enumerate(laws)],
-        loc="outside lower left",
+    legend_below(
+        figure,
+        [Line2D([], [], color=law_color(n), linestyle=dashes(n), label=_entry(law)) for n, law in enumerate(laws)],
     )
-    label_panels((left, right), ["friction laws", "least friction in each run"])
+    label_panels((left, right), ["friction versus velocity", "least friction in each run"])
     return figure
-
-
-def _symbol(state: int, values: int = 1) -> dict[str, Any]:
-    """Return the symbol of an initial state, drawn at some of `values` points only."""
-    every = max(1, values // 8)
-    hollow = {"markerfacecolor": "white"} if state % 2 else {}
-    return {
-        "marker": marker(state),
-        "markersize": 4.0,
-        "markeredgewidth": 0.8,
-        "markevery": every,
-        **hollow,
-    }
 
 
 def _entry(law: Law) -> str:

@@ -9,8 +9,8 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.kinds import KIND_COLORS
 from burridge_knopoff.figures.over_parameters import draw_panels
+from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.figures.style import cells, legend_below, styled
 from burridge_knopoff.motion.kind import MotionKind
 
@@ -25,12 +25,12 @@ exponents and the section points of the run. White: undetermined, or the run did
 
 @styled
 def draw(grid: xarray.Dataset) -> Figure:
-    """Draw the kinds as a map over two parameters, in panels for each value of further ones, or as a strip over one."""
+    """Draw the kinds as a map over two parameters, in panels for each value of others, or as a strip over one."""
     figure, _, _ = draw_panels(grid, "", _strip, _colors)
     legend_below(
         figure,
         [
-            Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words)
+            Patch(facecolor=KINDS[kind], edgecolor="0.4", label=MotionKind(kind).words)
             for kind in np.unique(grid["run_kind"].values).tolist()
         ],
     )
@@ -40,7 +40,7 @@ def draw(grid: xarray.Dataset) -> Figure:
 def _colors(one: xarray.Dataset) -> np.ndarray:
     """Return the colour of each kind, of the shape of the kinds and 3."""
     kinds = one["run_kind"].values
-    colors = np.array([to_rgb(KIND_COLORS[kind]) for kind in kinds.ravel().tolist()])
+    colors = np.array([to_rgb(KINDS[kind]) for kind in kinds.ravel().tolist()])
     return colors.reshape(*kinds.shape, 3)
 
 

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 from matplotlib.ticker import NullLocator
 
-from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.figures.style import (
     cells,
     label_panels,
@@ -25,10 +25,10 @@ TITLE = "Lyapunov exponents"
 CATEGORY = "Synchronization"
 INPUTS = ("lyapunov", "agreement")
 CAPTION = """\
-The largest Lyapunov exponents versus a, with bars of three times their error, for each law and initial state. The error
-includes the scatter of the batches and algebraic growth of perturbations. Values below the frame, including −∞, are not
-shown. The strips at the top show the kind of motion, from the exponents and section points of the run; where these do
-not decide, from the attractor that the run has reached. White: undetermined.
+The two largest Lyapunov exponents versus a, with bars of three times their error, for each law and initial state. The
+error includes the scatter of the batches and algebraic growth of perturbations. Values below the frame, including −∞,
+are not shown. The strip at the top of each panel shows the kind of motion: from the exponents and section points of the
+run or, where these do not decide, from the attractor that the run has reached. White: undetermined.
 """
 
 # The frame reaches down at least this far, so that exponents near 0 look near 0.
@@ -40,7 +40,7 @@ CURVES, STRIP = 0.9, 0.93
 
 @styled
 def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
-    """Draw the largest exponents versus a with three times their error, and the kind of motion in a strip above them.
+    """Draw λ_1 and λ_2 versus a with three times their error, and the kind of motion in a strip above them.
 
     A panel for each law and initial state.
     """
@@ -57,16 +57,19 @@ def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
         exponent = np.where(np.isfinite(run["lyapunov_exponent"]), run["lyapunov_exponent"], np.nan)
         error = np.nan_to_num(run["lyapunov_error"].values)
         panel.axhline(0.0, color="0.6", linewidth=0.5, zorder=0)
-        for n in range(min(3, exponent.shape[1])):
+        for n in range(min(2, exponent.shape[1])):
             panel.errorbar(
                 a,
                 exponent[:, n],
                 3.0 * error[:, n],
-                fmt="o-",
-                markersize=1.8,
-                linewidth=0.5,
+                fmt="o",
+                markersize=(1.8, 2.6)[n],
+                markerfacecolor=("black", "white")[n],
+                markeredgewidth=0.5,
                 elinewidth=0.5,
-                color=("black", "0.5", "0.75")[n],
+                color=("black", "0.45")[n],
+                # The larger one is seen above the other where both are 0.
+                zorder=3 - n,
                 label=rf"$\lambda_{n + 1}$",
             )
         if run["lyapunov_exponent"].isnull().all():
@@ -74,12 +77,16 @@ def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
         panel.set_ylim(low, low + (high - low) / CURVES)
         kinds = agreement["kind"].sel(law=run["law"], initial=run["initial"]).values
         for left, right, kind in zip(edges[:-1], edges[1:], kinds, strict=True):
-            panel.axvspan(left, right, STRIP, 1.0, color=KIND_COLORS[int(kind)], linewidth=0)
+            panel.axvspan(left, right, STRIP, 1.0, color=KINDS[int(kind)], linewidth=0)
         panel.axvspan(edges[0], edges[-1], STRIP, 1.0, facecolor="none", edgecolor="black", linewidth=0.5)
+        if number % len(states) == 0:
+            panel.text(
+                -0.01, 0.5 * (STRIP + 1.0), "kind", ha="right", va="center", transform=panel.transAxes, fontsize=7
+            )
         panel.xaxis.set_minor_locator(NullLocator())
         show_all(panel, a)
     patches = [
-        Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words)
+        Patch(facecolor=KINDS[kind], edgecolor="0.4", label=MotionKind(kind).words)
         for kind in np.unique(agreement["kind"].values).tolist()
     ]
     legend_below(figure, [*legend_entries(panels)[0], *patches])

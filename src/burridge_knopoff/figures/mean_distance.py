@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import xarray
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
@@ -11,6 +12,7 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import branch_colors, named_colors
+from burridge_knopoff.figures.palette import state_symbol
 from burridge_knopoff.figures.style import (
     begin_at_zero,
     cells,
@@ -25,23 +27,27 @@ from burridge_knopoff.figures.style import (
 TITLE = "⟨J⟩ versus a"
 CATEGORY = "Synchronization"
 PAPER = "Figs. 3a, 3b"
-INPUTS = ("mean_distance",)
+INPUTS = ("mean_distance", "orbits")
 CAPTION = """\
-The time average ⟨J⟩ of the phase-space distance between the end blocks versus a, for each law: runs from each initial
-state (black, with bars of three standard errors).
+The time average ⟨J⟩ of the phase-space distance between the end blocks versus a, for each law. Symbols: runs from each
+initial state, with bars of three standard errors. Dotted: a_c, at which the synchronized orbit changes its stability.
+At a = 0 the paper's laws are constant: free oscillations neither grow nor decay, and ⟨J⟩ depends on the initial state
+alone.
 """
-
-# Markers distinguish initial states, since colours stand for branches.
-MARKERS = "ovs^Dphx"
 
 
 @styled
-def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset | None = None) -> Figure:
+def draw(
+    mean_distance: xarray.Dataset, orbits: xarray.Dataset | None = None, attractors: xarray.Dataset | None = None
+) -> Figure:
     """Draw ⟨J⟩(a) of the runs over the branches of attractors, and the branch that each initial state reaches.
 
-    A column for each law. Above: coloured points are attractors, black curves are runs with three standard errors; gaps
-    are runs that did not complete. Below: a row for each initial state and convention of contact and start, in the
-    colour of the branch that it reaches; white is undetermined. Without attractors, only the runs are drawn.
+    A column for each law. Above: coloured points are attractors, open symbols are runs with three standard errors; runs
+    that did not complete are left out. Below: a row for each initial state and convention of contact and start, in the
+    colour of the branch that it reaches; white is undetermined.
+
+    orbits : the summary of the synchronized orbit; without it, a_c is not marked
+    attractors : without them, only the runs are drawn
     """
     laws = mean_distance["law"].values
     strips = [] if attractors is None else [0.13 * attractors["initial_branch"].isel(law=0, a=0).size + 0.2]
@@ -50,18 +56,33 @@ def draw(mean_distance: xarray.Dataset, attractors: xarray.Dataset | None = None
         1 + len(strips), len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.6, *strips]
     )
     colors = {} if attractors is None else branch_colors(attractors)
+    marked: dict[str, Artist] = {}
     for column, law in enumerate(laws):
         if attractors is not None:
             _branches(panels[0, column], attractors.sel(law=law), colors)
             _conventions(panels[1, column], attractors.sel(law=law), colors)
+            _label_start(panels[0, column], mean_distance.sel(law=law), attractors.sel(law=law))
         _runs(panels[0, column], mean_distance.sel(law=law))
+        if orbits is not None and np.isfinite(critical := orbits["critical_a"].sel(law=law).item()):
+            look = {"color": "0.4", "linestyle": ":", "linewidth": 0.9}
+            marked["a_c"] = panels[0, column].axvline(critical, zorder=0, label="$a_c$", **look)
         panels[-1, column].set_xlabel("$a$")
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
     if strips:
         panels[1, 0].set_ylabel("initial state,\ncontact, start", fontsize=7.0)
     begin_at_zero(panels[0, 0])
     show_all(panels[0, 0], mean_distance["a"].values)
-    _legend(figure, mean_distance, colors, {} if attractors is None else branch_names(attractors))
+    legend_below(
+        figure,
+        [
+            *(
+                Line2D([], [], label=f"run from {name}", **state_symbol(n))
+                for n, name in enumerate(mean_distance["initial"].values)
+            ),
+            *marked.values(),
+        ],
+        _branch_handles(colors, {} if attractors is None else branch_names(attractors)),
+    )
     label_panels(
         panels.flat, [*(f"{law} law" for law in laws), *(f"{law} law: branch reached" for law in laws)][: panels.size]
     )
@@ -80,7 +101,7 @@ def _branches(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -
             color=colors[int(number)],
             markersize=5.0,
             markeredgewidth=0,
-            alpha=0.55,
+            alpha=0.6,
             zorder=1,
         )
 
@@ -90,18 +111,16 @@ def _runs(panel: Axes, runs: xarray.Dataset) -> None:
         say(panel, "no run completed")
     for index, initial in enumerate(runs["initial"].values):
         run = runs.sel(initial=initial)
-        panel.errorbar(
-            run["a"].values,
-            run["mean_distance"].values,
-            3.0 * run["mean_distance_error"].values,
-            fmt=f"-{MARKERS[index % len(MARKERS)]}",
-            markersize=1.8,
-            markerfacecolor="white" if index % 2 else "black",
-            markeredgewidth=0.5,
-            linewidth=0.5,
-            elinewidth=0.5,
-            color="black",
-            zorder=2,
+        error = 3.0 * run["mean_distance_error"].values
+        panel.errorbar(run["a"].values, run["mean_distance"].values, error, elinewidth=0.5, **state_symbol(index))
+
+
+def _label_start(panel: Axes, runs: xarray.Dataset, attractors: xarray.Dataset) -> None:
+    """Say next to the runs at a = 0 that nothing attracts there."""
+    highest = runs["mean_distance"].values[:, 0].max()
+    if attractors["a"].values[0] == 0.0 and (attractors["branch"].values[0] < 0).all() and np.isfinite(highest):
+        panel.annotate(
+            "no attractor\nat $a=0$", (0.0, highest), (5, 0), textcoords="offset points", va="center", fontsize=7.0
         )
 
 
@@ -123,25 +142,12 @@ def branches_reached(attractors: xarray.Dataset) -> tuple[list[str], np.ndarray]
     attractors : of one law
     """
     reached = attractors["initial_branch"].stack(row=("initial", "contact", "start")).transpose("row", "a")
-    return [", ".join(map(str, row)) for row in reached["row"].values], reached.values
+    # The names of a config are written with hyphens in prose.
+    return [", ".join(map(str, row)).replace("one_sided", "one-sided") for row in reached["row"].values], reached.values
 
 
-def _legend(figure: Figure, runs: xarray.Dataset, colors: dict[int, str], names: dict[int, str]) -> None:
-    handles = [
-        Line2D(
-            [],
-            [],
-            color="black",
-            linewidth=0.5,
-            marker=MARKERS[n % len(MARKERS)],
-            markersize=3,
-            markerfacecolor="white" if n % 2 else "black",
-            label=f"run from {name}",
-        )
-        for n, name in enumerate(runs["initial"].values)
-    ]
-    handles += [
+def _branch_handles(colors: dict[int, str], names: dict[int, str]) -> list[Line2D]:
+    return [
         Line2D([], [], color=color, label=name, linestyle="", marker="o", markersize=5, markeredgewidth=0)
         for name, color in named_colors(colors, names).items()
     ]
-    legend_below(figure, handles)

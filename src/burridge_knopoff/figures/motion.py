@@ -10,7 +10,8 @@ import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import PAGE, color, label_panels, say_nothing, styled
+from burridge_knopoff.figures.palette import block_color
+from burridge_knopoff.figures.style import PAGE, label_panels, say_nothing, styled
 from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.summaries.bifurcation_diagram import ROUNDING
 
@@ -23,7 +24,8 @@ CAPTION = """\
 The run from the state {initial}. (a) Velocities U_i' and (b) positions U_i − vτ of all blocks versus time τ at the end
 of the run. (c) The return map of the section W = 0, where W is the sum of the positions relative to uniform sliding: W'
 at each upward crossing in the window versus W' at the previous one. Periodic motion gives a point for each crossing in
-a period, quasiperiodic motion gives curves. (d) The same W' versus the time of the crossing.
+a period (a single point if there is one crossing), quasiperiodic motion gives curves. (d) W' at the upward crossings
+versus time.
 """
 
 # Later blocks are drawn above earlier ones with thinner or dashed lines, so that synchronized blocks are all visible.
@@ -31,9 +33,6 @@ DASHES = ("-", (0, (5, 2)), (0, (1.2, 2.2)), "-.")
 WIDTHS = (2.2, 1.1, 1.4, 1.0)
 # A legend of more blocks than this would cover the curves.
 MOST_NAMED = 12
-
-# Coprime with the number of dashes, so that no pair of width and dash repeats before all have been used.
-SHADES = ("#7FB2DA", "#D55E00", "#000000", "#009E73", "#CC79A7", "#E69F00", "#0072B2")
 
 #: What the panels of the blocks show.
 NAMES = {"velocity": "velocities", "position": "positions"}
@@ -65,18 +64,23 @@ def draw(runs: Mapping[str, xarray.Dataset]) -> Figure:
     elif 3 < blocks <= MOST_NAMED:
         figure.legend(curves, names, ncols=min(blocks, 6), loc="outside lower center")
     run = f"{point.attrs['initial']}, $a={point['a'].item():g}$, {point.attrs['law']} law"
-    titles = (f"velocities: {run}", f"positions relative to the driver: {run}", "section points", "the same in time")
+    titles = (
+        f"velocities: {run}",
+        f"positions relative to the driver: {run}",
+        "return map of the section $W=0$",
+        "section points versus time",
+    )
     label_panels(panels.values(), titles)
     return figure
 
 
-def ended_early(point: xarray.Dataset) -> str:
-    """Return when and how a run ended that did not complete; empty for one that did."""
-    return ended_words(STATUS_WORDS[point["status"].item()], point["end_time"].item())
+def early_end(point: xarray.Dataset) -> str:
+    """Return how and when the run of a point file ended if it did not complete, otherwise an empty text."""
+    return end_words(STATUS_WORDS[point["status"].item()], point["end_time"].item())
 
 
-def ended_words(status: str, time: float) -> str:
-    """Return how and when a run ended that did not complete; empty for one that did."""
+def end_words(status: str, time: float) -> str:
+    """Return how and when a run ended if it did not complete, otherwise an empty text."""
     if status == "completed":
         return ""
     return f"the run did not complete:\n{status.replace('_', ' ')} at $\\tau={time:.4g}$"
@@ -85,7 +89,7 @@ def ended_words(status: str, time: float) -> str:
 def draw_blocks(panel: Axes, point: xarray.Dataset, name: str) -> None:
     """Draw the velocity or position of every block in the recorded last part of a run, or say why there is none."""
     if not np.isfinite(point[name].values).any():
-        say_nothing(panel, ended_early(point) or f"no {NAMES[name]} were kept")
+        say_nothing(panel, early_end(point) or f"no {NAMES[name]} were kept")
         return
     time = point["trajectory_time"].values
     for index, block in enumerate(point["block"].values):
@@ -94,7 +98,7 @@ def draw_blocks(panel: Axes, point: xarray.Dataset, name: str) -> None:
             point[name].sel(block=block),
             linestyle=DASHES[index % len(DASHES)],
             linewidth=WIDTHS[index % len(WIDTHS)],
-            color=SHADES[index % len(SHADES)],
+            color=block_color(index),
             label=f"block {block}",
         )
 
@@ -103,12 +107,14 @@ def draw_section(panel: Axes, point: xarray.Dataset) -> None:
     """Draw W' at each upward crossing of W = 0 versus W' at the previous one."""
     _, upward = _upward(point)
     if len(upward) < 2:
-        say_nothing(panel, ended_early(point) or "$W$ crosses 0 upward\nless than twice in the window")
+        say_nothing(panel, early_end(point) or "$W$ crosses 0 upward\nless than twice in the window")
         return
     panel.plot(upward[:-1], upward[1:], ".", **_look(upward))
     limits = _limits(upward)
     panel.set(xlabel="$W$′ at an upward crossing of $W=0$", ylabel="$W$′ at the next", xlim=limits, ylim=limits)
     panel.locator_params(nbins=5)
+    if len(np.unique(upward.round(6))) == 1:
+        panel.text(0.5, 0.6, "a single point:\nevery crossing is the same", ha="center", transform=panel.transAxes)
 
 
 def _section_times(panel: Axes, point: xarray.Dataset) -> None:
@@ -130,7 +136,7 @@ def _upward(point: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]:
 
 def _look(velocity: np.ndarray) -> dict[str, Any]:
     size = 2.5 if len(np.unique(velocity.round(6))) > FEW else 5.0
-    return {"markersize": size, "markeredgewidth": 0, "color": color(0), "rasterized": True}
+    return {"markersize": size, "markeredgewidth": 0, "color": "black", "rasterized": True}
 
 
 def _limits(velocity: np.ndarray) -> tuple[float, float]:

@@ -10,42 +10,46 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
+from burridge_knopoff.figures.palette import law_color, law_symbol, state_symbol
 from burridge_knopoff.figures.style import (
     PAGE,
-    color,
     label_panels,
     legend_below,
     legend_entries,
     lone_marker,
-    marker,
     new_figure,
     say_nothing,
+    scale_to_decades,
     styled,
-    to_decades,
 )
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.study.paper import PAPER_LAWS
 
 TITLE = "The synchronized orbit"
 CATEGORY = "Synchronization"
 INPUTS = ("orbits", "mean_distance")
 CONDITION = "has_synchronized_orbit"
 CAPTION = """\
-(a) Floquet multipliers of the synchronized orbit. Synchrony is lost, or gained, where the modulus of the transverse
-multiplier μ crosses 1 (dots). (b) ⟨J⟩ of the stable and unstable orbits around this a_c, with the study's runs in that
-range. (c) The distance between the end blocks on the orbit that branches off grows as a power of the distance from a_c.
-(d) Difference between each law and the first law in μ and in the period T at the same a; black: the paper's two laws at
-the same slope of friction at the driver velocity. Values of 0 are left out.
+(a) Floquet multipliers of the synchronized orbit. At a_c (dots) the modulus of the transverse multiplier μ passes 1;
+the orbit is stable where it is smaller. (b) ⟨J⟩ of the stable and unstable orbits near a_c, with the study's runs in
+that range; symbols of the first law are smaller. (c) The distance between the end blocks on the asymmetric orbit that
+branches off at a_c: points, and the power of |a − a_c| fitted to them. (d) The difference between each law and the
+first law in μ and in the period T, at the same a and, for the paper's laws, at the same slope of friction at the driver
+velocity. Values of 0 are left out.
 """
 
 # Range of the second panel: from this fraction of a_c to the last orbit that branches off.
 NEAR = 0.93
+
+# Size of the symbol of the first initial state.
+SIZE = 2.6
 
 
 @styled
 def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
     """Draw multipliers, ⟨J⟩ around a_c, the amplitude law beyond it, and the difference of each law from the first.
 
-    orbits : the summary of synchronized orbits; runs : that of the mean distance, drawn beside the orbits
+    orbits : the summary of synchronized orbits; runs : that of the mean distance, drawn together with the orbits
     """
     figure, panels = new_figure(PAGE, 5.6, rows=2, columns=2, share_rows=False, share_columns=False)
     if not np.isfinite(orbits["critical_a"]).any():
@@ -54,11 +58,13 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
         return figure
     for index, law in enumerate(orbits["law"].values):
         one = orbits.sel(law=law)
-        _draw_multipliers(panels[0], one, color(index))
-        _draw_distance(panels[1], one, runs.sel(law=law), color(index))
-        _draw_amplitude(panels[2], one, color(index), marker(index))
+        _draw_multipliers(panels[0], one, law_color(index))
+        _draw_distance(panels[1], one, runs.sel(law=law), index)
+        _draw_amplitude(panels[2], one, index)
     _draw_difference(panels[3], orbits)
-    laws = [Line2D([], [], color=color(index), label=f"{law} law") for index, law in enumerate(orbits["law"].values)]
+    laws = [
+        Line2D([], [], color=law_color(index), label=f"{law} law") for index, law in enumerate(orbits["law"].values)
+    ]
     panels[0].set(xlabel="$a$", ylabel="Floquet multiplier")
     panels[0].axhline(1.0, color="0.6", linewidth=0.6, zorder=0)
     panels[0].axhline(-1.0, color="0.6", linewidth=0.6, zorder=0)
@@ -69,7 +75,7 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
         panels[1].set_ylim(-0.03 * branching, 1.08 * branching)
     _, near = legend_entries(panels[1:2])
     states = [
-        Line2D([], [], color="0.3", linestyle="none", label=f"run from {name}", **_run_look(k))
+        Line2D([], [], label=f"run from {name}", **state_symbol(k, SIZE))
         for k, name in enumerate(runs["initial"].values)
         if f"run from {name}" in near
     ]
@@ -86,17 +92,17 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
         panels,
         [
             "multipliers of the synchronized orbit",
-            r"around $a_c$",
-            r"what branches off at $a_c$",
+            r"orbits and runs near $a_c$",
+            r"asymmetry of the orbit that branches off at $a_c$",
             f"{compared} compared with the {first} law" if others else f"{first} law",
         ],
     )
     return figure
 
 
-def _styles(styles: tuple[Any, ...], labels: tuple[str, ...]) -> list[Line2D]:
+def _styles(styles: tuple[Any, ...], labels: tuple[str, ...], color: str = "0.3") -> list[Line2D]:
     return [
-        Line2D([], [], color="0.3", linestyle=style, label=text) for style, text in zip(styles, labels, strict=True)
+        Line2D([], [], color=color, linestyle=style, label=text) for style, text in zip(styles, labels, strict=True)
     ]
 
 
@@ -128,8 +134,9 @@ def symmetric_curve(one: xarray.Dataset) -> np.ndarray:
     return np.where(real < 0.0, -modulus, modulus)
 
 
-def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: str) -> None:
-    """Draw ⟨J⟩ of the stable and unstable orbits, and of the study's runs nearby."""
+def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, index: int) -> None:
+    """Draw ⟨J⟩ of the stable and unstable orbits of a law, given with its number, and of the study's runs nearby."""
+    hue = law_color(index)
     critical = one["critical_a"].item()
     offset, distance, stable = _dense_branch(one)
     if not np.isfinite(critical):
@@ -145,22 +152,18 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, hue: 
     near = (runs["a"].values >= low) & (runs["a"].values <= high)
     for k, initial in enumerate(runs["initial"].values):
         run = runs.sel(initial=initial).isel(a=near)
-        look = {"color": hue, "linestyle": "none", "label": f"run from {initial}", **_run_look(k)}
+        # Symbols of both laws may coincide at ⟨J⟩ = 0.
+        look = {**state_symbol(k, SIZE + 2.5 * index), "color": hue, "label": f"run from {initial}"}
         panel.plot(run["a"].values, run["mean_distance"].values, **look)
 
 
 def _attracts(one: xarray.Dataset, *, below: bool) -> bool:
-    """Tell whether synchrony is stable on a side of a_c: at the nearest value of a, or else from the loss there."""
+    """Return whether synchrony is stable on a side of a_c: at the nearest value of a or, without one, from the loss."""
     a, modulus = one["a"].values, np.abs(one["transverse_multiplier"].values)
     side = np.isfinite(modulus) & ((a < one["critical_a"].item()) == below)
     if not side.any():
         return below
     return bool(modulus[side][-1 if below else 0] < 1.0)
-
-
-def _run_look(state: int) -> dict[str, Any]:
-    """Return the marker of an initial state: open for the first, so that markers inside it are visible."""
-    return {"marker": marker(state), "markersize": 3 if state else 4.5, "markerfacecolor": "none"}
 
 
 def _dense_branch(one: xarray.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -179,14 +182,23 @@ def _dense_branch(one: xarray.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarr
     return offset, distance, stable
 
 
-def _draw_amplitude(panel: Axes, one: xarray.Dataset, hue: str, marker: str) -> None:
+def _draw_amplitude(panel: Axes, one: xarray.Dataset, index: int) -> None:
     offset = np.abs(one["branch_offset"].values)
     asymmetry = one["branch_asymmetry"].values
-    panel.plot(offset, asymmetry, marker, color=hue, markersize=3.5, markerfacecolor="none", linestyle="none")
-    exponent = one["amplitude_exponent"].item()
+    panel.plot(offset, asymmetry, **law_symbol(index), linestyle="none")
+    exponent, error = (one[f"amplitude_exponent{end}"].item() for end in ("", "_error"))
     if np.isfinite(exponent):
         fitted = one["amplitude_coefficient"].item() * offset**exponent
-        panel.plot(offset, fitted, "-", linewidth=0.7, color=hue, label=f"{one['law'].item()}: exponent {exponent:.5f}")
+        words = f"{one['law'].item()}: exponent {_with_digits_in_error(exponent, error)}"
+        panel.plot(offset, fitted, "-", linewidth=0.7, color=law_color(index), label=words)
+
+
+def _with_digits_in_error(value: float, error: float) -> str:
+    """Return a number with the error of its last digit in brackets."""
+    if not 0.0 < error < 1.0:
+        return f"{value:g}"
+    digits = int(np.ceil(-np.log10(error)))
+    return f"{value:.{digits}f}({error * 10.0**digits:.0f})"
 
 
 def _draw_difference(panel: Axes, orbits: xarray.Dataset) -> None:
@@ -200,22 +212,23 @@ def _draw_difference(panel: Axes, orbits: xarray.Dataset) -> None:
         say_nothing(panel, f"no other law has an orbit at the values of $a$ of the {laws[0]} law")
         return
     curves: Any = (
-        ("transverse_multiplier", "effective_multiplier_difference", r"\mu", ("--", "-")),
-        ("period", "effective_period_difference", "T", (":", "-.")),
+        ("transverse_multiplier", "effective_multiplier_difference", r"\mu", ("-", "--")),
+        ("period", "effective_period_difference", "T", ("-.", ":")),
     )
     handles: list[Line2D] = []
     alone: Any = {"marker": lone_marker(a), "markersize": 3.5}
     for plain, scaled, symbol, (style, other_style) in curves:
         for index, law in enumerate(laws[1:], 1):
             difference = orbits[plain].sel(law=law) - orbits[plain].sel(law=laws[0])
-            panel.plot(a, _positive(difference.values), style, color=color(index), **alone)
-        handles += _styles((style,), (rf"$|\Delta {symbol}|$, same $a$",))
+            panel.plot(a, _positive(difference.values), style, color=law_color(index), **alone)
+        handles += _styles((style,), (rf"$|\Delta {symbol}|$, same $a$",), law_color(1))
         if scaled in orbits:
-            panel.plot(a, _positive(orbits[scaled].values), other_style, color="black", **alone)
-            label = rf"$|\Delta {symbol}|$, same $\Phi$′$(v)$"
-            handles.append(Line2D([], [], color="black", linestyle=other_style, label=label))
+            # Of the paper's laws alone.
+            hue = law_color(laws.tolist().index(PAPER_LAWS[1]))
+            panel.plot(a, _positive(orbits[scaled].values), other_style, color=hue, linewidth=1.3, **alone)
+            handles += _styles((other_style,), (rf"$|\Delta {symbol}|$, same $\Phi$′$(v)$",), hue)
     panel.set(xlabel="$a$", ylabel="difference of the laws", yscale="log")
-    to_decades(panel)
+    scale_to_decades(panel)
     panel.legend(handles=handles)
 
 

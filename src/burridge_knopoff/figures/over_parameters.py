@@ -12,10 +12,12 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.style import ACROSS, cells, evenly_spaced, label_panels, new_figure, page_width, show_all
+from burridge_knopoff.figures.style import ACROSS, cells, even_indices, label_panels, new_figure, page_width, show_all
 
 #: Most values of each further parameter that have panels.
 MOST = 6
+
+GREEK = ("alpha", "beta", "gamma", "delta", "epsilon", "eta", "theta", "kappa", "mu", "nu", "sigma", "tau", "phi")
 
 
 def draw_panels(
@@ -70,7 +72,7 @@ def varied_parameters(grid: xarray.Dataset) -> list[str]:
 def panel_parts(grid: xarray.Dataset) -> Iterator[tuple[str, xarray.Dataset]]:
     """Yield the title of each panel, with formulas between dollar signs, and its part of the Dataset."""
     further = [name for name in _parameters(grid) if name not in varied_parameters(grid)[:2]]
-    chosen = [evenly_spaced(grid.sizes[name], MOST) for name in further]
+    chosen = [even_indices(grid.sizes[name], MOST) for name in further]
     for law, initial in product(grid["law"].values, grid["initial"].values):
         for places in product(*chosen):
             one = grid.sel(law=law, initial=initial).isel(dict(zip(further, places, strict=True)))
@@ -79,5 +81,7 @@ def panel_parts(grid: xarray.Dataset) -> Iterator[tuple[str, xarray.Dataset]]:
 
 
 def _symbol(name: str) -> str:
-    """Return the name of a parameter for mathematical text: a word upright, a letter slanted."""
+    """Return the name of a parameter for mathematical text: a Latin or Greek letter slanted, a word upright."""
+    if name in GREEK:
+        return f"\\{name}"
     return name if len(name) == 1 else r"\mathrm{" + name.replace("_", r"\_") + "}"

@@ -10,16 +10,14 @@ from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap
 from matplotlib.figure import Figure
 from matplotlib.image import AxesImage
+from matplotlib.lines import Line2D
 
+from burridge_knopoff.figures.palette import MARKERS, SYNCHRONIZED, dashes
 from burridge_knopoff.figures.style import (
-    COLORS,
     PAGE,
-    color,
-    dashes,
+    even_indices,
     label_panels,
     legend_below,
-    legend_entries,
-    marker,
     styled,
 )
 
@@ -27,30 +25,36 @@ TITLE = "Phases of the end blocks"
 CATEGORY = "Attractors"
 INPUTS = ("phases",)
 CAPTION = """\
-Above: the fraction of states that synchronize, under the first law. The end blocks start to oscillate about uniform
+Top: the fraction of states that synchronize, under the first law. The end blocks start to oscillate about uniform
 sliding with amplitude A and the given phase difference; the other blocks slide uniformly. Up to four values of a at
-which some states synchronize are shown. To the left of the dashed line, A = v/ω, no block stops during such an
-oscillation. Below: the mean of this fraction over the amplitudes left of the line, versus phase difference, for each
-law and up to three amplitudes of the inner blocks, whose phases are random.
+which some states synchronize are shown. Unequal steps of A and of the phase difference are drawn at equal distances. To
+the left of the dashed line, A = v/ω, no block stops during such an oscillation. Bottom: the mean of this fraction over
+the amplitudes left of the line, versus phase difference, for each law and up to three amplitudes of the inner blocks,
+whose phases are random.
 """
 
 #: Largest number of columns of panels, and of amplitudes of the inner blocks.
 SHOWN = 4
 SHARES = 3
 
+# Colours of the amplitudes of the inner blocks: shades of that of synchrony.
+INNER = ("#00263D", SYNCHRONIZED, "#7FB8D8")
+
 
 @styled
 def draw(phases: xarray.Dataset) -> Figure:
     """Draw the synchronized fraction over amplitude and phase difference, and its mean at small amplitudes.
 
-    A column for each a shown. Amplitudes and phase differences are drawn at equal distances.
+    A column for each a shown. Steps of amplitude and phase difference are drawn at equal distances.
     """
     phases = phases.sortby(["amplitude", "phase_difference"])
     # Where synchrony does not attract, all panels would be white.
     others = [name for name in phases["synchronized_fraction"].dims if name != "a"]
     some = np.flatnonzero((phases["synchronized_fraction"] > 0.0).any(others).values)
     values = some if len(some) else np.arange(phases.sizes["a"])
-    shown = phases.isel(a=values[_spread(len(values), SHOWN)], inner_share=_spread(phases.sizes["inner_share"], SHARES))
+    shown = phases.isel(
+        a=values[even_indices(len(values), SHOWN)], inner_share=even_indices(phases.sizes["inner_share"], SHARES)
+    )
     columns = shown["a"].values
     figure = Figure(figsize=(PAGE, 4.6), layout="constrained")
     upper, lower = figure.subplots(2, len(columns), sharey="row", squeeze=False)
@@ -58,11 +62,12 @@ def draw(phases: xarray.Dataset) -> Figure:
         image = _fractions(first, shown.isel(law=0, inner_share=0).sel(a=a))
         _means(second, shown.sel(a=a))
     upper[0].set_ylabel("phase difference")
-    lower[0].set_ylabel("mean fraction")
-    figure.colorbar(image, ax=list(upper), label="fraction", aspect=15, pad=0.01)
-    legend_below(figure, legend_entries(lower)[0])
+    lower[0].set_ylabel("mean fraction\nthat synchronizes")
+    figure.colorbar(image, ax=list(upper), label="fraction that synchronizes", aspect=15, pad=0.01)
+    legend_below(figure, *_handles(shown))
     law = shown["law"].values[0]
-    label_panels([*upper, *lower], [*(f"{law}, $a={a:g}$" for a in columns), *(f"$a={a:g}$" for a in columns)])
+    titles = [*(f"{law}, $a={a:g}$" for a in columns), *(f"mean, $a={a:g}$" for a in columns)]
+    label_panels([*upper, *lower], titles)
     return figure
 
 
@@ -73,7 +78,7 @@ def _fractions(panel: Axes, phases: xarray.Dataset) -> AxesImage:
         phases["synchronized_fraction"].transpose("phase_difference", "amplitude").values,
         origin="lower",
         aspect="auto",
-        cmap=LinearSegmentedColormap.from_list("fraction", ["white", COLORS[0]]),
+        cmap=LinearSegmentedColormap.from_list("fraction", ["white", SYNCHRONIZED]),
         vmin=0.0,
         vmax=1.0,
         interpolation="none",
@@ -83,7 +88,7 @@ def _fractions(panel: Axes, phases: xarray.Dataset) -> AxesImage:
     panel.set_xticks(range(len(amplitude)), [f"{value:g}" for value in amplitude], rotation=90)
     panel.set_yticks(range(len(difference)), [f"{value:g}°" for value in difference])
     panel.tick_params(length=0)
-    panel.set_xlabel("amplitude $A$")
+    panel.set_xlabel("amplitude $A$ (not to scale)")
     return image
 
 
@@ -95,13 +100,24 @@ def _means(panel: Axes, phases: xarray.Dataset) -> None:
         small = one.isel(amplitude=one["amplitude"].values <= one["slipping_amplitude"].item())
         for n, law in enumerate(one["law"].values):
             mean = small["synchronized_fraction"].sel(law=law).mean("amplitude").values
-            name = f"{law}, inner amplitude {'0' if share == 0.0 else f'{share:g} $A$'}"
-            look: Any = {"color": color(k), "linestyle": dashes(n), "marker": marker(n), "markersize": 3.0}
-            panel.plot(difference, mean, **look, markerfacecolor="none", linewidth=0.8, label=name)
+            panel.plot(difference, mean, color=INNER[k], linewidth=0.8, **_law_look(n))
     panel.set(ylim=(-0.05, 1.05), xlabel="phase difference")
     panel.set_xticks([0.0, 90.0, 180.0], ["0°", "90°", "180°"])
 
 
-def _spread(count: int, most: int) -> list[int]:
-    """Return at most `most` of the numbers below `count`, evenly spread from the first to the last."""
-    return sorted({round((count - 1) * k / (most - 1)) for k in range(most)})
+def _law_look(index: int) -> dict[str, Any]:
+    """Return line and marker of a law: small and filled for the first, larger and open for others."""
+    size: dict[str, Any] = {"markersize": 4.5, "markerfacecolor": "none"} if index else {"markersize": 2.5}
+    return {"linestyle": dashes(index), "marker": MARKERS[max(0, index - 1)], "markeredgewidth": 0.7, **size}
+
+
+def _handles(phases: xarray.Dataset) -> tuple[list[Line2D], list[Line2D]]:
+    """Return the legend entries of the inner amplitudes, and of the laws."""
+    shares = phases["inner_share"].values
+    names = ["inner amplitude 0" if share == 0.0 else f"inner amplitude {share:g} $A$" for share in shares]
+    inner = [Line2D([], [], color=INNER[k], label=name) for k, name in enumerate(names)]
+    laws = [
+        Line2D([], [], color="0.3", linewidth=0.8, label=f"{law} law", **_law_look(n))
+        for n, law in enumerate(phases["law"].values)
+    ]
+    return inner, laws

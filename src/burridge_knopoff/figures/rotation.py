@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import xarray
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from burridge_knopoff.figures.kinds import KIND_COLORS
-from burridge_knopoff.figures.style import label_panels, legend_below, new_figure, page_width, say, styled
+from burridge_knopoff.figures.palette import KINDS
+from burridge_knopoff.figures.style import label_panels, legend_below, new_figure, page_width, say, show_all, styled
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.summaries.plateaux import locked_share, plateaux
 
@@ -16,14 +18,21 @@ TITLE = "Rotation number"
 CATEGORY = "Attractors"
 INPUTS = ("rotation",)
 CAPTION = """\
-The number of oscillations of the end blocks against each other per oscillation of the middle block, on branch 1, the
-unsynchronized motion. By symmetry both end blocks have the same frequency, locked or not. On a torus this ratio varies
-with a. On a phase-locked, periodic orbit it is a rational number and stays constant, which gives a plateau; the widest
-plateaux are labelled with their ratio. Above each panel: the fraction of the values of a that are locked.
+The rotation number ρ of branch 1, the unsynchronized motion, versus a: the number of oscillations of the end blocks
+against each other per oscillation of the middle block. By symmetry both end blocks have the same frequency, locked to
+the middle block or not. On a torus (quasiperiodic motion) this ratio varies with a. On a phase-locked, periodic orbit
+it is a rational number and constant, which gives a plateau; the widest plateaux are labelled with their ratio. Title of
+each panel: how many of the values of a that the study's grid has on this branch are locked.
 """
 
 # The widest plateaux, up to this number, are labelled with their ratio.
 NAMED = 4
+
+#: Look of the points of tori and of locked orbits, and their names in the legend.
+LOOKS = (
+    (MotionKind.QUASIPERIODIC, 0.0, "quasiperiodic (torus)"),
+    (MotionKind.PERIODIC, 0.5, "periodic (locked)"),
+)
 
 
 @styled
@@ -35,10 +44,13 @@ def draw(rotation: xarray.Dataset) -> Figure:
     for panel, law in zip(panels, laws, strict=True):
         found = rotation.sel(law=law)
         share, _, _ = locked_share(found, np.isfinite(found["a"].values))
-        titles.append(f"{law} law" + (f": {100 * share:.0f} % of $a$ locked" if np.isfinite(share) else ""))
+        locked = f": {100 * share:.0f} % of grid values locked" if np.isfinite(share) else ""
+        titles.append(f"{law} law{locked}")
         _curve(panel, found)
+        a = rotation["a"].values[rotation["in_grid"].values == 1]
+        show_all(panel, np.unique(a))
         panel.set_xlabel("$a$")
-    panels[0].set_ylabel("rotation number")
+    panels[0].set_ylabel(r"rotation number $\rho$")
     label_panels(panels, titles)
     handles = {
         label: handle for panel in panels for handle, label in zip(*panel.get_legend_handles_labels(), strict=True)
@@ -53,17 +65,16 @@ def _curve(panel: Axes, rotation: xarray.Dataset) -> None:
     if not np.isfinite(number).any():
         say(panel, "branch 1 was not found, or has no rotation number")
         return
-    for locked, kind, name in ((0, MotionKind.QUASIPERIODIC, "torus"), (1, MotionKind.PERIODIC, "locked")):
+    for locked, (kind, edge, name) in enumerate(LOOKS):
         chosen = (rotation["locked"].values == locked) & np.isfinite(number)
         if chosen.any():
-            panel.plot(
-                a[chosen], number[chosen], "o", markersize=2.0, color=KIND_COLORS[kind], label=name, zorder=locked
-            )
+            look: Any = {"color": KINDS[kind], "markeredgecolor": "0.2", "markeredgewidth": edge, "markersize": 2.6}
+            panel.plot(a[chosen], number[chosen], "o", label=name, zorder=2 + locked, **look)
     found = sorted(plateaux(rotation), key=lambda one: one.first - one.last)[:NAMED]
     for one in found:
         if one.last > one.first:
             height = one.ratio.numerator / one.ratio.denominator
-            panel.plot([one.first, one.last], [height, height], color=KIND_COLORS[MotionKind.PERIODIC], zorder=1)
+            panel.plot([one.first, one.last], [height, height], color="0.2", linewidth=0.6, zorder=1)
             panel.annotate(
                 f"{one.ratio.numerator}/{one.ratio.denominator}",
                 (one.first, height),

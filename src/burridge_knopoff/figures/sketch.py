@@ -11,7 +11,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from burridge_knopoff.figures.style import PAGE, color, styled
+from burridge_knopoff.figures.palette import block_color, pale
+from burridge_knopoff.figures.style import PAGE, styled
 from burridge_knopoff.model.chain import Chain
 
 TITLE = "The chain of blocks"
@@ -20,11 +21,10 @@ PAPER = "Fig. 1"
 INPUTS = ()
 FROM_STUDY = ("chain_description",)
 CAPTION = """\
-The chain of the study. Springs join neighbouring blocks (blue, strength above) and join blocks to a driver that moves
-with velocity v (red, strength D_i beside). Dry friction holds a block up to its static friction F. U_i is the position
-of block i. Strengths are in units of the spring constant k. Friction is in units of F(0), which is its value if none is
-given. Of a long chain, only the first two blocks and the last are drawn, of a network no springs between blocks, and no
-dashpots.
+The chain of the study. Springs couple neighbouring blocks and pull blocks to a driver that moves with velocity v; the
+number next to a spring is its stiffness in units of the spring constant k. U_i is the position of block i. Dry friction
+holds a block up to its static friction F, in units of F(0); F is given if it differs between blocks. Of a long chain,
+only the first two blocks and the last are drawn. Springs of a network and dashpots are not drawn.
 """
 
 #: Longer chains are drawn in part.
@@ -50,13 +50,15 @@ def draw(chain_description: Mapping[str, Any]) -> Figure:
     panel.add_patch(Rectangle((left, TOP), right - left, 0.18, facecolor="0.85", edgecolor="black", linewidth=0.7))
     _arrow(panel, right - 1.1, TOP + 0.42, "$v$")
     for block, x in place.items():
-        panel.add_patch(Rectangle((x - SIDE / 2, 0.0), SIDE, SIDE, facecolor="white", edgecolor="black"))
+        panel.add_patch(
+            Rectangle((x - SIDE / 2, 0.0), SIDE, SIDE, facecolor=pale(block_color(block)), edgecolor="black")
+        )
         panel.text(x, SIDE / 2, str(block + 1), ha="center", va="center")
         _arrow(panel, x - 0.65, SIDE + 0.2, f"$U_{{{block + 1}}}$")
         if chain.driving[block] > 0.0:
             # The driver is ahead.
-            _spring(panel, (x + 0.25, SIDE), (x + 0.8, TOP), color(1))
-            panel.text(x + 0.75, 1.4, f"${chain.driving[block]:g}$", color=color(1))
+            _spring(panel, (x + 0.25, SIDE), (x + 0.8, TOP))
+            panel.text(x + 0.75, 1.4, f"${chain.driving[block]:g}$")
         if np.ptp(chain.thresholds) > 0.0:
             panel.text(x, -0.38, f"$F={chain.thresholds[block]:g}$", ha="center", va="top")
     for one, other in pairwise(shown):
@@ -64,11 +66,11 @@ def draw(chain_description: Mapping[str, Any]) -> Figure:
         if other != one + 1 or chain.is_network:
             panel.text(0.5 * (start + end), SIDE / 2, "· · ·", ha="center", va="center", fontsize=14.0)
             continue
-        _spring(panel, (start, SIDE / 2), (end, SIDE / 2), color(0))
-        panel.text(0.5 * (start + end), 0.62, f"${chain.coupling_to_next[one]:g}$", ha="center", color=color(0))
+        _spring(panel, (start, SIDE / 2), (end, SIDE / 2))
+        panel.text(0.5 * (start + end), 0.62, f"${chain.coupling_to_next[one]:g}$", ha="center")
     lines = _words(chain)
     lowest = -0.75 - 0.4 * len(lines) if lines or np.ptp(chain.thresholds) > 0.0 else -0.35
-    panel.text(0.5 * (left + right), -0.75, "\n".join(lines), ha="center", va="top", color=color(0))
+    panel.text(0.5 * (left + right), -0.75, "\n".join(lines), ha="center", va="top")
     panel.set(xlim=(left - 0.05, right + 0.05), ylim=(lowest, TOP + 0.7), aspect="equal")
     panel.set_axis_off()
     return figure
@@ -91,14 +93,14 @@ def _words(chain: Chain) -> list[str]:
     return lines
 
 
-def _spring(panel: Axes, start: tuple[float, float], end: tuple[float, float], hue: str) -> None:
+def _spring(panel: Axes, start: tuple[float, float], end: tuple[float, float]) -> None:
     """Draw a spring as a zigzag with straight ends."""
     along = np.array([0.0, 0.15, *np.linspace(0.2, 0.8, 9), 0.85, 1.0])
     across = 0.1 * np.array([0.0, 0.0, *(1.0 - 2.0 * (np.arange(9) % 2)), 0.0, 0.0])
     first, last = np.array(start), np.array(end)
     direction = (last - first) / np.hypot(*(last - first))
     points = first + along[:, None] * (last - first) + across[:, None] * [-direction[1], direction[0]]
-    panel.plot(*points.T, color=hue, solid_joinstyle="round")
+    panel.plot(*points.T, color="black", linewidth=0.8, solid_joinstyle="round")
 
 
 def _arrow(panel: Axes, x: float, y: float, words: str) -> None:

@@ -32,8 +32,8 @@ INTERVAL = r"interval $\Delta\tau$"
 _MARKS: dict[str, Any] = {"marker": "o", "markersize": 2.6, "linewidth": 0.6}
 
 
-#: What a panel says that has nothing of a variable, although there are events.
-_WITHOUT = {
+#: Text of a panel without values of a variable, although there are events.
+_REASONS = {
     "magnitude_rate": "no rates: no run completed",
     "mean_extent": "no events",
     "interval_count": "no block starts two events",
@@ -43,8 +43,11 @@ _WITHOUT = {
 _LISTED = 12
 
 
-def no_events(runs: xarray.Dataset) -> Figure | None:
-    """Return a figure that says that no run of a summary has events, and which did not complete; None if one has."""
+def figure_without_events(runs: xarray.Dataset) -> Figure | None:
+    """Return a figure with a sentence if no run of a summary has events, otherwise None.
+
+    It also names the runs that did not complete.
+    """
     if (runs["event_count"] > 0).any():
         return None
     begin, end = (runs.attrs[f"{name}_time"] for name in ("begin", "end"))
@@ -62,24 +65,24 @@ def no_events(runs: xarray.Dataset) -> Figure | None:
 
 
 def ending(run: xarray.Dataset) -> str:
-    """Return how a run ended that did not complete; empty for one that did."""
+    """Return how a run ended if it did not complete, otherwise an empty text."""
     status = run["status"].item()
     return "" if status == Status.COMPLETED else STATUS_WORDS[status].replace("_", " ")
 
 
-def say_without(panel: Axes, runs: xarray.Dataset, name: str) -> None:
-    """Leave a panel empty except for the reason if none of its runs has anything of a variable."""
+def label_if_empty(panel: Axes, runs: xarray.Dataset, name: str) -> None:
+    """Replace the axes of a panel by the reason if none of its runs has values of a variable."""
     if (runs["event_count"] == 0).all():
         say_nothing(panel, "no events")
     elif name == "recurrence" and _unknown_blocks(runs):
-        # `draw_recurrence` says why.
+        # `draw_recurrence` gives the reason.
         return
     elif not (runs[name] > 0).any():
-        say_nothing(panel, _WITHOUT[name])
+        say_nothing(panel, _REASONS[name])
 
 
 def _unknown_blocks(runs: xarray.Dataset) -> bool:
-    """Tell whether it is not known which blocks slip, as on a grid or network without profiles."""
+    """Return whether it is unknown which blocks slip, as on a grid or network without profiles."""
     return bool((runs["block_event_count"] < 0).any())
 
 
@@ -168,8 +171,8 @@ def add_magnitudes(figure: Figure, norm: Normalize, panels: list[Axes]) -> None:
 
 @styled
 def draw_run(run: xarray.Dataset) -> Figure:
-    """Draw everything about one run, a summary at one law and a."""
-    if (sentence := no_events(run)) is not None:
+    """Draw slips, recurrence, rates, extents and intervals of one run, a summary at one law and a."""
+    if (sentence := figure_without_events(run)) is not None:
         return sentence
     figure = StyledFigure(figsize=(PAGE, 5.4), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1.15, 1.0))
@@ -182,13 +185,16 @@ def draw_run(run: xarray.Dataset) -> Figure:
     recurrence.set_xlim(slips.get_xlim())
     for panel, draw in zip(others, (draw_rate, draw_extent, draw_interval), strict=True):
         draw(panel, run, "black")
-    for panel, name in zip((*others, recurrence), _WITHOUT, strict=True):
-        say_without(panel, run, name)
+    for panel, name in zip((*others, recurrence), _REASONS, strict=True):
+        label_if_empty(panel, run, name)
     words = ending(run)
     label_panels(
         [slips, recurrence, *others],
-        [f"slips{words and f', {words}'}", "recurrence", slope_words(run), "extent", "intervals"],
+        [f"slips{words and f', {words}'}", "recurrence at each block", "rate by magnitude", "extent", "intervals"],
     )
+    others[0].plot([], [], color="black", linewidth=2.4, alpha=0.45, label=slope_words(run))
+    if others[0].axison:
+        others[0].legend(loc="upper right", handlelength=1.2)
     return figure
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
-from burridge_knopoff.figures.motion import SHADES
+from burridge_knopoff.figures.palette import block_color
 from burridge_knopoff.figures.style import PAGE, begin_at_zero, label_panels, legend_below, new_figure, say, styled
 
 TITLE = "Stick-slip cycles"
@@ -20,12 +20,12 @@ CATEGORY = "Runs"
 INPUTS = ("stick_slip",)
 FROM_STUDY = ("shown_law",)
 CAPTION = """\
-Stick-slip cycles of the first, middle and last block versus a, for each initial state, under the law of the figures of
-single runs. From top to bottom: the time between two stops, with its standard error; in chains of more than two blocks,
-the frequency of the end blocks divided by that of the middle block, from the peaks of the velocity spectra (bars:
-resolution of the spectra) and from the stops; the correlation of the velocities of the end blocks; and the fraction of
-time for which each block sticks. The band and the dotted lines are the paper's statements for its three blocks: a cycle
-of two to three units of time, and half the frequency of the middle block.
+Stick-slip cycles of the first, middle and last block versus a, for each initial state, under one law of the study (the
+config's `figures.law`). From top to bottom: the time between two stops, with its standard error; in chains of more than
+two blocks, the frequency of the end blocks divided by that of the middle block, from the peaks of the velocity spectra
+(bars: resolution of the spectra) and from the stops; the correlation of the velocities of the end blocks; and the
+fraction of time for which each block sticks. Band and dotted lines: the paper's statements for its three blocks, a
+cycle of two to three units of time and half the frequency of the middle block.
 """
 
 #: The paper's statements: a stick-slip cycle lasts about two or three time units; the end blocks oscillate at about
@@ -34,7 +34,7 @@ PAPER_CYCLE = (2.0, 3.0)
 PAPER_RATIO = 0.5
 
 # The end blocks often coincide: the later one is drawn smaller, inside the marker of the first.
-SIZES = (4.4, 2.8, 1.6)
+SIZES = (4.4, 2.8, 2.0)
 MARKERS = ("o", "s", "o")
 
 
@@ -52,13 +52,14 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     # Two blocks have no middle block.
     over_middle = [f"{what} frequency\nover that of block {middle}" for what in ("velocity", "stop")]
     together_label = f"correlation of\n$U_1$′ with $U_{{{count}}}$′"
-    labels = [
-        "time between stops",
-        *(over_middle if count > 2 else []),
-        *([together_label] if count > 1 else []),
-        "fraction of time stuck",
-    ]
-    figure, panels = new_figure(PAGE, 0.4 + 1.65 * len(labels), rows=len(labels), columns=len(states))
+    rows = {"cycle time": "time between stops"}
+    if count > 2:
+        rows |= dict(zip(("velocity frequencies", "stop frequencies"), over_middle, strict=True))
+    if count > 1:
+        rows["velocity correlation"] = together_label
+    rows["stick time"] = "fraction of time stuck"
+    labels = list(rows.values())
+    figure, panels = new_figure(PAGE, 0.6 + 1.45 * len(labels), rows=len(labels), columns=len(states))
     for column, initial in enumerate(states):
         run = stick_slip.sel(law=shown_law, initial=initial)
         cycles, *others, sticks = panels[column :: len(states)]
@@ -88,16 +89,24 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
         if label != together_label:
             begin_at_zero(panel)
     legend_below(figure, _legend(shown))
-    label_panels(panels, [f"{initial}, {shown_law} law" for _ in labels for initial in states])
+    label_panels(panels, [f"{initial}: {name}" for name in rows for initial in states])
+    figure.suptitle(f"{shown_law} law", fontsize="medium")
     return figure
 
 
-def _look(n: int) -> dict[str, Any]:
-    return {"color": SHADES[n], "marker": MARKERS[n], "markersize": SIZES[n], "markeredgewidth": 0, "linestyle": ""}
+def _look(n: int, block: int) -> dict[str, Any]:
+    """Return the look of the points of the first (0), middle (1) or last block, given with its number."""
+    return {
+        "color": block_color(block - 1),
+        "marker": MARKERS[n],
+        "markersize": SIZES[n],
+        "markeredgewidth": 0,
+        "linestyle": "",
+    }
 
 
 def _points(panel: Axes, n: int, values: xarray.DataArray, errors: xarray.DataArray | None = None) -> None:
-    panel.errorbar(values["a"], values, errors, elinewidth=0.6, **_look(n))
+    panel.errorbar(values["a"], values, errors, elinewidth=0.6, **_look(n, values["block"].item()))
 
 
 def _say_why(panel: Axes, run: xarray.Dataset, name: str, words: str) -> None:
@@ -110,15 +119,16 @@ def _ratios(panels: Sequence[Axes], n: int, end: xarray.Dataset, middle: xarray.
     """Draw the frequency ratio of an end block to the middle block, from velocities and from stops."""
     velocities, stops = panels
     # Both errors are resolutions of the spectrum.
-    ratio = end["velocity_frequency"] / middle["velocity_frequency"]
+    ratio = end["velocity_frequency"] / middle["velocity_frequency"].drop_vars("block")
     shares = [(one["velocity_frequency_error"] / one["velocity_frequency"]).values for one in (end, middle)]
     _points(velocities, n, ratio, ratio * np.hypot(shares[0], shares[1]))
-    _points(stops, n, end["stop_rate"] / middle["stop_rate"].where(middle["stop_rate"] > 0.0))
+    rate = middle["stop_rate"].drop_vars("block")
+    _points(stops, n, end["stop_rate"] / rate.where(rate > 0.0))
 
 
 def _legend(shown: list[int]) -> list[Line2D | Patch]:
     band = Patch(facecolor="0.88", label="stated in the paper: 2 to 3")
-    blocks = [Line2D([], [], **_look(n), label=f"block {block}") for n, block in enumerate(shown)]
+    blocks = [Line2D([], [], **_look(n, block), label=f"block {block}") for n, block in enumerate(shown)]
     if len(shown) < 3:
         return [*blocks, band]
     half = Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="stated in the paper: 1/2")

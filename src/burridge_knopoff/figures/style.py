@@ -16,6 +16,7 @@ from matplotlib.backend_bases import RendererBase, get_registered_canvas_class
 from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from burridge_knopoff.provenance.files import write_whole
@@ -31,14 +32,6 @@ SHADE = "0.9"
 
 # Largest number of panels side by side, where each initial state has a panel.
 ACROSS = 3
-
-# Okabe and Ito's colours: distinct for colour-blind readers, and by lightness in print.
-COLORS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
-
-DASHES: tuple[Any, ...] = (
-    "-", "--", ":", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)), (0, (10, 3)), (0, (1, 4)), (0, (5, 1, 5, 4))
-)  # fmt: skip
-MARKERS = ("o", "x", "s", "^", "D", "v", "+")
 
 # Typical number of letters of a title in an inch.
 LETTERS = 17
@@ -69,8 +62,8 @@ class StyledFigure(Figure):
     """A figure that is drawn in the common look wherever a user shows or saves it."""
 
     def draw(self, renderer: RendererBase) -> None:
-        """Draw it."""
-        # Ticks, among others, are made as they are drawn.
+        """Draw the figure."""
+        # Ticks, among others, are created only now.
         with mpl.rc_context(STYLE):
             super().draw(renderer)
 
@@ -157,7 +150,7 @@ def begin_at_zero(panel: Axes) -> None:
     panel.set_ylim(-0.03 * top, 1.1 * top)
 
 
-def to_decades(panel: Axes) -> None:
+def scale_to_decades(panel: Axes) -> None:
     """Scale the logarithmic y axis of a row of panels between powers of ten, so that only these have tick labels."""
     rows = [each.dataLim for each in panel.get_shared_y_axes().get_siblings(panel)]
     low, high = min(row.minposy for row in rows), max(row.y1 for row in rows)
@@ -190,16 +183,27 @@ def legend_entries(panels: Iterable[Axes]) -> tuple[list[Artist], list[str]]:
     return list(entries.values()), list(entries)
 
 
-def legend_below(figure: Figure | SubFigure, handles: Sequence[Artist]) -> None:
-    """Put a legend below all panels, in as few rows as fit into the width of the figure, of about equal length."""
-    for rows in range(1, len(handles) + 1):
-        columns = -(-len(handles) // rows)
+def legend_below(figure: Figure | SubFigure, *groups: Sequence[Artist]) -> None:
+    """Put a legend below all panels, in as few rows as fit into the width of the figure, of about equal length.
+
+    groups : handles; each group begins a row
+    """
+    filled = [group for group in groups if group]
+    longest = max(map(len, filled), default=0)
+    for rows in range(1, longest + 1):
+        columns = -(-longest // rows)
+        handles = [handle for group in filled for handle in _padded(group, columns if len(filled) > 1 else 1)]
         # Matplotlib fills columns; the legend is read by rows.
         in_rows = [handle for first in range(columns) for handle in handles[first::columns]]
         legend = figure.legend(handles=in_rows, loc="outside lower center", ncols=columns)
         if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
             return
         legend.remove()
+
+
+def _padded(handles: Sequence[Artist], columns: int) -> list[Artist]:
+    """Return handles of a legend with empty ones at the end, which fill the last row."""
+    return [*handles, *(Line2D([], [], linestyle="", label=" ") for _ in range(-len(handles) % columns))]
 
 
 def _wrapped(title: str, letters: int) -> str:
@@ -216,7 +220,7 @@ def _wrapped(title: str, letters: int) -> str:
     return "\n".join(lines)
 
 
-def evenly_spaced(count: int, most: int) -> np.ndarray:
+def even_indices(count: int, most: int) -> np.ndarray:
     """Return the places of at most so many of `count` items, evenly spaced, with the first and the last."""
     return np.unique(np.linspace(0, count - 1, min(most, count)).round().astype(int))
 
@@ -224,19 +228,19 @@ def evenly_spaced(count: int, most: int) -> np.ndarray:
 def cells(values: np.ndarray) -> np.ndarray:
     """Return the edges of the cells of ascending values, shape (n + 1,): a cell is what lies nearest to its value.
 
-    The first and last cell end at their value, since nothing is known beyond it.
+    The first and last cell extend as far to the outside as to the inside.
     """
     if len(values) == 1:
         half = 0.1 * abs(values[0]) or 0.5
         return np.array([values[0] - half, values[0] + half])
     middle = 0.5 * (values[1:] + values[:-1])
-    return np.concatenate([values[:1], middle, values[-1:]])
+    return np.concatenate([2.0 * values[:1] - middle[:1], middle, 2.0 * values[-1:] - middle[-1:]])
 
 
 def show_all(panel: Axes, values: np.ndarray) -> None:
     """Extend the horizontal axis of a panel over the cells of all values, and a little more."""
     first, last = cells(values)[[0, -1]]
-    margin = 0.02 * (last - first)
+    margin = 0.015 * (last - first)
     panel.set_xlim(first - margin, last + margin)
 
 
@@ -253,24 +257,9 @@ def shade_entry(words: str) -> Patch:
     return Patch(facecolor=SHADE, edgecolor="0.6", label=words)
 
 
-def color(index: int) -> str:
-    """Return the colour of a curve by its number."""
-    return COLORS[index % len(COLORS)]
-
-
-def dashes(index: int) -> Any:
-    """Return the line style of a curve by its number."""
-    return DASHES[index % len(DASHES)]
-
-
 def lone_marker(values: np.ndarray) -> str:
     """Return the marker of a curve: none, unless it has a single point, which a line would not show."""
     return "o" if len(values) == 1 else ""
-
-
-def marker(index: int) -> str:
-    """Return the marker of a curve by its number."""
-    return MARKERS[index % len(MARKERS)]
 
 
 def say(panel: Axes, words: str) -> None:
@@ -279,7 +268,7 @@ def say(panel: Axes, words: str) -> None:
 
 
 def say_nothing(panel: Axes, reason: str) -> None:
-    """Leave a panel empty except for the reason."""
+    """Replace the axes of a panel by the reason for its being empty."""
     say(panel, reason)
     panel.set_axis_off()
 

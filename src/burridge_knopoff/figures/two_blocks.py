@@ -11,15 +11,14 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from burridge_knopoff.dataset.variables import Answer
+from burridge_knopoff.figures.palette import law_symbol
 from burridge_knopoff.figures.style import (
     PAGE,
     SHADE,
     cells,
-    color,
     label_panels,
     legend_below,
     legend_entries,
-    marker,
     say,
     show_all,
     styled,
@@ -30,11 +29,11 @@ TITLE = "Two blocks"
 CATEGORY = "Friction laws"
 INPUTS = ("two_blocks",)
 CAPTION = """\
-⟨J⟩ of the attractor reached by two blocks, versus a, under each law and from each sampled initial state. Below: the
-states for which the laws disagree in ⟨J⟩ or in the kind of motion; each law is compared with the first. (a, b) The
-train model, pulled at its first block only, which the paper refers to. (c, d) Both blocks are pulled, which is not the
-paper's chain. If symbols coincide at a marked state, the laws have the same motions there, but the state leads to
-different ones.
+⟨J⟩ of the attractor reached by two blocks, versus a, under each law and from each sampled initial state, and the states
+for which the laws disagree in ⟨J⟩ or in the kind of motion; each law is compared with the first. (a, b) The train
+model, pulled at its first block only, which the paper refers to. (c, d) Both blocks are pulled; this is not the paper's
+chain. Where symbols coincide although the state is marked, both laws have both attractors, but the state reaches a
+different one under each law.
 """
 
 # Colour and label of states for which the laws disagree, or may disagree.
@@ -72,10 +71,8 @@ def draw_panels(upper: Axes, lower: Axes, two_blocks: xarray.Dataset) -> list[Ar
     for index, law in enumerate(two_blocks["law"].values):
         mean = two_blocks["mean_distance"].sel(law=law).values
         for number, state in enumerate(mean):
-            upper.plot(
-                a, state, marker(index), markersize=(3.4, 2.4)[index % 2], markeredgewidth=0.6, fillstyle="none",
-                color=color(index), label=f"{law} law" if number == 0 else None,
-            )  # fmt: skip
+            label = f"{law} law" if number == 0 else None
+            upper.plot(a, state, **law_symbol(index, 2.2), linestyle="", label=label)
     upper.set_ylabel(r"$\langle J\rangle$")
     show_all(upper, a)
     if two_blocks["mean_distance"].isnull().all():

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from PIL import Image
 
-from burridge_knopoff.figures.description import described_picture
+from burridge_knopoff.figures.description import title_and_caption
 from burridge_knopoff.provenance.seal import BadFile
 
 
@@ -38,7 +38,7 @@ def read_picture(path: str | Path) -> Picture:
             shown = opened.convert("RGB")
     except (OSError, SyntaxError) as error:
         raise BadFile(path, f"is not a readable picture ({error})") from None
-    title, caption = described_picture(name)
+    title, caption = title_and_caption(name)
     content = io.BytesIO()
     shown.save(content, "WEBP", lossless=True, quality=10, method=1)
     data = "data:image/webp;base64," + base64.b64encode(content.getvalue()).decode()

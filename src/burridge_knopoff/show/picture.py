@@ -14,7 +14,7 @@ from burridge_knopoff.figures.description import Description, figure_description
 from burridge_knopoff.figures.distance import FLOOR, linear_top
 from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_section
 from burridge_knopoff.figures.slip_events import draw_run
-from burridge_knopoff.figures.style import PAGE, color, label_panels, new_figure, styled, write_figure
+from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled, write_figure
 from burridge_knopoff.provenance.seal import is_consistent
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
@@ -113,7 +113,7 @@ def draw_point(point: xarray.Dataset) -> Figure:
     figure, panels = new_figure(PAGE, 5.2, rows=2, columns=2, share_rows=False, share_columns=False)
     distance, time = point["distance"].values, point["time"].values
     for panel, logarithmic in zip(panels[:2], (False, True), strict=True):
-        panel.plot(time, np.maximum(distance, FLOOR) if logarithmic else distance, color=color(0), linewidth=0.5)
+        panel.plot(time, np.maximum(distance, FLOOR) if logarithmic else distance, color="black", linewidth=0.5)
         panel.axvline(point.attrs["transient"], color="0.5", linestyle=":", linewidth=0.8, label="averaging begins")
         panel.set(xlabel=r"$\tau$", ylabel=r"$J(\tau)$")
     panels[0].set_ylim(0.0, linear_top(distance))

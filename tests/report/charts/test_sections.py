@@ -44,7 +44,7 @@ def test_a_bifurcation_diagram_tells_every_count():
     (cells,) = sections(np.array([0.1, 0.2]), np.linspace(-1.0, 1.0, BINS + 1), counts).data
     filled = np.isfinite(cells.z)
     assert (filled == (counts != 0)).all()
-    assert (np.sign(cells.z[filled]) == np.sign(counts[filled])).all()
+    assert (cells.z[filled] > 0.0).all()
     assert cells.text[filled].tolist() == [
         "1 of 4 crossings, downward",
         "3 of 4 crossings, upward",

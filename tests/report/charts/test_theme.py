@@ -2,8 +2,7 @@
 
 import pytest
 
-from burridge_knopoff.figures.branches import COLORS, OTHER_COLOR
-from burridge_knopoff.figures.style import COLORS as CURVES
+from burridge_knopoff.figures.palette import BLOCKS, BRANCHES, LAWS, OTHER_BRANCHES
 from burridge_knopoff.report.charts.theme import CONTRAST, INK, dark, dark_colors, fixed
 
 
@@ -13,7 +12,7 @@ def luminance(color):
     return sum(weight * part for weight, part in zip((0.2126, 0.7152, 0.0722), linear, strict=True))
 
 
-@pytest.mark.parametrize("color", [*COLORS, *CURVES, OTHER_COLOR, INK["text"], INK["muted"], INK["focus"]])
+@pytest.mark.parametrize("color", [*BRANCHES, *BLOCKS, *LAWS, OTHER_BRANCHES, INK["text"], INK["muted"], INK["focus"]])
 def test_what_is_drawn_is_seen_in_the_dark_theme(color):
     behind = luminance(dark(INK["background"]))
     assert (luminance(dark(color)) + 0.05) / (behind + 0.05) >= CONTRAST

@@ -7,8 +7,8 @@ import plotly.graph_objects as go
 import xarray
 
 from burridge_knopoff.attractors.lookup import branch_names
-from burridge_knopoff.figures.branches import OTHER_COLOR, OTHERS, branch_colors, named_colors
-from burridge_knopoff.figures.mean_distance import MARKERS
+from burridge_knopoff.figures.branches import OTHERS, branch_colors, named_colors
+from burridge_knopoff.figures.palette import OTHER_BRANCHES, STATE_MARKERS
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.charts.legend import Entry
 from burridge_knopoff.report.charts.look import SYMBOLS, a_axis, axis, bars, chart, scatter
@@ -31,7 +31,7 @@ class Branches:
 
     def group(self, number: int) -> str:
         """Return the name of the group of a branch."""
-        return OTHERS if self.colors[number] == OTHER_COLOR else self.names[number]
+        return OTHERS if self.colors[number] == OTHER_BRANCHES else self.names[number]
 
     def shape(self, group: str) -> str:
         """Return the mark of a group."""
@@ -43,19 +43,23 @@ class Branches:
 
 
 def run_legend(states: list[str]) -> list[Entry]:
-    """Return the entries of the curves of the runs, and of the run that is picked."""
+    """Return the entries of the runs, of the run that is picked, and of a_c."""
     runs = [Entry(f"run from {name}", INK["text"], _run_shape(n)) for n, name in enumerate(states)]
-    return [*runs, Entry("the run shown under One run", INK["focus"], "circle-open")]
+    picked = Entry("the run shown under One run", INK["focus"], "circle-open")
+    return [*runs, picked, Entry("loss of synchrony, a_c", INK["muted"], "dot")]
 
 
 def _run_shape(number: int) -> str:
-    return SYMBOLS[MARKERS[number % len(MARKERS)]] + ("-open" if number % 2 else "")
+    return SYMBOLS[STATE_MARKERS[number % len(STATE_MARKERS)]] + "-open"
 
 
-def distance(runs: xarray.Dataset, kind: xarray.DataArray, top: float, attractors: list[go.Scatter]) -> go.Figure:
+def distance(
+    runs: xarray.Dataset, kind: xarray.DataArray, top: float, critical: float, attractors: list[go.Scatter]
+) -> go.Figure:
     """Return ⟨J⟩ of the runs of one law, with three standard errors, over that of its attractors.
 
-    kind : of the motion of each run; top : end of the axis of ⟨J⟩; attractors : as of `attractor_marks`
+    kind : of the motion of each run; top : end of the axis of ⟨J⟩; critical : a_c of the synchronized orbit, NaN if
+        there is none; attractors : as of `attractor_marks`
 
     The page puts the run that is picked into the last trace.
     """
@@ -72,17 +76,20 @@ def distance(runs: xarray.Dataset, kind: xarray.DataArray, top: float, attractor
                 mean,
                 INK["text"],
                 f"run from {name}: %{{customdata[1]}}<br>a = %{{x}}<br>⟨J⟩ = %{{customdata[2]}}",
-                mode="lines+markers",
+                mode="markers",
                 meta="run",
                 customdata=[[number, *pair] for pair in zip(words, shown, strict=True)],
                 error_y=bars(3.0 * error, INK["text"]),
-                line_width=0.8,
-                marker={"symbol": _run_shape(number), "size": 5},
+                marker={"symbol": _run_shape(number), "size": 4.5 + 1.5 * number, "line": {"width": 1}},
             )
         )
     ring = {"symbol": "circle-open", "size": 15, "color": INK["focus"], "line": {"width": 2.5}}
     traces.append(go.Scatter(mode="markers", meta="picked", x=[], y=[], hoverinfo="skip", marker=ring))
-    return chart(traces, xaxis=a_axis(a), yaxis=axis("⟨<i>J</i>⟩", range=[-0.04 * top, 1.06 * top]))
+    line = {"type": "line", "x0": critical, "x1": critical, "yref": "paper", "y0": 0, "y1": 1, "layer": "below"}
+    look = {"line": {"color": INK["muted"], "width": 1, "dash": "dot"}}
+    shapes = [line | look] if np.isfinite(critical) else []
+    yaxis = axis("⟨<i>J</i>⟩", range=[-0.04 * top, 1.06 * top])
+    return chart(traces, xaxis=a_axis(a), yaxis=yaxis, shapes=shapes)
 
 
 def top_distance(runs: xarray.Dataset, attractors: xarray.Dataset | None) -> float:

@@ -49,8 +49,9 @@ def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
         legends["branches"] = groups.legend()
         marks = {law: branches.attractor_marks(found.sel(law=law), groups) for law in laws}
     top = branches.top_distance(runs, found)
+    critical = dict(zip(laws, summaries["orbits"]["critical_a"].sel(law=list(laws)).values.tolist(), strict=True))
     packed["distance"] = [
-        pack(branches.distance(runs.sel(law=law), kind.sel(law=law), top, marks[law])) for law in laws
+        pack(branches.distance(runs.sel(law=law), kind.sel(law=law), top, critical[law], marks[law])) for law in laws
     ]
     a = runs["a"].values
     edges, counts = sections.section_counts(summaries["bifurcation_diagram"])

@@ -6,7 +6,7 @@ import numpy as np
 import plotly.graph_objects as go
 import xarray
 
-from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.figures.style import cells
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.charts.legend import Entry
@@ -14,23 +14,23 @@ from burridge_knopoff.report.charts.look import a_axis, axis, bars, chart, scatt
 from burridge_knopoff.report.charts.theme import GREYS, INK, fixed
 from burridge_knopoff.study.formatting import text, with_error
 
-_NAMES = ("λ₁", "λ₂", "λ₃")
+_NAMES = ("λ₁", "λ₂")
 
 
 def kind_legend(kinds: np.ndarray, exponents: int) -> list[Entry]:
     """Return the entries of the largest exponents, and of the kinds of motion that there are."""
     curves = [Entry(name, grey, "circle") for name, grey in zip(_NAMES[:exponents], GREYS, strict=False)]
     return curves + [
-        Entry(MotionKind(kind).words, fixed(KIND_COLORS[kind]), edge=INK["muted"]) for kind in np.unique(kinds).tolist()
+        Entry(MotionKind(kind).words, fixed(KINDS[kind]), edge=INK["muted"]) for kind in np.unique(kinds).tolist()
     ]
 
 
 def exponents(run: xarray.Dataset, kinds: np.ndarray, frame: tuple[float, float]) -> go.Figure:
-    """Return the largest exponents of one law and initial state with three times their error, and its kinds of motion.
+    """Return the two largest exponents of one law and initial state with three times their error, and the kinds.
 
     frame : ends of the axis of the exponents
     """
-    a, order = run["a"].values, list(KIND_COLORS)
+    a, order = run["a"].values, list(KINDS)
     traces: list[go.Scatter | go.Heatmap] = []
     for name, grey, value, error in zip(
         _NAMES, GREYS, run["lyapunov_exponent"].values.T, run["lyapunov_error"].values.T, strict=False
@@ -41,10 +41,9 @@ def exponents(run: xarray.Dataset, kinds: np.ndarray, frame: tuple[float, float]
                 np.where(np.isfinite(value), value, np.nan),
                 grey,
                 f"a = %{{x}}<br>{name} = %{{text}}",
-                mode="lines+markers",
+                mode="markers",
                 text=[with_error(*pair) for pair in zip(value.tolist(), error.tolist(), strict=True)],
                 error_y=bars(3.0 * error, grey),
-                line_width=0.8,
                 marker_size=4,
             )
         )
@@ -56,7 +55,7 @@ def exponents(run: xarray.Dataset, kinds: np.ndarray, frame: tuple[float, float]
         z=[[order.index(kind) for kind in kinds]],
         text=[words],
         hovertemplate="%{text}<extra></extra>",
-        **steps([fixed(color) for color in KIND_COLORS.values()]),
+        **steps([fixed(color) for color in KINDS.values()]),
     )
     low, high = frame
     margin = 0.02 * (high - low)

@@ -34,7 +34,7 @@ def _plain(title: str) -> str:
 
 
 def _map(one: xarray.Dataset, varied: list[str], highest: float) -> go.Figure:
-    """Return ⟨J⟩ of one panel as colours; its hover texts say what else is known of the run."""
+    """Return ⟨J⟩ of one panel as colours; its hover texts give the other results of the run."""
     values = one["mean_distance"].values
     words = np.full(values.shape, "the run did not complete", dtype=object)
     for place in zip(*np.nonzero(np.isfinite(values)), strict=True):

@@ -22,6 +22,7 @@ SYMBOLS = {
     "v": "triangle-down",
     "p": "pentagon",
     "h": "hexagon2",
+    "*": "star",
     "+": "cross",
     "x": "x",
 }

@@ -6,8 +6,8 @@ import numpy as np
 import plotly.graph_objects as go
 import xarray
 
-from burridge_knopoff.figures.style import color
 from burridge_knopoff.report.charts.look import a_axis, axis, chart
+from burridge_knopoff.report.charts.theme import INK
 from burridge_knopoff.summaries.bifurcation_diagram import ROUNDING
 
 #: So few that each takes a line of pixels.
@@ -58,15 +58,15 @@ def sections(a: np.ndarray, edges: np.ndarray, counts: np.ndarray) -> go.Figure:
     words = np.full(counts.shape, "", dtype=object)
     for n, k in zip(*np.nonzero(counts), strict=True):
         words[n, k] = f"{number[n, k]} of {totals[k]} crossings, {'upward' if counts[n, k] > 0 else 'downward'}"
-    up, down = color(0), color(1)
+    ink = INK["text"]
     trace = go.Heatmap(
         x=a,
         y=0.5 * (edges[1:] + edges[:-1]),
-        z=np.where(counts, np.sign(counts) * shade, np.nan).astype("f4"),
+        z=np.where(counts, shade, np.nan).astype("f4"),
         text=words,
-        zmin=-DECADES,
+        zmin=0.0,
         zmax=DECADES,
-        colorscale=[[0, down], [0.25, down], [0.5, f"{down}59"], [0.5, f"{up}59"], [0.75, up], [1, up]],
+        colorscale=[[0, f"{ink}59"], [0.5, ink], [1, ink]],
         showscale=False,
         hoverongaps=False,
         hovertemplate="a = %{x}<br>W′ = %{y:.4f}<br>%{text}<extra></extra>",

@@ -1,6 +1,8 @@
-"""The attractors at all values of a, including those added where something changes: ⟨J⟩ and kind of motion."""
+"""The kinds of motion of the attractors versus a, at the values of the grid and those inserted where they change."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import xarray
@@ -9,25 +11,29 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Patch
 
 from burridge_knopoff.attractors.lookup import branch_names
-from burridge_knopoff.figures.kinds import KIND_COLORS
+from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, say, show_all, styled
 from burridge_knopoff.motion.kind import MotionKind
 
-TITLE = "Windows in a"
+TITLE = "Kinds of motion of the attractors"
 CATEGORY = "Attractors"
 INPUTS = ("refined",)
 CAPTION = """\
-The attractors at all values of a: those of the grid, and those added between neighbouring values where the attractors
-differ, down to the resolution of the study. Above: ⟨J⟩, in the colour of the kind of motion. Below: the kind of motion
-on each branch.
+The attractors at all values of a: those of the grid, and those inserted where the attractors of neighbouring values
+differ, down to the resolution of the study. Top: ⟨J⟩, in the colour of the kind of motion. Bottom: the kind of motion
+along each branch that extends over at least a fiftieth of the range of a.
 """
+
+# Branches that extend over less than this fraction of the range of a have no row.
+SHORTEST = 0.02
 
 
 @styled
 def draw(refined: xarray.Dataset) -> Figure:
-    """Draw, for each law, ⟨J⟩ of all attractors and a bar with the kinds of motion for each branch."""
+    """Draw, for each law, ⟨J⟩ of all attractors and a bar with the kinds of motion for each long branch."""
     laws = refined["law"].values
-    names = branch_names(refined)
+    long = long_branches(refined)
+    names = {number: name for number, name in branch_names(refined).items() if number in long}
     strip = 0.16 * len(names) + 0.2
     figure = Figure(figsize=(page_width(len(laws)), 3.0 + strip), layout="constrained")
     panels = figure.subplots(2, len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.4, strip])
@@ -40,14 +46,22 @@ def draw(refined: xarray.Dataset) -> Figure:
         panels[1, column].tick_params(axis="y", length=0)
     a = refined["a"].values
     show_all(panels[0, 0], np.unique(a[np.isfinite(a)]))
-    panels[1, 0].set_ylim(len(names) - 0.4, -0.6)
+    panels[1, 0].set_ylim(max(1, len(names)) - 0.4, -0.6)
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
     shown = np.unique(refined["kind"].values[refined["branch"].values >= 0]).tolist()
-    handles = [Patch(facecolor=KIND_COLORS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in shown]
+    handles = [Patch(facecolor=KINDS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in shown]
     if handles:
         legend_below(figure, handles)
     label_panels(panels.flat, [*(f"{law} law" for law in laws), *(f"{law} law: kinds of motion" for law in laws)])
     return figure
+
+
+def long_branches(refined: xarray.Dataset) -> set[int]:
+    """Return the branches that extend over at least SHORTEST of the range of a under some law."""
+    branch, a = refined["branch"].values, np.broadcast_to(refined["a"].values[..., None], refined["branch"].shape)
+    least = SHORTEST * (np.nanmax(a) - np.nanmin(a))
+    extents = [(number, np.ptp(a[k][one == number])) for k, one in enumerate(branch) for number in np.unique(one)]
+    return {int(number) for number, extent in extents if number >= 0 and extent >= least}
 
 
 def _points(panel: Axes, refined: xarray.Dataset) -> None:
@@ -56,10 +70,10 @@ def _points(panel: Axes, refined: xarray.Dataset) -> None:
     mean, kind = refined["mean_distance"].values[there], refined["kind"].values[there]
     if not len(a):
         say(panel, "no attractor")
-    for number, color in KIND_COLORS.items():
+    for number, color in KINDS.items():
         chosen = kind == number
-        edge = {"markeredgecolor": "0.4", "markeredgewidth": 0.4} if number < 0 else {"markeredgewidth": 0}
-        panel.plot(a[chosen], mean[chosen], "o", markersize=2.2, color=color, **edge)
+        look: Any = {"markersize": 2.6, "markeredgecolor": "0.3", "markeredgewidth": 0.3}
+        panel.plot(a[chosen], mean[chosen], "o", color=color, **look)
 
 
 def _bars(panel: Axes, refined: xarray.Dataset, numbers: list[int]) -> None:
@@ -78,7 +92,7 @@ def _bars(panel: Axes, refined: xarray.Dataset, numbers: list[int]) -> None:
         joined, middle = np.searchsorted(grid, a[1:]) == np.searchsorted(grid, a[:-1], "right"), 0.5 * (a[1:] + a[:-1])
         left = np.append(edges[here[:1]], np.where(joined, middle, edges[here[1:]]))
         right = np.append(np.where(joined, middle, edges[here[:-1] + 1]), edges[here[-1:] + 1])
-        colors = [KIND_COLORS[int(item)] for item in kind]
+        colors = [KINDS[int(item)] for item in kind]
         panel.barh(
             np.full(len(a), row),
             right - left,

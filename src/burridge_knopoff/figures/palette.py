@@ -1,0 +1,90 @@
+"""The colours of figures and charts: a palette for each family of things, so that no colour has two meanings.
+
+Branches of attractors, kinds of motion and blocks have hues of their own; the synchronized branch and synchronized
+motion, which are the same, share one. Laws and solvers are black and grey, with line styles and markers. Ascending
+values of one quantity are shades of a ramp. Within a family, colours also differ for colour-blind readers.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import matplotlib as mpl
+from matplotlib.colors import to_hex
+
+SYNCHRONIZED = "#0072B2"
+
+#: Branches of attractors: the synchronized branch has the first colour, branch 1 the second, and so on.
+BRANCHES = (SYNCHRONIZED, "#D55E00", "#999933", "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#7A3B12")
+#: Branches beyond those, and states whose branch is undetermined.
+OTHER_BRANCHES = "#999999"
+UNDETERMINED = "#000000"
+#: Branches beyond those in a map, where each needs a shade.
+OTHER_SHADES = (OTHER_BRANCHES, "#666666", "#CCCCCC", "#444444")
+
+#: {number of a kind of motion: colour}. Undetermined motion is white; from periodic to chaotic motion colours darken.
+KINDS = {-1: "#FFFFFF", 0: SYNCHRONIZED, 1: "#DCCBEA", 2: "#B58AD1", 3: "#4A0D63", 4: "#F4A3B5", 5: "#7BA7D9"}
+
+#: Blocks. Of three, the end blocks have a light and a dark shade of one hue, the middle block another hue.
+BLOCKS = ("#6CCBC0", "#E0457B", "#00423C", "#B08D57", "#7F9A20", "#8C6BB1", "#555555")
+
+#: Laws, together with `DASHES` and `law_marker`.
+LAWS = ("#000000", "#8A8A8A", "#4D4D4D", "#B5B5B5")
+DASHES: tuple[Any, ...] = (
+    "-", "--", ":", "-.", (0, (6, 1.5, 1, 1.5, 1, 1.5)), (0, (10, 3)), (0, (1, 4)), (0, (5, 1, 5, 4))
+)  # fmt: skip
+MARKERS = ("o", "s", "^", "D", "v", "p", "h", "x")
+
+
+#: Initial states, as open symbols that grow, so that one is seen around another.
+STATE_MARKERS = "ovs^Dph*"
+
+
+def law_color(index: int) -> str:
+    """Return the shade of a law by its number in the study."""
+    return LAWS[index % len(LAWS)]
+
+
+def block_color(index: int) -> str:
+    """Return the colour of a block by its number, from 0."""
+    return BLOCKS[index % len(BLOCKS)]
+
+
+def dashes(index: int) -> Any:
+    """Return the line style of a law, or of another curve, by its number."""
+    return DASHES[index % len(DASHES)]
+
+
+def law_symbol(index: int, size: float = 3.0) -> dict[str, Any]:
+    """Return the look of a law's points: small and filled for the first law, larger and open for others.
+
+    size : of the symbol of the first law
+    """
+    look = {"color": law_color(index), "marker": MARKERS[max(0, index - 1) % len(MARKERS)], "markeredgewidth": 0.7}
+    return look | ({"markerfacecolor": "none", "markersize": 1.5 * size} if index else {"markersize": size})
+
+
+def state_symbol(index: int, size: float = 1.9) -> dict[str, Any]:
+    """Return the look of the points of an initial state by its number: an open black symbol.
+
+    size : of the symbol of the first state
+    """
+    return {
+        "color": "black",
+        "marker": STATE_MARKERS[index % len(STATE_MARKERS)],
+        "markerfacecolor": "none",
+        "markeredgewidth": 0.45,
+        "markersize": size + 0.8 * index,
+        "linestyle": "",
+    }
+
+
+def ramp(count: int) -> list[str]:
+    """Return the colours of `count` ascending values of one quantity, from light to dark."""
+    return [to_hex(mpl.colormaps["viridis_r"](0.15 + 0.8 * k / max(1, count - 1))) for k in range(count)]
+
+
+def pale(color: str) -> str:
+    """Return a lighter shade of a colour, both #rrggbb."""
+    parts = (int(color[k : k + 2], 16) for k in (1, 3, 5))
+    return "#" + "".join(f"{round(0.45 * part + 0.55 * 255):02x}" for part in parts)
