@@ -8,7 +8,10 @@ from typing import Any
 
 from markupsafe import Markup
 
-from burridge_knopoff.study.formatting import text
+from burridge_knopoff.study.formatting import text, with_error
+
+#: A number below this, without an error, is one of the order of rounding errors.
+ROUNDING = 1e-9
 
 
 def exact(value: float) -> float | str | None:
@@ -28,3 +31,10 @@ def embedded_json(data: Any) -> Markup:
     for character in "<>&\u2028\u2029":
         plain = plain.replace(character, f"\\u{ord(character):04x}")
     return Markup(plain)
+
+
+def measured(value: Any, error: Any) -> str:
+    """Format a measured number with its error; of a rounding error, one digit."""
+    if error is None and isinstance(value, float) and 0.0 < abs(value) < ROUNDING:
+        return text(float(f"{value:.0e}"))
+    return with_error(value, error)

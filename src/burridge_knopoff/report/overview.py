@@ -1,4 +1,4 @@
-"""The setting of a study in the words of its config, and the origin of its numbers."""
+"""The setting of a study in words, and the origin of its numbers."""
 
 from __future__ import annotations
 
@@ -24,9 +24,29 @@ LIBRARIES = (
     *("pyyaml", "jinja2", "plotly", "pillow"),
 )
 
+#: The conventions of a study in words, by the values of the keys `contact` and `start`.
+CONTACTS = {
+    "one_sided": "one-sided contact (a stuck block never slips backward)",
+    "symmetric": "symmetric contact (a stuck block slips backward if the force on it is large enough)",
+}
+STARTS = {
+    "moving": "every block slips at τ = 0",
+    "tested": "a block sticks at τ = 0 if static friction can hold it",
+}
+
+
+def conventions(contact: str, start: str) -> str:
+    """Describe the convention of contact and start."""
+    return f"{CONTACTS[contact]}; {STARTS[start]}"
+
+
+def convention(setting: Mapping[str, Any]) -> str:
+    """Describe the setting of the verdicts: v, contact and start; empty for a study without verdicts."""
+    return f"v = {text(setting['v'])}; {conventions(setting['contact'], setting['start'])}" if setting else ""
+
 
 def opening(study: Study) -> str:
-    """Describe the study in a line."""
+    """Return a study's blocks, parameters and laws in a line."""
     laws = study.laws
     words = f"{', '.join(laws[:-1])} and {laws[-1]} friction laws" if len(laws) > 1 else f"{laws[0]} friction law"
     varied = ", ".join(f"{name} = {values}" for name, values in _parameters(study).items())
@@ -34,14 +54,14 @@ def opening(study: Study) -> str:
 
 
 def _parameters(study: Study) -> dict[str, str]:
-    """Return v, a and all other parameters that a study varies, with their values in words."""
+    """Return v, a and every other parameter that a study varies, with its values in words."""
     config = study.config
     lists = config["grid"] or {"a": config["a"]}
     return {"v": text(config["v"]), **{name: _grid(items) for name, items in lists.items()}}
 
 
 def what_was_run(study: Study) -> list[tuple[str, str]]:
-    """Return names and values of the settings that decide the runs."""
+    """Return names and values of the settings of the runs."""
     config = study.config
     solvers = ", ".join(f"{config['solver'][law]} ({law} law)" for law in study.laws)
     if "rk4" in config["solver"].values():
@@ -49,22 +69,22 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
     transient, window = config["transient"], config["window"]
     first = {name: next(iter(values.values())) for name, values in study.parameters.items()}
     models = {law: study.model(law, **first) for law in study.laws}
-    there = " at the first point" if study.is_plane else ""
+    at_first = " at the first point" if study.is_plane else ""
     chain = next(iter(models.values())).chain
     without = [("Left out by the config", ", ".join(study.left_out))] if study.left_out and not study.is_plane else []
     return [
         ("Blocks", f"N = {chain.blocks}"),
-        (f"Chain{there}", chain_text(chain)),
-        (f"Friction law{'s' * (len(models) > 1)}{there}", laws_text(models)),
+        (f"Chain{at_first}", chain_text(chain)),
+        (f"Friction law{'s' * (len(models) > 1)}{at_first}", laws_text(models)),
         *_parameter_rows(study),
-        ("Conventions", f"contact {config['contact']}, start {config['start']}"),
+        ("Conventions", conventions(config["contact"], config["start"])),
         ("Solvers", solvers),
         (
             "Windows",
-            f"transient {text(transient)}, then ⟨J⟩ over τ = {text(transient)} to {text(transient + window)} in "
-            f"{config['batches']} batches",
+            f"transient of {text(transient)}, then averages over τ = {text(transient)} to {text(transient + window)} "
+            f"in {config['batches']} batches",
         ),
-        ("Synchronized", f"if ⟨J⟩ is below {text(config['synchronization_threshold'])}"),
+        ("Synchronized", f"if ⟨J⟩ < {text(config['synchronization_threshold'])}"),
         ("Runs", str(len(all_points(study)))),
         *without,
     ]
@@ -74,7 +94,7 @@ def _parameter_rows(study: Study) -> list[tuple[str, str]]:
     """Return a row for each parameter that varies, and one for v."""
     words = _parameters(study)
     rows = {
-        name: f"{name} = {words[name]}: {counted(len(values), 'value')}" for name, values in study.parameters.items()
+        name: f"{name} = {words[name]} ({counted(len(values), 'value')})" for name, values in study.parameters.items()
     }
     rows.setdefault("v", f"v = {words['v']}")
     kinds = {"a": "Friction parameter", "v": "Driver velocity"}
@@ -115,7 +135,7 @@ def laws_text(models: Mapping[str, Model]) -> str:
 
 def _grid(items: list[Any]) -> str:
     parts = [
-        f"{text(item['from'])} to {text(item['to'])} by {text(item['step'])}" if isinstance(item, dict) else text(item)
+        f"{text(item['from'])} to {text(item['to'])} in steps of {text(item['step'])}" if isinstance(item, dict) else text(item)
         for item in items
     ]
     return ", ".join(parts)
@@ -135,7 +155,7 @@ def config_text(study: Study) -> str:
 
 
 def origins(summaries: Mapping[str, xarray.Dataset]) -> list[dict[str, str]]:
-    """Return the software that made each summary, from its file."""
+    """Return the software that wrote each summary, as stored in its file."""
     return [
         {"name": f"{name}.nc", **{key: str(dataset.attrs.get(key, "–")) for key in provenance(__name__)}}
         for name, dataset in summaries.items()
