@@ -12,6 +12,8 @@ _CODE = re.compile("`([^`]+)`")
 _SUBSCRIPT = re.compile(r"\b([A-Za-zα-ωΑ-Ω])_(\w)(?!\w)")
 _SYMBOL = re.compile(r"(?<![\w>])([JUVW]|[α-ω]|F(?=&#39;|\())(?![\w_])")
 _PRIME = re.compile("(?<=</i>)&#39;")
+# A line does not break at a sign of relation.
+_BROKEN = re.compile(r"(?<=[\d>⟩]) (?=[=≤≥]|&[lg]t;)|(?<=[=≤≥]) |(?<=&[lg]t;) ")
 _POWER = re.compile(r"\^(\w[\d.]*\d|\w)")
 # The letters a, c, v and A are symbols in a formula; a is one after the words below, and before those further below.
 _RELATION = r"(?:[=≤≥−+^/]|&lt;|&gt;)"
@@ -44,4 +46,5 @@ def _formulas(html: str) -> str:
     html = _IN_FORMULA.sub(lambda found: f"<i>{found[0]}</i>", html)
     html = _SUBSCRIPT.sub(r"<i>\1</i><sub>\2</sub>", html)
     html = _PRIME.sub("′", _SYMBOL.sub(r"<i>\1</i>", html))
-    return _POWER.sub(r"<sup>\1</sup>", html)
+    html = _POWER.sub(r"<sup>\1</sup>", html)
+    return _BROKEN.sub("\N{NO-BREAK SPACE}", html)

@@ -22,8 +22,8 @@ function rowsOf({ law, initial, a }) {
   const at = (name) => runs[name][law][initial][a];
   const exponents = at("exponent_texts").map((text, n) => `λ${subscript(n + 1)} = ${text}`);
   return [
-    ["Run", `${runs.laws[law]} law, initial state ${runs.initial[initial]}, a = ${runs.texts[a]}`],
-    ["⟨J⟩", at("mean_distance_text")],
+    ["Run", element("span", {}, `${runs.laws[law]} law, initial state ${runs.initial[initial]}, `, element("i", {}, "a"), ` = ${runs.texts[a]}`)],
+    [element("span", {}, "⟨", element("i", {}, "J"), "⟩"), at("mean_distance_text")],
     ["Status", runs.statuses[at("status")].replaceAll("_", " ")],
     ["Kind of motion", at("kind_text")],
     ["Lyapunov exponents", exponents.length ? element("ul", {}, ...exponents.map((text) => element("li", {}, text))) : "none computed"],
