@@ -9,8 +9,8 @@ import pytest
 import xarray
 import yaml
 
-from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.claims import claim
+from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources, render
 from burridge_knopoff.report.verdicts import MAIN, SIGNS
 from tests.report.conftest import CLAIMS
@@ -156,7 +156,7 @@ def test_a_study_of_two_parameters_begins_with_the_distance(tmp_path, values, ch
     assert html.count('data-chart="grid"') == charts
     assert ('id="plotly"' in html) == (charts > 0)
     page = Page(html)
-    assert [attributes["id"] for tag, attributes in page.elements if tag == "section"][0] == "grid"
+    assert next(attributes["id"] for tag, attributes in page.elements if tag == "section") == "grid"
     assert [attributes["value"] for _, attributes in page.elements if attributes.get("name") == "theme"] == [
         "auto",
         "light",

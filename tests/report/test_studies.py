@@ -64,7 +64,7 @@ def test_a_study_of_curves_alone(small_studies, tmp_path):
     html = rendered(study, small.found, None, STORED[:5], tmp_path)
     text = Page(html).whole_text
     assert "Left out by the config attractors, bifurcations, edges, basins, phases, claims" in text
-    assert "Attractors were not looked for" in text
+    assert "This study does not search for attractors" in text
     assert "No statement of the paper was judged." in text
     assert not re.search(r'href="summary/(attractors|basins|claims)', html)
 

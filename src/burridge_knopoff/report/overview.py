@@ -57,10 +57,10 @@ def _parameters(study: Study) -> dict[str, str]:
     """Return v, a and every other parameter that a study varies, with its values in words."""
     config = study.config
     lists = config["grid"] or {"a": config["a"]}
-    return {"v": text(config["v"]), **{name: _grid(items) for name, items in lists.items()}}
+    return {"v": text(config["v"]), **{name: _format_grid(items) for name, items in lists.items()}}
 
 
-def what_was_run(study: Study) -> list[tuple[str, str]]:
+def run_settings(study: Study) -> list[tuple[str, str]]:
     """Return names and values of the settings of the runs."""
     config = study.config
     solvers = ", ".join(f"{config['solver'][law]} ({law} law)" for law in study.laws)
@@ -106,25 +106,25 @@ def chain_text(chain: Chain) -> str:
     if chain.springs:
         parts = [f"springs of {chain.springs}"]
     else:
-        parts = [f"coupling {_numbers(chain.coupling)}"]
+        parts = [f"coupling {_format_numbers(chain.coupling)}"]
     parts.append(
         "pulling as many springs as the block has neighbours"
         if chain.pulling == NEIGHBOURS
-        else f"pulling {_numbers(chain.pulling)}"
+        else f"pulling {_format_numbers(chain.pulling)}"
     )
-    parts.append(f"static friction {_numbers(chain.threshold)}")
+    parts.append(f"static friction {_format_numbers(chain.threshold)}")
     if chain.mass != 1.0:
-        parts.append(f"mass {_numbers(chain.mass)}")
+        parts.append(f"mass {_format_numbers(chain.mass)}")
     for words, damping in (("neighbours", chain.damping), ("the driver", chain.pulling_damping)):
         if np.any(damping):
-            parts.append(f"dashpots to {words} {_numbers(damping)}")
+            parts.append(f"dashpots to {words} {_format_numbers(damping)}")
     shape = "a ring" if chain.ends == "ring" else "open ends"
     if chain.is_network:
         shape = f"a grid of {chain.grid[0]} × {chain.grid[1]} blocks" if chain.grid else "a network"
     return f"{shape}; {'; '.join(parts)}"
 
 
-def _numbers(value: Any) -> str:
+def _format_numbers(value: Any) -> str:
     return ", ".join(text(item) for item in value) if isinstance(value, list | tuple) else text(value)
 
 
@@ -133,9 +133,11 @@ def laws_text(models: Mapping[str, Model]) -> str:
     return "; ".join(f"{name}, {model.law.words}" for name, model in models.items())
 
 
-def _grid(items: list[Any]) -> str:
+def _format_grid(items: list[Any]) -> str:
     parts = [
-        f"{text(item['from'])} to {text(item['to'])} in steps of {text(item['step'])}" if isinstance(item, dict) else text(item)
+        f"{text(item['from'])} to {text(item['to'])} in steps of {text(item['step'])}"
+        if isinstance(item, dict)
+        else text(item)
         for item in items
     ]
     return ", ".join(parts)
@@ -144,7 +146,7 @@ def _grid(items: list[Any]) -> str:
 def initial_states(study: Study) -> list[dict[str, str]]:
     """Return name, U(0) and U'(0) of each initial state."""
     return [
-        {"name": name, **{key: _numbers(state[key]) for key in ("position", "velocity")}}
+        {"name": name, **{key: _format_numbers(state[key]) for key in ("position", "velocity")}}
         for name, state in study.config["initial"].items()
     ]
 

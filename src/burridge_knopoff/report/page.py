@@ -17,7 +17,7 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.report import overview, tables
 from burridge_knopoff.report.charts.embedded import Charts, charts
-from burridge_knopoff.report.numbers import embedded_json, measured
+from burridge_knopoff.report.numbers import embedded_json, format_measured
 from burridge_knopoff.report.pictures import read_picture
 from burridge_knopoff.report.prose import prose
 from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
@@ -97,7 +97,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         undefined=jinja2.StrictUndefined,
     )
     environment.filters.update(number=text, prose=prose)
-    environment.globals.update(measured=measured)
+    environment.globals.update(format_measured=format_measured)
     drawn = charts(study, summaries)
     if study.is_plane:
         parts = _over_parameters(drawn)
@@ -110,7 +110,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         blocks=study.blocks,
         over_a=not study.is_plane,
         opening=overview.opening(study),
-        ran=overview.what_was_run(study),
+        ran=overview.run_settings(study),
         states=overview.initial_states(study),
         verdicts=verdicts,
         config=overview.config_text(study),
@@ -148,13 +148,15 @@ def _over_a(
         "moving": trajectories is not None,
         "laws": list(study.laws),
         "initial": list(study.initial),
-        "branches": _of(summaries, "attractors", tables.branch_table, []),
-        "attractors": _of(summaries, "attractors", lambda attractors: attractors.attrs),
-        "sliding": _of(summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False),
+        "branches": _from_summary(summaries, "attractors", tables.branch_table, []),
+        "attractors": _from_summary(summaries, "attractors", lambda attractors: attractors.attrs),
+        "sliding": _from_summary(
+            summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False
+        ),
         "transitions": tables.transition_table(summaries["orbits"]),
-        "maps": _of(summaries, "basins", tables.map_table, []),
+        "maps": _from_summary(summaries, "basins", tables.map_table, []),
         "agreement": digest(summaries["agreement"]).splitlines(),
-        "chains": _of(summaries, "chains", tables.chain_table, []),
+        "chains": _from_summary(summaries, "chains", tables.chain_table, []),
         "unclear": unclear_runs(commands, summaries["mean_distance"], summaries["agreement"]),
     }
 
@@ -181,7 +183,7 @@ def _data(
     return embedded_json({"runs": runs, "dark": dark, "trajectories": trajectories})
 
 
-def _of(
+def _from_summary(
     summaries: Mapping[str, xarray.Dataset], name: str, make: Callable[[xarray.Dataset], Any], nothing: Any = None
 ) -> Any:
     """Return the result of `make` for a summary, or `nothing` if the study does not have the summary."""

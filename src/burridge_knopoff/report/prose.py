@@ -17,7 +17,20 @@ _BROKEN = re.compile(r"(?<=[\d>⟩]) (?=[=≤≥]|&[lg]t;)|(?<=[=≤≥]) |(?<=&
 _POWER = re.compile(r"\^(\w[\d.]*\d|\w)")
 # The letters a, c, v and A are symbols in a formula; a is one after the words below, and before those further below.
 _RELATION = r"(?:[=≤≥−+^/]|&lt;|&gt;)"
-_BEFORE = ("every", "each", "any", "all", "same", "larger", "largest", "smaller", "smallest", "small", "parameter", "versus")
+_BEFORE = (
+    "every",
+    "each",
+    "any",
+    "all",
+    "same",
+    "larger",
+    "largest",
+    "smaller",
+    "smallest",
+    "small",
+    "parameter",
+    "versus",
+)
 _AFTER = "with|at|for|from|of|where|located"
 _IN_FORMULA = re.compile(
     "|".join(

@@ -2,7 +2,10 @@
 const trajectories = data.trajectories;
 // Sizes in the units of the drawing; time units of the run per second.
 const SPACING = 180, BLOCK = 62, TOP = 14, GROUND = 150, SPEED = 3;
-const moving = { frames: 0, moment: 0, playing: false, last: 0 };
+const moving = {
+  blocks: null, frames: 0, moment: 0, playing: false, request: 0, last: 0, visible: false,
+  wanted: !window.matchMedia("(prefers-reduced-motion: reduce)").matches,
+};
 
 const svg = (name, attributes) => {
   const made = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -45,7 +48,9 @@ async function showBlocks() {
   if (law !== picked.law || initial !== picked.initial || a !== picked.a) return;
   byId("moving").hidden = !blocks;
   byId("not-moving").textContent = blocks ? "" : "The trajectory of this run is not in the report. If the run completed, its file has it.";
-  if (!blocks) return setPlaying(false);
+  moving.blocks = blocks;
+  setPlaying();
+  if (!blocks) return;
   moving.frames = blocks[0].steps.length;
   moving.moment = 0;
   byId("moment").max = moving.frames * trajectories.interval;
@@ -53,7 +58,6 @@ async function showBlocks() {
     positions.map((position, n) => position - trajectories.v * trajectories.interval * n));
   // There is less room on the right of the point where the driver pulls.
   const furthest = Math.max(-Math.min(...relative), 3 * Math.max(...relative));
-  moving.blocks = blocks;
   moving.scale = 0.55 * SPACING / (furthest || 1);
   drawBlocks();
 }
@@ -102,32 +106,34 @@ function drawBlocks() {
   byId("moment-text").textContent = `${moving.moment.toFixed(1)} of ${(moving.frames * trajectories.interval).toFixed(1)}`;
 }
 
-function setPlaying(playing) {
-  if (playing && !moving.playing) requestAnimationFrame((now) => { moving.last = now; advance(now); });
+/** Play or pause: blocks move if they are in the window and the reader wants it. */
+function setPlaying() {
+  const playing = Boolean(moving.blocks) && moving.visible && moving.wanted;
+  cancelAnimationFrame(moving.request);
+  if (playing) moving.request = requestAnimationFrame((now) => { moving.last = now; advance(now); });
   moving.playing = playing;
   byId("play").textContent = playing ? "Pause" : "Play";
 }
 
 function advance(now) {
-  if (!moving.playing) return;
   moving.moment = (moving.moment + SPEED * (now - moving.last) / 1000) % (moving.frames * trajectories.interval);
   moving.last = now;
   drawBlocks();
-  requestAnimationFrame(advance);
+  moving.request = requestAnimationFrame(advance);
 }
 
-/** Let the blocks move while they are in the window, but from the start only for readers who want motion. */
 function startBlocks() {
   if (!trajectories) return;
   makeBlocks();
-  let wanted = !window.matchMedia("(prefers-reduced-motion: reduce)").matches;
-  byId("play").addEventListener("click", () => { wanted = !moving.playing; setPlaying(wanted); });
+  byId("play").addEventListener("click", () => { moving.wanted = !moving.playing; setPlaying(); });
   byId("moment").addEventListener("input", () => {
-    wanted = false;
-    setPlaying(false);
+    moving.wanted = false;
+    setPlaying();
     moving.moment = Number(byId("moment").value);
     drawBlocks();
   });
-  new IntersectionObserver(([{ isIntersecting }]) => setPlaying(isIntersecting && wanted && Boolean(moving.blocks)))
-    .observe(byId("blocks"));
+  new IntersectionObserver(([{ isIntersecting }]) => {
+    moving.visible = isIntersecting;
+    setPlaying();
+  }).observe(byId("blocks"));
 }
