@@ -12,7 +12,6 @@ from playwright.sync_api import sync_playwright
 ROOT = Path(__file__).parents[1]
 REPORT = ROOT / "results" / "paper" / "report.html"
 PICTURE = ROOT / "docs" / "figures" / "report.png"
-COLORS = 64
 
 with sync_playwright() as tools:
     browser = tools.chromium.launch(executable_path=sys.argv[1], args=["--no-sandbox"])
@@ -21,4 +20,5 @@ with sync_playwright() as tools:
     page.locator(".chart[data-drawn]").nth(1).wait_for()
     page.screenshot(path=PICTURE)
     browser.close()
-Image.open(PICTURE).convert("RGB").quantize(COLORS, dither=Image.Dither.NONE).save(PICTURE, optimize=True)
+colors = Image.open(PICTURE).convert("RGB").quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+colors.save(PICTURE, optimize=True)
