@@ -303,7 +303,7 @@ def test_the_report_of_a_study(browser, reported):
     plain.close()
 
 
-def test_blocks_are_at_rest_for_who_wants_no_motion(browser, poor):
+def test_blocks_rest_if_the_reader_wants_no_motion(browser, poor):
     path = poor.folder / "still.html"
     path.write_text(render(poor.study, replace(poor.sources, points=poor.folder / "points")))
     reader = Reader(browser, path, reduced_motion="reduce")

@@ -110,7 +110,7 @@ def test_a_summary_of_other_sources_is_refused(poor):
         render(poor.study, replace(poor.sources, summaries={**poor.sources.summaries, "phases": path}))
 
 
-def test_a_failed_run_stands_with_its_file_and_command(page):
+def test_a_failed_run_has_its_file_and_command(page):
     assert "did not complete: diverged" in page.whole_text
     path = "points/linearized/pair/a0.2000.nc"
     assert any(attributes.get("href") == path for _, attributes in page.elements)

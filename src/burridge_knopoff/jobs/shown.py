@@ -192,10 +192,10 @@ def report(study: Study, files: Sequence[str]) -> list[Rule]:
                 "figures": [file for file in files if file.endswith(".png")],
             },
             if_there=True,
-            # The page draws the blocks of single runs.
-            points=None if study.is_plane else lambda job: study.points,
             # The report shows the whole config.
             params=lambda job: {"config": study.config, "parameters": study.points["parameters"]},
+            # The page draws the moving blocks of single runs.
+            points=None if study.is_plane else lambda job: study.points,
             stage="report",
             over="any",
             memory=600,

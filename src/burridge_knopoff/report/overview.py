@@ -94,7 +94,7 @@ def _parameter_rows(study: Study) -> list[tuple[str, str]]:
     """Return a row for each parameter that varies, and one for v."""
     words = _parameters(study)
     rows = {
-        name: f"{name} = {words[name]} ({counted(len(values), 'value')})" for name, values in study.parameters.items()
+        name: f"{name} = {words[name]}: {counted(len(values), 'value')}" for name, values in study.parameters.items()
     }
     rows.setdefault("v", f"v = {words['v']}")
     kinds = {"a": "Friction parameter", "v": "Driver velocity"}
