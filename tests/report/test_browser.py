@@ -1,5 +1,7 @@
 """The report in a browser, read as its readers do: with a pointer, with the keyboard, on a phone, in print."""
 
+from dataclasses import replace
+
 import netCDF4
 import pytest
 from playwright import sync_api as playwright
@@ -160,6 +162,25 @@ def under_pointer(page, kind):
     return chart.locator(".hoverlayer").text_content()
 
 
+def check_blocks(page):
+    """Hold the moving blocks against what is said of them: they play, pause, and stop when a reader wants no motion."""
+    page.locator("#blocks").scroll_into_view_if_needed()
+    text = "document.getElementById('moment-text').textContent"
+    page.wait_for_function("() => document.getElementById('play').textContent === 'Pause'")
+    page.wait_for_function(f"(before) => {text} !== before", arg=page.evaluate(text))
+    page.locator("#play").press("Enter")
+    assert page.locator("#play").inner_text() == "Play"
+    at = []
+    for moment in (0, 0, 7.3):
+        page.locator("#moment").evaluate(
+            "(range, moment) => { range.value = moment; range.dispatchEvent(new Event('input')); }", moment
+        )
+        at.append(page.locator("#blocks rect").evaluate_all("all => all.map((one) => one.x.baseVal.value)"))
+    assert at[0] == at[1] != at[2]
+    assert len(at[0]) == 3
+    assert page.locator("#blocks path.spring").count() == 5
+
+
 def tab_through(page):
     """Press Tab from the top to the end; return the names of all that was reached. Each must show that it has focus."""
     page.evaluate(
@@ -185,7 +206,7 @@ def check_contrast(page):
 def test_the_report_of_a_study(browser, reported):
     results = reported.folder / "results" / "tiny"
     path = results / "report.html"
-    assert path.stat().st_size < 15e6
+    assert path.stat().st_size < 5e6
 
     reader = Reader(browser, path, color_scheme="light")
     page = reader.page
@@ -195,7 +216,12 @@ def test_the_report_of_a_study(browser, reported):
     assert page.locator(".picture.fallback").first.is_hidden()
     assert page.locator(".badge").first.inner_text() == "✓ holds"
     titles = page.locator("main > section > h2").all_inner_texts()
-    assert titles[:3] == ["Mean distance ⟨J⟩", "Bifurcation diagrams", "Verdicts on the paper"]
+    assert titles[:4] == [
+        "The paper's claims, tested",
+        "Mean distance ⟨J⟩",
+        "Bifurcation diagrams",
+        "Verdicts on the paper",
+    ]
 
     # A run by pointer, by arrow keys, by the buttons and by the lists.
     check_run(page, results, "linearized", "minus", 0.08)
@@ -215,6 +241,8 @@ def test_the_report_of_a_study(browser, reported):
     assert page.locator("#run-detail").get_attribute("aria-live") == "polite"
     page.locator('[data-copies="run-snakemake"]').click()
     page.locator("#copied").get_by_text("opied").or_(page.locator("#copied").get_by_text("Selected")).wait_for()
+
+    check_blocks(page)
 
     # Numbers under the pointer.
     assert "λ₁ = " in under_pointer(page, "exponents")
@@ -261,8 +289,10 @@ def test_the_report_of_a_study(browser, reported):
         )
         phone.draw_everything()
         assert phone.page.evaluate("document.documentElement.scrollWidth") <= width
-        stacked = phone.page.locator(".scroll:has(.stacked)")
-        assert stacked.evaluate("box => box.scrollWidth - box.clientWidth") == 0
+        for stacked in phone.page.locator(".scroll:has(.stacked)").all():
+            assert stacked.evaluate("box => box.scrollWidth - box.clientWidth") == 0
+        for badge in phone.page.locator(".badge:visible").all():
+            assert badge.evaluate("box => box.getBoundingClientRect().right") <= width
         assert phone.page.evaluate(paper) != light[0]
         phone.close()
 
@@ -271,6 +301,32 @@ def test_the_report_of_a_study(browser, reported):
         assert picture.is_visible()
     assert plain.page.locator(".js-only").first.is_hidden()
     plain.close()
+
+
+def test_blocks_rest_if_the_reader_wants_no_motion(browser, poor):
+    path = poor.folder / "still.html"
+    path.write_text(render(poor.study, replace(poor.sources, points=poor.folder / "points")))
+    reader = Reader(browser, path, reduced_motion="reduce")
+    page = reader.page
+    page.locator("#blocks").scroll_into_view_if_needed()
+    page.wait_for_function("() => document.querySelectorAll('#blocks rect[x]').length === 2")
+    assert page.locator("#play").inner_text() == "Play"
+    page.locator("#play").press("Enter")
+    page.wait_for_function("() => document.getElementById('moment-text').textContent[0] !== '0'")
+    reader.close()
+
+
+def test_without_decompression_there_are_pictures(browser, poor):
+    path = poor.folder / "old.html"
+    path.write_text(render(poor.study, poor.sources))
+    context = browser.new_context()
+    context.add_init_script("delete window.DecompressionStream")
+    page = context.new_page()
+    page.goto(path.as_uri())
+    assert page.locator(".too-old").is_visible()
+    assert all(picture.is_visible() for picture in page.locator(".picture img").all())
+    assert page.locator("#run").is_hidden()
+    context.close()
 
 
 def test_the_report_of_a_study_that_lacks_most(browser, poor):

@@ -7,12 +7,16 @@ from itertools import pairwise
 
 import pytest
 import xarray
+import yaml
 
+from burridge_knopoff.claims import claim
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources, render
+from burridge_knopoff.report.verdicts import MAIN, SIGNS
 from tests.report.conftest import CLAIMS
 from tests.small_study import run_study
 
+PAPER = "https://arxiv.org/abs/nlin/0310030"
 VOID = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
 
 
@@ -56,21 +60,45 @@ def test_what_is_missing_is_said_in_a_line(page):
     for line in (
         "No synchronized orbit was computed",
         "This study has no maps of basins.",
-        "W never crosses 0 upward: the section is never reached, in the window of any run;",
-        "Snakemake left no benchmark files",
+        "W never crosses 0 upward: the section is never reached in any run.",
+        "The results folder has no benchmark files of Snakemake.",
     ):
         assert line in page.whole_text
     charts = [attributes["data-chart"] for _, attributes in page.elements if "data-chart" in attributes]
     assert set(charts) == {"distance", "exponents"}
 
 
-def test_curves_come_first_and_all_verdicts_are_rows_of_one_table(poor):
+def test_the_paper_comes_first_and_all_verdicts_are_rows_of_one_table(poor):
     page = Page(render(poor.study, replace(poor.sources, claims=CLAIMS), []))
     sections = [attributes["id"] for tag, attributes in page.elements if tag == "section"]
-    assert sections[:3] == ["distance", "sections", "verdicts"]
+    assert sections[:4] == ["summary", "distance", "sections", "verdicts"]
+    assert "History‑dependent synchronization" in page.whole_text
+    assert PAPER in [attributes["href"] for tag, attributes in page.elements if tag == "a"]
     rows = [attributes["id"] for tag, attributes in page.elements if tag == "tr" and "id" in attributes]
     names = [claim["name"] for claim in json.loads(CLAIMS.read_text())["claims"]]
     assert sorted(rows) == sorted(f"claim-{name}" for name in names)
+
+
+def test_the_main_claims_are_quoted_with_their_verdicts(poor, tmp_path):
+    content = json.loads(CLAIMS.read_text())
+    chosen = content["claims"][: len(MAIN)]
+    for name, one in zip(MAIN, chosen, strict=True):
+        one["name"] = name
+    (tmp_path / "claims.json").write_text(json.dumps(content))
+    text = Page(render(poor.study, replace(poor.sources, claims=tmp_path / "claims.json"))).whole_text
+    opening = text[text.index("independent statements of the paper") : text.index("is the time average")]
+    places = [opening.index(f"{SIGNS[one['verdict']]} {one['verdict']} {one['statement'][:6]}") for one in chosen]
+    assert places == sorted(places)
+
+
+def test_every_main_claim_is_one_of_the_paper():
+    assert set(MAIN) <= set(yaml.safe_load(claim.FILE.read_text()))
+
+
+def test_a_study_that_judges_nothing_does_not_open_with_the_paper(poor):
+    page = Page(render(poor.study, replace(poor.sources, claims=None)))
+    assert "Study poor : stick‑slip dynamics of 2 blocks" in page.whole_text
+    assert "arXiv" not in page.whole_text
 
 
 def test_a_summary_of_other_sources_is_refused(poor):
@@ -82,7 +110,7 @@ def test_a_summary_of_other_sources_is_refused(poor):
         render(poor.study, replace(poor.sources, summaries={**poor.sources.summaries, "phases": path}))
 
 
-def test_a_failed_run_stands_with_its_file_and_command(page):
+def test_a_failed_run_has_its_file_and_command(page):
     assert "did not complete: diverged" in page.whole_text
     path = "points/linearized/pair/a0.2000.nc"
     assert any(attributes.get("href") == path for _, attributes in page.elements)
@@ -102,11 +130,11 @@ def test_the_html_is_sound(page):
     assert len(ids) == len(set(ids))
     targets = [attributes["href"] for tag, attributes in page.elements if tag in ("a", "use")]
     assert {target[1:] for target in targets if target.startswith("#")} <= set(ids)
-    for _, attributes in page.elements:
+    for tag, attributes in page.elements:
         assert set(attributes.get("aria-labelledby", "").split()) <= set(ids)
         for name in ("src", "href"):
             value = attributes.get(name, "")
-            assert value.startswith(("data:", "#")) or not value or "//" not in value
+            assert value.startswith(("data:", "#")) or not value or "//" not in value or (tag, value) == ("a", PAPER)
     levels = [int(tag[1]) for tag, _ in page.elements if tag in ("h1", "h2", "h3", "h4")]
     assert levels[0] == 1
     assert levels.count(1) == 1
@@ -119,10 +147,19 @@ def test_the_same_inputs_give_the_same_page(poor, html):
 
 
 @pytest.mark.parametrize(("values", "charts"), [([0.1, 0.2], 2), ([0.1], 0)])
-def test_a_study_of_two_parameters_has_maps_to_point_at(tmp_path, values, charts):
+def test_a_study_of_two_parameters_begins_with_the_distance(tmp_path, values, charts):
+    """As maps to point at if both have several values, else as a picture."""
     grid = {"a": values, "v": [0.1, 0.2]}
     config = {"study": "plane", "grid": grid, "initial": {"plus": {}}, "transient": 20, "window": 20, "batches": 2}
     small = run_study(tmp_path / "results/plane", config, ("points", "summary"))
     html = render(small.study, Sources(None, {"grid": small.folder / "summary/grid.nc"}, {}))
     assert html.count('data-chart="grid"') == charts
-    assert ("Plotly" in html) == ('classList.add("js")' in html) == (charts > 0)
+    assert ('id="plotly"' in html) == (charts > 0)
+    page = Page(html)
+    assert next(attributes["id"] for tag, attributes in page.elements if tag == "section") == "grid"
+    assert [attributes["value"] for _, attributes in page.elements if attributes.get("name") == "theme"] == [
+        "auto",
+        "light",
+        "dark",
+    ]
+    assert "paper" not in page.whole_text

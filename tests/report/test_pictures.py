@@ -1,4 +1,4 @@
-"""Pictures of a report: no pixel is lost, and what is no picture is named."""
+"""Pictures of a report: curves keep their colours, and what is no picture is named."""
 
 import base64
 import io
@@ -12,8 +12,8 @@ from burridge_knopoff.figures.palette import BRANCHES
 from burridge_knopoff.report.pictures import read_picture
 
 
-def test_pictures_keep_every_pixel(tmp_path):
-    """Colours tell curves apart: none may change."""
+def test_pictures_keep_their_size_and_their_colours(tmp_path):
+    """Curves are distinguished by their colours: these change by less than the eye sees."""
     pixels = np.full((900, 2100, 3), 255, dtype="u1")
     pixels[:300] = np.arange(2100, dtype="u1")[:, None]
     for n, color in enumerate(BRANCHES):
@@ -22,7 +22,9 @@ def test_pictures_keep_every_pixel(tmp_path):
     Image.fromarray(pixels).convert("RGBA").save(path)
     picture = read_picture(path)
     content = base64.b64decode(picture.data.split(",")[1])
-    assert (np.asarray(Image.open(io.BytesIO(content)).convert("RGB")) == pixels).all()
+    shown = np.asarray(Image.open(io.BytesIO(content)).convert("RGB"))
+    assert np.abs(shown.astype(int) - pixels).max() <= 16
+    assert len(content) < 0.5 * path.stat().st_size
     assert (picture.width, picture.height) == (2100, 900)
     assert "W'" in picture.caption
 

@@ -9,6 +9,7 @@ import plotly.graph_objects as go
 import pytest
 
 from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.report.page import Sources, render
 from burridge_knopoff.study.load import load_study
 from tests.report.conftest import CLAIMS
@@ -64,7 +65,7 @@ def test_a_study_of_curves_alone(small_studies, tmp_path):
     html = rendered(study, small.found, None, STORED[:5], tmp_path)
     text = Page(html).whole_text
     assert "Left out by the config attractors, bifurcations, edges, basins, phases, claims" in text
-    assert "Attractors were not looked for" in text
+    assert "This study does not search for attractors" in text
     assert "No statement of the paper was judged." in text
     assert not re.search(r'href="summary/(attractors|basins|claims)', html)
 
@@ -101,3 +102,9 @@ def test_every_chart_is_a_figure_of_plotly(html):
         figure = go.Figure(json.loads(content))
         assert any(trace.y is not None and len(trace.y) for trace in figure.data)
         assert figure.layout.template.layout.font.color in dark
+
+
+@pytest.mark.parametrize(("varied", "drawn"), [("coupling", False), ("coupling[1]", False), ("v", True)])
+def test_no_spring_is_drawn_with_a_stiffness_that_varies(varied, drawn):
+    study = load_study({"study": "plane", "grid": {"a": [0.1], varied: [0.5, 1.0]}, "initial": {"plus": {}}}, "p.yaml")
+    assert ("figure_sketch" in Jobs(study).there) == drawn

@@ -29,9 +29,9 @@ def test_verdicts_are_counted_and_put_by_topic():
     assert set(verdicts.counts.values()) == {1}
     assert verdicts.independent == {**verdicts.counts, "fails": 0}
     assert [(topic, len(claims)) for topic, claims in verdicts.topics.items()] == [
-        ("synchronization", 2),
-        ("friction laws", 1),
-        ("motion", 2),
+        ("Synchronization of the end blocks", 2),
+        ("Friction laws", 1),
+        ("Motion of the blocks", 2),
     ]
     assert list(verdicts.untestable) == ["The study has no experiment."]
     assert verdicts.setting["contact"] == "one_sided"

@@ -18,6 +18,7 @@ from burridge_knopoff.model.chain import Chain
 TITLE = "The chain of blocks"
 CATEGORY = "Model"
 PAPER = "Fig. 1"
+CONDITION = "has_one_chain"
 INPUTS = ()
 FROM_STUDY = ("chain_description",)
 CAPTION = """\

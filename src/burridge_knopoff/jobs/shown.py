@@ -193,6 +193,8 @@ def report(study: Study, files: Sequence[str]) -> list[Rule]:
             optional_reads=True,
             # The report shows the whole config.
             params=lambda job: {"config": study.config, "parameters": study.points["parameters"]},
+            # The page draws the moving blocks of single runs.
+            points=None if study.is_plane else lambda job: study.points,
             stage="report",
             over="any",
             memory=600,

@@ -1,4 +1,4 @@
-"""Numbers for the scripts of the page: JSON inside HTML."""
+"""Numbers of the page, and JSON inside HTML."""
 
 from __future__ import annotations
 
@@ -8,11 +8,14 @@ from typing import Any
 
 from markupsafe import Markup
 
-from burridge_knopoff.study.formatting import text
+from burridge_knopoff.study.formatting import text, with_error
+
+#: A number below this, without an error, is one of the order of rounding errors.
+ROUNDING = 1e-9
 
 
-def exact(value: float) -> float | str | None:
-    """Return a number unchanged, an infinity as text and NaN as None, since JSON has neither."""
+def json_number(value: float) -> float | str | None:
+    """Return a finite number unchanged, an infinity as text and NaN as None, since JSON has neither."""
     value = float(value)
     if math.isinf(value):
         return text(value)
@@ -28,3 +31,10 @@ def embedded_json(data: Any) -> Markup:
     for character in "<>&\u2028\u2029":
         plain = plain.replace(character, f"\\u{ord(character):04x}")
     return Markup(plain)
+
+
+def format_measured(value: Any, error: Any) -> str:
+    """Format a measured number with its error, and a rounding error with one digit."""
+    if error is None and isinstance(value, float) and 0.0 < abs(value) < ROUNDING:
+        return text(float(f"{value:.0e}"))
+    return with_error(value, error)

@@ -1,4 +1,4 @@
-"""The setting of a study in the words of its config, and the origin of its numbers."""
+"""The setting of a study in words, and the origin of its numbers."""
 
 from __future__ import annotations
 
@@ -24,9 +24,29 @@ LIBRARIES = (
     *("pyyaml", "jinja2", "plotly", "pillow"),
 )
 
+#: The conventions of a study in words, by the values of the keys `contact` and `start`.
+CONTACTS = {
+    "one_sided": "one-sided contact (a stuck block never slips backward)",
+    "symmetric": "symmetric contact (a stuck block slips backward if the force on it is large enough)",
+}
+STARTS = {
+    "moving": "every block slips at τ = 0",
+    "tested": "a block sticks at τ = 0 if static friction can hold it",
+}
+
+
+def conventions(contact: str, start: str) -> str:
+    """Describe the convention of contact and start."""
+    return f"{CONTACTS[contact]}; {STARTS[start]}"
+
+
+def convention(setting: Mapping[str, Any]) -> str:
+    """Describe the setting of the verdicts: v, contact and start; empty for a study without verdicts."""
+    return f"v = {text(setting['v'])}; {conventions(setting['contact'], setting['start'])}" if setting else ""
+
 
 def opening(study: Study) -> str:
-    """Describe the study in a line."""
+    """Return a study's blocks, parameters and laws in a line."""
     laws = study.laws
     words = f"{', '.join(laws[:-1])} and {laws[-1]} friction laws" if len(laws) > 1 else f"{laws[0]} friction law"
     varied = ", ".join(f"{name} = {values}" for name, values in _parameters(study).items())
@@ -34,14 +54,14 @@ def opening(study: Study) -> str:
 
 
 def _parameters(study: Study) -> dict[str, str]:
-    """Return v, a and all other parameters that a study varies, with their values in words."""
+    """Return v, a and every other parameter that a study varies, with its values in words."""
     config = study.config
     lists = config["grid"] or {"a": config["a"]}
-    return {"v": text(config["v"]), **{name: _grid(items) for name, items in lists.items()}}
+    return {"v": text(config["v"]), **{name: _format_grid(items) for name, items in lists.items()}}
 
 
-def what_was_run(study: Study) -> list[tuple[str, str]]:
-    """Return names and values of the settings that decide the runs."""
+def run_settings(study: Study) -> list[tuple[str, str]]:
+    """Return names and values of the settings of the runs."""
     config = study.config
     solvers = ", ".join(f"{config['solver'][law]} ({law} law)" for law in study.laws)
     if "rk4" in config["solver"].values():
@@ -49,23 +69,23 @@ def what_was_run(study: Study) -> list[tuple[str, str]]:
     transient, window = config["transient"], config["window"]
     first = {name: next(iter(values.values())) for name, values in study.parameters.items()}
     models = {law: study.model(law, **first) for law in study.laws}
-    there = " at the first point" if study.is_plane else ""
+    at_first = " at the first point" if study.is_plane else ""
     chain = next(iter(models.values())).chain
     omitted = () if study.is_plane else study.omitted_stages
     without = [("Left out by the config", ", ".join(omitted))] if omitted else []
     return [
         ("Blocks", f"N = {chain.blocks}"),
-        (f"Chain{there}", chain_text(chain)),
-        (f"Friction law{'s' * (len(models) > 1)}{there}", laws_text(models)),
+        (f"Chain{at_first}", chain_text(chain)),
+        (f"Friction law{'s' * (len(models) > 1)}{at_first}", laws_text(models)),
         *_parameter_rows(study),
-        ("Conventions", f"contact {config['contact']}, start {config['start']}"),
+        ("Conventions", conventions(config["contact"], config["start"])),
         ("Solvers", solvers),
         (
             "Windows",
-            f"transient {text(transient)}, then ⟨J⟩ over τ = {text(transient)} to {text(transient + window)} in "
-            f"{config['batches']} batches",
+            f"transient of {text(transient)}, then averages over τ = {text(transient)} to {text(transient + window)} "
+            f"in {config['batches']} batches",
         ),
-        ("Synchronized", f"if ⟨J⟩ is below {text(config['synchronization_threshold'])}"),
+        ("Synchronized", f"if ⟨J⟩ < {text(config['synchronization_threshold'])}"),
         ("Runs", str(len(all_points(study)))),
         *without,
     ]
@@ -88,25 +108,25 @@ def chain_text(chain: Chain) -> str:
     if chain.springs:
         parts = [f"springs of {chain.springs}"]
     else:
-        parts = [f"coupling {_numbers(chain.coupling)}"]
+        parts = [f"coupling {_format_numbers(chain.coupling)}"]
     parts.append(
         "pulling as many springs as the block has neighbours"
         if chain.pulling == NEIGHBOURS
-        else f"pulling {_numbers(chain.pulling)}"
+        else f"pulling {_format_numbers(chain.pulling)}"
     )
-    parts.append(f"static friction {_numbers(chain.threshold)}")
+    parts.append(f"static friction {_format_numbers(chain.threshold)}")
     if chain.mass != 1.0:
-        parts.append(f"mass {_numbers(chain.mass)}")
+        parts.append(f"mass {_format_numbers(chain.mass)}")
     for words, damping in (("neighbours", chain.damping), ("the driver", chain.pulling_damping)):
         if np.any(damping):
-            parts.append(f"dashpots to {words} {_numbers(damping)}")
+            parts.append(f"dashpots to {words} {_format_numbers(damping)}")
     shape = "a ring" if chain.ends == "ring" else "open ends"
     if chain.is_network:
         shape = f"a grid of {chain.grid[0]} × {chain.grid[1]} blocks" if chain.grid else "a network"
     return f"{shape}; {'; '.join(parts)}"
 
 
-def _numbers(value: Any) -> str:
+def _format_numbers(value: Any) -> str:
     return ", ".join(text(item) for item in value) if isinstance(value, list | tuple) else text(value)
 
 
@@ -115,9 +135,11 @@ def laws_text(models: Mapping[str, Model]) -> str:
     return "; ".join(f"{name}, {model.law.words}" for name, model in models.items())
 
 
-def _grid(items: list[Any]) -> str:
+def _format_grid(items: list[Any]) -> str:
     parts = [
-        f"{text(item['from'])} to {text(item['to'])} by {text(item['step'])}" if isinstance(item, dict) else text(item)
+        f"{text(item['from'])} to {text(item['to'])} in steps of {text(item['step'])}"
+        if isinstance(item, dict)
+        else text(item)
         for item in items
     ]
     return ", ".join(parts)
@@ -126,7 +148,7 @@ def _grid(items: list[Any]) -> str:
 def initial_states(study: Study) -> list[dict[str, str]]:
     """Return name, U(0) and U'(0) of each initial state."""
     return [
-        {"name": name, **{key: _numbers(state[key]) for key in ("position", "velocity")}}
+        {"name": name, **{key: _format_numbers(state[key]) for key in ("position", "velocity")}}
         for name, state in study.config["initial"].items()
     ]
 
@@ -137,7 +159,7 @@ def config_text(study: Study) -> str:
 
 
 def origins(summaries: Mapping[str, xarray.Dataset]) -> list[dict[str, str]]:
-    """Return the software that made each summary, from its file."""
+    """Return the software that wrote each summary, as stored in its file."""
     return [
         {"name": f"{name}.nc", **{key: str(dataset.attrs.get(key, "–")) for key in provenance(__name__)}}
         for name, dataset in summaries.items()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import zlib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -15,23 +17,25 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.report import overview, tables
 from burridge_knopoff.report.charts.embedded import Charts, charts
-from burridge_knopoff.report.numbers import embedded_json
+from burridge_knopoff.report.numbers import embedded_json, format_measured
 from burridge_knopoff.report.pictures import read_picture
 from burridge_knopoff.report.prose import prose
 from burridge_knopoff.report.runs import Commands, embedded_runs, unclear_runs
 from burridge_knopoff.report.stages import read_stages
+from burridge_knopoff.report.trajectories import embedded_trajectories
 from burridge_knopoff.report.verdicts import SIGNS, Verdicts, read_verdicts
-from burridge_knopoff.study.formatting import text, with_error
+from burridge_knopoff.study.formatting import text
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.agreement import digest
 from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD
+from burridge_knopoff.summaries.points import Grid
 
 FOLDER = Path(__file__).parent
 
 #: The scripts of the page, in the order in which they are joined: they share one scope.
-SCRIPTS = ("data", "theme", "charts", "runs", "pictures", "start")
+SCRIPTS = ("data", "theme", "charts", "blocks", "runs", "pictures", "start")
 
-#: Figures that stand in a section of their own; all others come together.
+#: Figures with a place in another section than that of the further figures.
 PLACED = (
     "mean_distance",
     "bifurcation_diagram",
@@ -52,12 +56,14 @@ class Sources:
     claims : the verdicts, None if the study has none
     summaries, figures : {name: path} of netCDF files and of PNG pictures
     benchmarks : folder of Snakemake's benchmark files, which need not exist
+    points : folder of the point files, None for a page without moving blocks
     """
 
     claims: Path | None
     summaries: Mapping[str, Path]
     figures: Mapping[str, Path]
     benchmarks: Path = field(default=Path("benchmarks"))
+    points: Path | None = None
 
 
 def make(given: Given, config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:
@@ -68,6 +74,7 @@ def make(given: Given, config: Mapping[str, Any], parameters: Mapping[str, Any])
         {path.stem: path for path in summaries},
         {path.stem: path for path in figures},
         given.results / "benchmarks",
+        given.results / "points" if given.points else None,
     )
     return render(Study(config, parameters), sources, given.arguments)
 
@@ -80,7 +87,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     """
     verdicts = read_verdicts(sources.claims)
     summaries = {name: open_summary(path) for name, path in sources.summaries.items()}
-    # One after the other: compressing each takes about 100 MB.
+    # One after another: compressing each takes about 100 MB.
     pictures = {name: read_picture(path) for name, path in sources.figures.items()}
     environment = jinja2.Environment(
         loader=jinja2.FileSystemLoader(FOLDER / "templates"),
@@ -90,16 +97,22 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         undefined=jinja2.StrictUndefined,
     )
     environment.filters.update(number=text, prose=prose)
-    environment.globals.update(with_error=with_error)
-    shown = charts(study, summaries)
-    over_a = _over_grid(shown) if study.is_plane else _over_a(study, summaries, shown, arguments, verdicts)
+    environment.globals.update(format_measured=format_measured)
+    drawn = charts(study, summaries)
+    if study.is_plane:
+        parts = _over_parameters(drawn)
+    else:
+        grid = sources.points and Grid.of(sources.points, study.points)
+        trajectories = embedded_trajectories(grid) if grid else None
+        parts = _over_a(study, summaries, drawn, arguments, verdicts, trajectories)
     return environment.get_template("report.html.jinja").render(
         study=study.name,
         blocks=study.blocks,
         over_a=not study.is_plane,
         opening=overview.opening(study),
-        ran=overview.what_was_run(study),
+        ran=overview.run_settings(study),
         states=overview.initial_states(study),
+        verdicts=verdicts,
         config=overview.config_text(study),
         mirror_symmetric=study.is_mirror_symmetric,
         pictures=pictures,
@@ -108,51 +121,49 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
         software=overview.software(),
         stages=read_stages(sources.benchmarks),
         style=_static("style.css"),
-        **over_a,
+        scripts=Markup("\n").join(_static(f"{name}.js") for name in SCRIPTS),
+        charts=drawn.packed,
+        plotly=_plotly() if any(drawn.packed.values()) else "",
+        **parts,
     )
 
 
 def _over_a(
     study: Study,
     summaries: Mapping[str, xarray.Dataset],
-    shown: Charts,
+    drawn: Charts,
     arguments: Sequence[str],
     verdicts: Verdicts,
+    trajectories: Mapping[str, Any] | None,
 ) -> dict[str, Any]:
-    """Return what only the report of a study over a alone has: what its summaries say."""
+    """Return the content of the page that only a study over a alone has."""
     commands = Commands(study, arguments)
     return {
-        "setting": verdicts.setting,
-        "verdicts": verdicts,
+        "convention": overview.convention(verdicts.setting),
         "signs": SIGNS,
         "never_upward": NEVER_UPWARD,
         "section_words": _section_words(study),
-        **_interactive(shown),
-        "legends": shown.legends,
-        "data": _data(commands, summaries, shown.dark),
+        "legends": drawn.legends,
+        "data": _data(commands, summaries, drawn.dark, trajectories),
+        "moving": trajectories is not None,
         "laws": list(study.laws),
         "initial": list(study.initial),
-        "branches": _of(summaries, "attractors", tables.branch_table, []),
-        "attractors": _of(summaries, "attractors", lambda attractors: attractors.attrs),
-        "sliding": _of(summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False),
+        "branches": _from_summary(summaries, "attractors", tables.branch_table, []),
+        "attractors": _from_summary(summaries, "attractors", lambda attractors: attractors.attrs),
+        "sliding": _from_summary(
+            summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False
+        ),
         "transitions": tables.transition_table(summaries["orbits"]),
-        "maps": _of(summaries, "basins", tables.map_table, []),
+        "maps": _from_summary(summaries, "basins", tables.map_table, []),
         "agreement": digest(summaries["agreement"]).splitlines(),
-        "chains": _of(summaries, "chains", tables.chain_table, []),
+        "chains": _from_summary(summaries, "chains", tables.chain_table, []),
         "unclear": unclear_runs(commands, summaries["mean_distance"], summaries["agreement"]),
     }
 
 
-def _over_grid(shown: Charts) -> dict[str, Any]:
-    """Return what only the report of a study over several parameters has: maps, if two of them vary."""
-    if not shown.packed["grid"]:
-        return {"charts": {}}
-    return {"data": embedded_json({"dark": shown.dark}), **_interactive(shown)}
-
-
-def _interactive(shown: Charts) -> dict[str, Any]:
-    scripts = Markup("\n").join(_static(f"{name}.js") for name in SCRIPTS)
-    return {"charts": shown.packed, "plotly": _plotly(), "scripts": scripts}
+def _over_parameters(drawn: Charts) -> dict[str, Any]:
+    """Return the content of the page that only a study over several parameters has."""
+    return {"data": embedded_json({"dark": drawn.dark})}
 
 
 def _section_words(study: Study) -> str:
@@ -161,16 +172,21 @@ def _section_words(study: Study) -> str:
     return f"the co-moving position of block {section.block}" if section.block else "the sum of the co-moving positions"
 
 
-def _data(commands: Commands, summaries: Mapping[str, xarray.Dataset], dark: Mapping[str, str]) -> Markup:
-    """Return what the scripts of the page need as JSON."""
+def _data(
+    commands: Commands,
+    summaries: Mapping[str, xarray.Dataset],
+    dark: Mapping[str, str],
+    trajectories: Mapping[str, Any] | None,
+) -> Markup:
+    """Return the data of the page's scripts as JSON."""
     runs = embedded_runs(commands, *(summaries[name] for name in ("mean_distance", "lyapunov", "agreement")))
-    return embedded_json({"runs": runs, "dark": dark})
+    return embedded_json({"runs": runs, "dark": dark, "trajectories": trajectories})
 
 
-def _of(
+def _from_summary(
     summaries: Mapping[str, xarray.Dataset], name: str, make: Callable[[xarray.Dataset], Any], nothing: Any = None
 ) -> Any:
-    """Return what `make` makes of a summary, or a substitute if the study does not have it."""
+    """Return the result of `make` for a summary, or `nothing` if the study does not have the summary."""
     return make(summaries[name]) if name in summaries else nothing
 
 
@@ -178,8 +194,8 @@ def _static(name: str) -> Markup:
     return Markup((FOLDER / "static" / name).read_text(encoding="utf-8"))
 
 
-def _plotly() -> Markup:
+def _plotly() -> str:
+    """Return the plotting library as base64 of compressed text: less than half its size."""
     from plotly.offline import get_plotlyjs
 
-    # The sequence may occur in a string of the script; in HTML it would end the element.
-    return Markup(get_plotlyjs().replace("</script", "<\\/script"))
+    return base64.b64encode(zlib.compress(get_plotlyjs().encode(), 9)).decode()

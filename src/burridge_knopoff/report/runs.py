@@ -1,4 +1,4 @@
-"""The runs of a study one by one: results, paths of the files, and the commands that repeat them."""
+"""The single runs of a study: results, paths of the files, and the commands that recompute them."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import xarray
 
 from burridge_knopoff.motion.kind import Motion, MotionKind, format_motion
 from burridge_knopoff.motion.settings import MotionSettings
-from burridge_knopoff.report.numbers import exact
+from burridge_knopoff.report.numbers import json_number
 from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paths import POINT
@@ -22,7 +22,7 @@ from burridge_knopoff.summaries.equilibrium import SLIDING, is_sliding_attractin
 
 @dataclass(frozen=True)
 class Commands:
-    """The commands that repeat a run, typed in the folder of the checkout.
+    """The commands that recompute a run, to be typed in the repository.
 
     arguments : arguments of `snakemake` that select the study; none for the default study
     """
@@ -30,20 +30,20 @@ class Commands:
     study: Study
     arguments: Sequence[str] = ()
 
-    def point(self, law: str, initial: str, a: str) -> str:
+    def point_path(self, law: str, initial: str, a: str) -> str:
         """Return the path of a point file in the results of the study."""
         return f"points/{POINT.format(law=law, initial=initial, a=a)}"
 
     def snakemake(self, law: str, initial: str, a: str) -> str:
-        """Return the command that remakes the point file; the target comes before --config."""
-        return self.of_study("-c1", "--force", f"results/{self.study.name}/{self.point(law, initial, a)}")
+        """Return the command that recomputes the point file. The target comes before --config."""
+        return self.study_command("-c1", "--force", f"results/{self.study.name}/{self.point_path(law, initial, a)}")
 
-    def of_study(self, *words: str) -> str:
+    def study_command(self, *words: str) -> str:
         """Return a Snakemake command with these words for the study."""
         return shlex.join(["snakemake", *words, *self.arguments])
 
     def simulate(self, law: str, initial: str, a: str) -> str:
-        """Return the command of the same run by hand, which writes a copy of the point file to the current folder."""
+        """Return the command of the same run without Snakemake, which writes the point file to the current folder."""
         return f"{self.study.command(law, initial, a)} --out {law}_{initial}_a{a}.nc"
 
 
@@ -52,11 +52,11 @@ def embedded_runs(
 ) -> dict[str, Any]:
     """Return the page's data of every run, with exact values; arrays over (law, initial, a).
 
-    `agrees` are the answers of `agreement` on the other laws, over (other law, initial, a). Kinds of motion and periods
-    come from `agreement`, for the attractor that the run has reached.
+    `agrees` says whether the other laws agree, over (other law, initial, a). Kinds of motion and periods are those of
+    the attractor that the run has reached, from `agreement`.
 
-    `first` are the indices of the run shown first, which is that of the figures of single runs.
-    `simulate` has the command for each law and initial state in two parts; `--a` and its value go between them.
+    `first` are the indices of the run that the page shows first, which is that of the figures of single runs.
+    `simulate` has the command for each law and initial state in two parts, with `--a` and its value between them.
     """
     study = commands.study
     names = list(study.grid)
@@ -68,21 +68,21 @@ def embedded_runs(
         "texts": [repr(value) for value in study.grid.values()],
         "names": names,
         "first": [study.laws.index(study.shown_law), 0, names.index(study.shown_point)],
-        "mean_distance": _nested(mean_distance["mean_distance"].values),
+        "mean_distance": _nested_lists(mean_distance["mean_distance"].values),
         "status": mean_distance["status"].values.tolist(),
         "kind_text": _kind_texts(study, agreement, lyapunov),
-        "mean_distance_text": _with_errors(*(mean_distance[f"mean_distance{end}"].values for end in ("", "_error"))),
-        "exponent_texts": _with_errors(exponent, error),
+        "mean_distance_text": _format_errors(*(mean_distance[f"mean_distance{end}"].values for end in ("", "_error"))),
+        "exponent_texts": _format_errors(exponent, error),
         "agrees": agreement["agrees"].values.tolist(),
-        "simulate": [[_halves(commands, law, initial) for initial in study.initial] for law in study.laws],
+        "simulate": [[_split_command(commands, law, initial) for initial in study.initial] for law in study.laws],
         "arguments": shlex.join(commands.arguments),
         "results": f"results/{study.name}",
         "statuses": list(STATUS_WORDS.values()),
     }
 
 
-def _nested(values: np.ndarray) -> Any:
-    return exact(values.item()) if values.ndim == 0 else [_nested(np.asarray(item)) for item in values]
+def _nested_lists(values: np.ndarray) -> Any:
+    return json_number(values.item()) if values.ndim == 0 else [_nested_lists(np.asarray(item)) for item in values]
 
 
 def _kind_texts(study: Study, agreement: xarray.Dataset, lyapunov: xarray.Dataset) -> Any:
@@ -96,7 +96,7 @@ def _kind_texts(study: Study, agreement: xarray.Dataset, lyapunov: xarray.Datase
     return np.array(texts, dtype=object).reshape(kind.shape).tolist()
 
 
-def _with_errors(values: np.ndarray, errors: np.ndarray) -> Any:
+def _format_errors(values: np.ndarray, errors: np.ndarray) -> Any:
     """Return values with their errors as text, in nested lists."""
     return (
         np.array([with_error(*pair) for pair in zip(values.flat, errors.flat, strict=True)], dtype=object)
@@ -105,8 +105,8 @@ def _with_errors(values: np.ndarray, errors: np.ndarray) -> Any:
     )
 
 
-def _halves(commands: Commands, law: str, initial: str) -> list[str]:
-    """Split the command of a run at its value of a; along the grid, only this and the file name change."""
+def _split_command(commands: Commands, law: str, initial: str) -> list[str]:
+    """Return the command of a run in two parts, before and after its value of a."""
     name, value = next(iter(commands.study.grid.items()))
     command = commands.simulate(law, initial, name).removesuffix(f"{name}.nc")
     before, after = command.split(f" --a {value!r} ", 1)
@@ -114,7 +114,7 @@ def _halves(commands: Commands, law: str, initial: str) -> list[str]:
 
 
 def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, agreement: xarray.Dataset) -> list[dict[str, str]]:
-    """Return the runs that did not complete, then those whose kind of motion is undetermined."""
+    """Return the runs that did not complete, followed by those whose kind of motion is undetermined."""
     failed, undetermined = [], []
     for i, law in enumerate(commands.study.laws):
         for j, initial in enumerate(commands.study.initial):
@@ -126,7 +126,7 @@ def unclear_runs(commands: Commands, mean_distance: xarray.Dataset, agreement: x
                     "law": law,
                     "initial": initial,
                     "a": repr(commands.study.grid[a]),
-                    "path": commands.point(law, initial, a),
+                    "path": commands.point_path(law, initial, a),
                     "command": commands.snakemake(law, initial, a),
                 }
                 if status == Status.COMPLETED:

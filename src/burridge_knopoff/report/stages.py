@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-#: The report cannot include the job that writes it.
+#: The job that writes the report has not ended when the report is written.
 SKIPPED = ("report",)
 
 #: Prefixes of files that form one stage, with its name.
@@ -21,11 +21,11 @@ MEBIBYTE = 1.048576
 
 @dataclass
 class Stage:
-    """The jobs of one stage, as far as they were measured.
+    """The measured jobs of one stage.
 
     wall, cpu : sums over the jobs, in seconds; cpu_jobs : number of jobs with a known CPU time
-    memory : largest memory of a job, in MB; memory shared by its processes is counted once if the system can tell, else
-        for each process; 0 if unknown
+    memory : largest memory of a job, in MB; memory that its processes share counts once if the system reports it, and
+        otherwise for each process; 0 if it was not measured
     """
 
     name: str
@@ -39,7 +39,7 @@ class Stage:
 def read_stages(
     folder: str | Path, *, joined: Mapping[str, str] = JOINED, skipped: Collection[str] = SKIPPED
 ) -> list[Stage]:
-    """Return the stages in a folder of benchmark files, longest wall time first; none without the folder.
+    """Return the stages in a folder of benchmark files, longest wall time first; none if there is no folder.
 
     The files of a subfolder form one stage, together with the file of the same name.
 
@@ -60,7 +60,7 @@ def read_stages(
 
 
 def job_costs(path: Path) -> Iterator[tuple[float, float, float]]:
-    """Yield wall time, CPU time and MB of the jobs in a file; unreadable lines are left out."""
+    """Yield wall time and CPU time in seconds and memory in MB of the jobs in a file, except unreadable lines."""
     with suppress(OSError, ValueError, KeyError, csv.Error), path.open(encoding="utf-8") as file:
         for row in csv.DictReader(file, delimiter="\t", restval=""):
             # A job that ends before it is first measured has NA or -.

@@ -37,13 +37,12 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
         return {}
     laws = [str(law) for law in orbits["law"].values]
 
-    def row(name: str, value: str, error: str = "") -> dict[str, Any]:
+    def row(name: str, value: str, error: str = "", digits: int = 10) -> dict[str, Any]:
         cells = []
         for law in laws:
             one = orbits.sel(law=law)
             number = one[value].item()
-            # An error of a few units in the last digit says no more than that all digits shown are right.
-            cells.append(with_error(number, one[error].item()) if error else _long(number))
+            cells.append(with_error(number, one[error].item()) if error else _rounded(number, digits))
         return {"name": name, "cells": cells}
 
     kinds = [_meaning(BifurcationKind(orbits.sel(law=law)["bifurcation_kind"].item())) for law in laws]
@@ -59,14 +58,15 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
             row("a at which block 2 begins to stick", "grazing_a"),
             row("a at which a mirror-symmetric multiplier reaches −1", "symmetric_period_doubling_a"),
             row("exponent of |x_1 − x_3| against a − a_c", "amplitude_exponent", "amplitude_exponent_error"),
-            row("coefficient of that power law", "amplitude_coefficient"),
-            row("largest difference of |x_1 − x_3| up and down in a", "hysteresis"),
+            row("coefficient of this power law", "amplitude_coefficient"),
+            # Of the order of rounding errors if there is no hysteresis.
+            row("largest difference of |x_1 − x_3| between rising and falling a", "hysteresis", digits=2),
         ],
     }
 
 
-def _long(value: float) -> str:
-    return text(value) if not np.isfinite(value) else f"{value:.10g}".replace("-", "−")
+def _rounded(value: float, digits: int) -> str:
+    return text(value) if not np.isfinite(value) else f"{value:.{digits}g}".replace("-", "−")
 
 
 def _meaning(item: IntEnum) -> str:
@@ -82,7 +82,7 @@ def map_table(basins: xarray.Dataset) -> list[dict[str, str]]:
             "exponent": with_error(*row.exponent),
             "undetermined": f"{row.undetermined} of {row.states}"
             + (
-                f", {row.symmetric_count} of them where mirror blocks are alike, a line of no area"
+                f", {row.symmetric_count} of them on the line of mirror-symmetric states, which has no area"
                 if row.symmetric_count
                 else ""
             ),

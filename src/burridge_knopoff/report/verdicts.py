@@ -14,6 +14,23 @@ from burridge_knopoff.provenance.seal import BadFile
 #: Every verdict with a sign, so that the page does not distinguish them by colour alone.
 SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", READING: "◇", FAILS: "✗", NOT_TESTABLE: "–"}
 
+#: The paper's three main claims: its abstract on a < 0.1, on the linearization, and on a > 0.1.
+MAIN = ("history_decides", "laws_agree", "chaotic_above")
+
+#: Titles of the topics of the claims.
+TITLES = {
+    "synchronization": "Synchronization of the end blocks",
+    "history": "Dependence on the initial state",
+    "kinds": "Kinds of motion",
+    "locking": "Frequency locking",
+    "section": "Poincaré section",
+    "motion": "Motion of the blocks",
+    "model": "Equations of motion and uniform sliding",
+    "laws": "Linearization of the friction law",
+    "blocks": "Chains of one and two blocks",
+    "solvers": "Methods of solution",
+}
+
 
 @dataclass(frozen=True)
 class Verdicts:
@@ -21,16 +38,23 @@ class Verdicts:
 
     counts : {verdict: number of statements}, every verdict in the order of SIGNS
     independent : the same for statements that neither repeat nor follow from others
-    topics : {topic: its claims}, each claim a mapping as in the file; only claims that can be judged
+    main : the paper's main claims, each a mapping as in the file
+    topics : {title of a topic: its claims}; only claims that can be judged
     untestable : {reason: claims that cannot be judged for this reason}
     setting : v, contact and start for which they were judged, with the provenance
     """
 
     counts: dict[str, int]
     independent: dict[str, int]
+    main: list[dict[str, Any]]
     topics: dict[str, list[dict[str, Any]]]
     untestable: dict[str, list[dict[str, Any]]]
     setting: dict[str, Any]
+
+    @property
+    def judged(self) -> int:
+        """Number of statements with a verdict."""
+        return sum(self.counts.values()) - self.counts.get(NOT_TESTABLE, 0)
 
 
 def read_verdicts(path: str | Path | None) -> Verdicts:
@@ -39,10 +63,12 @@ def read_verdicts(path: str | Path | None) -> Verdicts:
     Raises BadFile if the rule `claims` did not write the file.
     """
     if path is None:
-        return Verdicts({}, {}, {}, {}, {})
+        return Verdicts({}, {}, [], {}, {}, {})
     try:
         content = json.loads(Path(path).read_text(encoding="utf-8"))
         claims, counts, independent = (content.pop(key) for key in ("claims", "counts", "independent_counts"))
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise BadFile(path, f"is not a file of verdicts ({type(error).__name__}: {error})") from None
-    return Verdicts(counts, independent, group_by_topic(claims), group_untestable(claims), content)
+    main = [claim for name in MAIN for claim in claims if claim["name"] == name]
+    topics = {TITLES.get(topic, topic.capitalize()): of_topic for topic, of_topic in by_topic(claims).items()}
+    return Verdicts(counts, independent, main, topics, group_untestable(claims), content)

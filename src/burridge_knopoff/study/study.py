@@ -108,6 +108,12 @@ class Study:
         return self.config["laws"]
 
     @property
+    def has_one_chain(self) -> bool:
+        """Whether all points have the same chain."""
+        varied = {(single_of(name) or (name,))[0] for name, values in self.parameters.items() if len(values) > 1}
+        return not varied & set(self.config["chain"])
+
+    @property
     def chain_description(self) -> dict[str, Any]:
         """The arguments of `Chain`; those of the first point if the chain varies."""
         chain, first = self.config["chain"], self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain

@@ -18,8 +18,7 @@ const config = {
 
 /** Return the figure of a chart in the colours of the theme, with the picked run marked. */
 async function figureOf(box) {
-  const packed = Uint8Array.from(atob(box.dataset.figure), (character) => character.charCodeAt(0));
-  const text = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"))).text();
+  const text = await inflateText(box.dataset.figure);
   const figure = JSON.parse(text, isDark() ? (key, value) => data.dark[value] ?? value : undefined);
   Object.assign(figure.layout, { dragmode: coarse ? false : "zoom", uirevision: "keep" });
   const look = figure.layout.template.layout;
@@ -28,9 +27,21 @@ async function figureOf(box) {
   return figure;
 }
 
-/** Draw one chart; what goes wrong leaves the pictures in the place of all charts. */
+/** Load the plotting library, once. */
+let library;
+function loadLibrary() {
+  library ??= inflateText(byId("plotly").textContent).then((source) => {
+    const script = element("script");
+    script.textContent = source;
+    document.head.append(script);
+  });
+  return library;
+}
+
+/** Draw one chart; if this fails, pictures take the place of all charts. */
 async function draw(box) {
   try {
+    await loadLibrary();
     const { data: traces, layout } = await figureOf(box);
     const first = !drawn.has(box);
     drawn.add(box);
@@ -46,7 +57,7 @@ async function draw(box) {
 
 const buttonsOf = (box) => [...box.querySelectorAll(".modebar-btn")];
 
-/** Let one button of a chart be reached by Tab; arrow keys lead to the others, as in every toolbar. */
+/** Put one button of a chart into the order of Tab; arrow keys lead to the others, as in every toolbar. */
 function rove(box, chosen) {
   buttonsOf(box).forEach((button, n) => { button.tabIndex = n === chosen ? 0 : -1; });
 }
@@ -65,10 +76,6 @@ function connect(box) {
 }
 
 function startCharts() {
-  if (typeof Plotly === "undefined") {
-    document.documentElement.classList.add("no-charts");
-    return;
-  }
   const watcher = new IntersectionObserver((entries) => {
     for (const entry of entries) {
       if (!entry.isIntersecting) continue;

@@ -1,24 +1,24 @@
-// A figure at its full size, over the page; its picture is in the page once already.
+// A figure at its full size, over the page.
 function openPicture(event) {
   const name = event.currentTarget.dataset.picture;
   const source = document.querySelector(`#figure-${CSS.escape(name)} img`);
   const viewer = byId("viewer");
   if (!source || !viewer.showModal) return;
   event.preventDefault();
-  byId("viewer-title").textContent = source.nextElementSibling.querySelector("strong").textContent;
+  byId("viewer-title").textContent = source.closest("figure").querySelector("figcaption strong").textContent;
   byId("viewer-picture").replaceChildren(element("img", { src: source.src, alt: source.alt }));
   byId("viewer-pdf").href = `figures/${name}.pdf`;
   viewer.showModal();
 }
 
-// Browsers that do not know how to show a closed part in print are helped.
+// Not every browser prints the content of a closed part.
 function unfoldForPrint() {
   document.querySelectorAll(".claim-more").forEach((part) => { part.open = true; });
 }
 
 function startPictures() {
   window.addEventListener("beforeprint", unfoldForPrint);
-  document.querySelectorAll(".opens-picture").forEach((link) => link.addEventListener("click", openPicture));
+  document.querySelectorAll(".opens-picture, .picture img").forEach((link) => link.addEventListener("click", openPicture));
   const viewer = byId("viewer");
   byId("viewer-close").addEventListener("click", () => viewer.close());
   viewer.addEventListener("click", (event) => { if (event.target === viewer) viewer.close(); });

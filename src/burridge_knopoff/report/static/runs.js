@@ -1,4 +1,4 @@
-// One run: picked on a chart, with the keyboard, or from the lists; its values, its file and its commands.
+// One run, picked on a chart, with the keyboard or from the lists: its results, its file and its commands.
 const runs = data.runs;
 const picked = { law: 0, initial: 0, a: 0 };
 const agreementWords = { "-1": "undetermined", 0: "the laws disagree here", 1: "the laws agree here" };
@@ -22,8 +22,8 @@ function rowsOf({ law, initial, a }) {
   const at = (name) => runs[name][law][initial][a];
   const exponents = at("exponent_texts").map((text, n) => `λ${subscript(n + 1)} = ${text}`);
   return [
-    ["Run", `${runs.laws[law]} law, initial state ${runs.initial[initial]}, a = ${runs.texts[a]}`],
-    ["⟨J⟩", at("mean_distance_text")],
+    ["Run", element("span", {}, `${runs.laws[law]} law, initial state ${runs.initial[initial]}, `, element("i", {}, "a"), ` = ${runs.texts[a]}`)],
+    [element("span", {}, "⟨", element("i", {}, "J"), "⟩"), at("mean_distance_text")],
     ["Status", runs.statuses[at("status")].replaceAll("_", " ")],
     ["Kind of motion", at("kind_text")],
     ["Lyapunov exponents", exponents.length ? element("ul", {}, ...exponents.map((text) => element("li", {}, text))) : "none computed"],
@@ -49,6 +49,7 @@ function pick(law, initial, a) {
   byId("run-simulate").textContent = commands.simulate;
   byId("copied").textContent = "";
   drawn.forEach((box) => { if ("law" in box.dataset) draw(box); });
+  showBlocks();
 }
 
 /** Mark the picked run in a chart of the runs of its law. */

@@ -1,4 +1,10 @@
-startTheme();
-if (runs) startRuns();
-startPictures();
-startCharts();
+// Without decompression there are pictures in the place of charts.
+if (document.documentElement.classList.contains("js")) {
+  startTheme();
+  if (runs) {
+    startBlocks();
+    startRuns();
+  }
+  startPictures();
+  startCharts();
+}

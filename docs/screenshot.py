@@ -1,0 +1,24 @@
+"""Take the picture of the report in the README: `python docs/screenshot.py PROGRAM`, the path of a Chromium.
+
+It shows the first screen of results/paper/report.html, 1440 pixels wide.
+"""
+
+import sys
+from pathlib import Path
+
+from PIL import Image
+from playwright.sync_api import sync_playwright
+
+ROOT = Path(__file__).parents[1]
+REPORT = ROOT / "results" / "paper" / "report.html"
+PICTURE = ROOT / "docs" / "figures" / "report.png"
+
+with sync_playwright() as tools:
+    browser = tools.chromium.launch(executable_path=sys.argv[1], args=["--no-sandbox"])
+    page = browser.new_page(viewport={"width": 1440, "height": 1270}, color_scheme="light")
+    page.goto(REPORT.as_uri())
+    page.locator(".chart[data-drawn]").nth(1).wait_for()
+    page.screenshot(path=PICTURE)
+    browser.close()
+colors = Image.open(PICTURE).convert("RGB").quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+colors.save(PICTURE, optimize=True)

@@ -1,0 +1,51 @@
+"""The trajectories in a report: the positions of the point files, and no chain where the blocks form none."""
+
+import base64
+import zlib
+
+import numpy as np
+import pytest
+
+from burridge_knopoff.report import trajectories
+from burridge_knopoff.report.trajectories import EVERY, embedded_trajectories
+from burridge_knopoff.study.load import load_study
+from burridge_knopoff.summaries.points import Grid, read_point
+from tests.small_study import SMALL, STUDIES
+
+
+def grid_of(poor):
+    return Grid.of(poor.folder / "points", poor.study.points)
+
+
+def test_the_blocks_move_as_in_the_point_files(poor):
+    grid = grid_of(poor)
+    embedded = embedded_trajectories(grid)
+    steps = np.frombuffer(zlib.decompress(base64.b64decode(embedded["packed"])), "i1")
+    start, moved = 0, 0
+    for number, (_, point) in enumerate(grid):
+        run = read_point(grid, point, ("position", "velocity"))
+        position, velocity = (run[name][::-EVERY][: embedded["frames"][number] + 1][::-1] for name in run)
+        count, unit = embedded["frames"][number], embedded["units"][number]
+        own = steps[start : start + 2 * count].reshape(2, count).T.astype(int)
+        start += own.size
+        ground = np.array(embedded["first"][number]) + unit * np.vstack([np.zeros(2), own.cumsum(axis=0)])
+        relative = ground - embedded["v"] * embedded["interval"] * np.arange(count + 1)[:, None]
+        assert relative == pytest.approx(position, rel=0.0, abs=0.6 * unit + 1e-5)
+        sticks = (velocity[1:] == 0.0) & (velocity[:-1] == 0.0)
+        moved += np.count_nonzero(own)
+        # Between two instants of rest a block may slip, but it hardly ever does.
+        assert np.mean(own[sticks] == 0) > 0.9
+    assert start == steps.size
+    assert moved > 0
+
+
+def test_a_large_study_has_the_runs_at_some_values_of_a(poor, monkeypatch):
+    monkeypatch.setattr(trajectories, "LARGEST", 1)
+    embedded = embedded_trajectories(grid_of(poor))
+    assert embedded["every"] >= len(poor.study.grid)
+    assert len(embedded["units"]) == len(poor.study.laws) * len(poor.study.initial)
+
+
+def test_a_ring_is_not_drawn_as_a_chain():
+    study = load_study({**SMALL, **STUDIES["ring"]}, "ring.yaml")
+    assert embedded_trajectories(Grid.of("points", study.points)) is None
