@@ -103,14 +103,9 @@ def map_parts(one: xarray.Dataset, colors: Mapping[int, str], names: Mapping[int
         MapPart(
             b,
             s,
-            "undetermined" if b < 0 else _side_name(names[b], s),
+            "undetermined" if b < 0 else side_name(names[b], s),
             UNDETERMINED if b < 0 else colors[b] if s >= 0 else pale(colors[b]),
             (branch == b) & (side == s),
         )
         for b, s in sorted(present, key=lambda pair: (pair[0] < 0, pair[0], -pair[1]))
     ]
-
-
-def _side_name(name: str, side: int) -> str:
-    """Return the name of one side of a branch; a motion with two sides is one of a mirror pair at that a."""
-    return f"{name.replace('alternating', 'mirror pair')} ({'+' if side > 0 else '−'})" if side else name

@@ -102,7 +102,7 @@ def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str
     if study.is_plane:
         parts = _over_parameters(drawn)
     else:
-        grid = sources.points and Grid.of(sources.points, study.points)
+        grid = sources.points and Grid.from_points(sources.points, study.points)
         trajectories = embedded_trajectories(grid) if grid else None
         parts = _over_a(study, summaries, drawn, arguments, verdicts, trajectories)
     return environment.get_template("report.html.jinja").render(

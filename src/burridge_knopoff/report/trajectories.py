@@ -54,7 +54,7 @@ def embedded_trajectories(grid: Grid) -> dict[str, Any] | None:
         "interval": interval,
         "blocks": chain.blocks,
         "pulled": (chain.driving > 0.0).tolist(),
-        "coupled": (chain.after[: chain.blocks - 1] > 0.0).tolist(),
+        "coupled": (chain.coupling_to_next[: chain.blocks - 1] > 0.0).tolist(),
         "units": units,
         "first": first,
         "frames": frames,

@@ -70,5 +70,5 @@ def read_verdicts(path: str | Path | None) -> Verdicts:
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
         raise BadFile(path, f"is not a file of verdicts ({type(error).__name__}: {error})") from None
     main = [claim for name in MAIN for claim in claims if claim["name"] == name]
-    topics = {TITLES.get(topic, topic.capitalize()): of_topic for topic, of_topic in by_topic(claims).items()}
+    topics = {TITLES.get(topic, topic.capitalize()): of_topic for topic, of_topic in group_by_topic(claims).items()}
     return Verdicts(counts, independent, main, topics, group_untestable(claims), content)

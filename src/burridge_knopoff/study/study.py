@@ -110,7 +110,9 @@ class Study:
     @property
     def has_one_chain(self) -> bool:
         """Whether all points have the same chain."""
-        varied = {(single_of(name) or (name,))[0] for name, values in self.parameters.items() if len(values) > 1}
+        varied = {
+            (parse_indexed_name(name) or (name,))[0] for name, values in self.parameters.items() if len(values) > 1
+        }
         return not varied & set(self.config["chain"])
 
     @property
