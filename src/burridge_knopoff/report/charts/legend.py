@@ -30,7 +30,7 @@ _FORMS["hexagon2"] = _FORMS["hexagon"]
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of a legend: the name of a mark of this form and colour; `edge` is the colour of its outline, if another."""
+    """An entry of a legend: the name of a mark, its form and colour; `edge` is the colour of its outline, if another."""
 
     name: str
     color: str
