@@ -30,7 +30,7 @@ _FORMS["hexagon2"] = _FORMS["hexagon"]
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of a legend: the name of a mark, its form and colour; `edge` is the colour of its outline, if another."""
+    """An entry of a legend: the name of a mark, its form and colour and, if another, that of its outline (`edge`)."""
 
     name: str
     color: str
