@@ -14,9 +14,9 @@ from typing import Any
 import yaml
 
 from burridge_knopoff.laws import LAWS
-from burridge_knopoff.model.drawn import Drawn
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.model.random_numbers import RandomNumbers
 from burridge_knopoff.model.ranges import (
     Either,
     Interval,
@@ -225,7 +225,7 @@ def _(allowed: Interval) -> Schema:
 
 
 @schema_of.register
-def _(allowed: Drawn) -> Schema:
+def _(allowed: RandomNumbers) -> Schema:
     # A text in this form is what a study records.
     return {"anyOf": [schema_of(allowed.keys), {"type": "string", "pattern": "^random="}]}
 

@@ -30,7 +30,7 @@ _FORMS["hexagon2"] = _FORMS["hexagon"]
 
 @dataclass(frozen=True)
 class Entry:
-    """An entry of a legend: name, form and mark, its form and colour and, if another, that of its outline (`edge`)."""
+    """An entry of a legend: name, form and colour of a mark; `edge` is the colour of its outline, if different."""
 
     name: str
     color: str
