@@ -36,7 +36,7 @@ class BasinSettings:
     tiles: Annotated[
         int,
         Whole(1, 16_384),
-        "number of bands into which a map is divided, one job each; at most `pixels`",
+        "number of tiles (bands) into which a map is divided, one job each; at most `pixels`",
     ] = 2
     threads: Annotated[
         int, Whole(1, 1024), "number of threads for each map or tile; the result does not depend on it"

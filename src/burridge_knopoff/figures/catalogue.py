@@ -20,12 +20,12 @@ TITLE = "Slip events"
 CATEGORY = "Slip events"
 INPUTS = ("catalogue",)
 CAPTION = """\
-Slip events of the catalogues, for each friction law and up to six values of a. Top: rate of events per unit of time and
-of magnitude, the natural logarithm of the moment M. Each broad line is the rate exp(−b ln M) that was fitted by maximum
-likelihood in its range; the legend has the slope b with its standard error, and the probability p that a catalogue of
-such a distribution differs from its own fit by as much; of a run that did not complete, how it ended. Middle: mean
-number of slipping blocks of the events of a magnitude. Bottom: intervals since the event in which the epicentre slipped
-last, as shares in logarithmic bins.
+Slip events of the catalogues, for each friction law and up to six values of a. Top: rate of events per unit time and
+unit magnitude; the magnitude is the natural logarithm of the moment M. Each broad line is the rate exp(−b ln M) that
+was fitted by maximum likelihood in its range; the legend has the slope b with its standard error, and the probability p
+that a catalogue drawn from this distribution differs from its own fit by at least as much; for a run that did not
+complete, it says how the run ended. Middle: mean number of blocks that slip in an event of given magnitude. Bottom:
+times since the epicentre last slipped, as shares in logarithmic bins.
 """
 
 #: Most values of a that are shown.

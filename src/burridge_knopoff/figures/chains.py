@@ -18,9 +18,9 @@ TITLE = "Longer chains"
 CATEGORY = "Longer chains"
 INPUTS = ("chains",)
 CAPTION = """\
-The fraction of random initial states, new ones at each a, that end in mirror synchrony, versus a for each number of
-blocks N, with 95 % Wilson intervals. Open circles count undetermined states as synchronized. Squares (row
-"stable") mark values of a at which synchrony is stable.
+The fraction of random initial states, sampled independently at each a, that lead to synchrony of all mirror blocks,
+versus a for each number of blocks N, with 95 % Wilson intervals. Open circles count undetermined states as
+synchronized. Squares (row "stable") mark values of a at which synchrony is stable.
 """
 
 COLUMNS = 3

@@ -17,7 +17,7 @@ INPUTS = ("runs",)
 CAPTION = """\
 The phase-space distance J between the end blocks versus time τ in single runs from each initial state, on a linear and
 on a logarithmic scale; the latter leaves out values below 10⁻¹⁵, which are rounding. If the initial relaxation, in the
-first hundredth of the run, is more than five times higher than the rest, the linear scale cuts it off and the panel
+first hundredth of the run, is more than five times as high as the rest, the linear scale cuts it off and the panel
 gives J(0).
 """
 

@@ -18,7 +18,7 @@ TITLE = "Edge states"
 CATEGORY = "Attractors"
 INPUTS = ("attractors", "edges")
 CAPTION = """\
-The motion to which trajectories on the boundaries between basins settle, versus a for each law. Top: ⟨J⟩ of the
+The motion on which trajectories on the boundaries between basins settle, versus a for each law. Top: ⟨J⟩ of the
 attractors (grey) and of the edge states, in the colour of their kind of motion. Diamonds: the unstable manifold crosses
 the boundary, which is therefore fractal; circles: no displaced state shows a crossing. Lines: saddle orbits, continued
 in a for as long as they have one unstable direction. Bottom: the mean time for which trajectories stay near an edge

@@ -25,7 +25,7 @@ TITLE = "Phases of the end blocks"
 CATEGORY = "Attractors"
 INPUTS = ("phases",)
 CAPTION = """\
-Top: the fraction of states that synchronize, under the first law. The end blocks start to oscillate about uniform
+Top: the fraction of states that synchronize, under the first law. The end blocks initially oscillate about uniform
 sliding with amplitude A and the given phase difference; the other blocks slide uniformly. Up to four values of a at
 which some states synchronize are shown. Unequal steps of A and of the phase difference are drawn at equal distances. To
 the left of the dashed line, A = v/ω, no block stops during such an oscillation. Bottom: the mean of this fraction over

@@ -16,10 +16,10 @@ TITLE = "Independent solvers"
 CATEGORY = "Friction laws"
 INPUTS = ("solvers",)
 CAPTION = """\
-Every solver of each law at a few values of a, a row for each initial state and a. Left: ⟨J⟩ with its standard error.
-Middle: the difference from ⟨J⟩ of the solver that the study uses; short lines are standard errors of this difference.
-Differences below 10⁻¹⁵, including 0, are drawn at the left edge. Right: the number of steps per unit time; dotted: that
-of the paper's runs.
+Every solver for each law at a few values of a, with a row for each initial state and a. Left: ⟨J⟩ with its standard
+error. Middle: the difference from ⟨J⟩ of the solver that the study uses; short lines are standard errors of this
+difference. Differences below 10⁻¹⁵, including 0, are drawn at the left edge. Right: the number of steps per unit time;
+dotted: that of the paper's runs.
 """
 
 #: Steps per unit time in the paper's own numerical solution.

@@ -31,7 +31,7 @@ INPUTS = ("two_blocks",)
 CAPTION = """\
 ⟨J⟩ of the attractor reached by two blocks, versus a, under each law and from each sampled initial state, and the states
 for which the laws disagree in ⟨J⟩ or in the kind of motion; each law is compared with the first. (a, b) The train
-model, pulled at its first block only, which the paper refers to. (c, d) Both blocks are pulled; this is not the paper's
+model, to which the paper refers, pulled at its first block only. (c, d) Both blocks are pulled; this is not the paper's
 chain. Where symbols coincide although the state is marked, both laws have both attractors, but the state reaches a
 different one under each law.
 """

@@ -88,7 +88,7 @@ class Settings:
     lyapunov_exponents: Annotated[
         int,
         Whole(0, 2 * MAXIMUM_BLOCKS),
-        "number of Lyapunov exponents, the largest ones, at most two per block; rk4 computes none",
+        "number of Lyapunov exponents, from the largest down, at most two per block; rk4 computes none",
     ] = DEFAULT_EXPONENTS
     lyapunov_alignment: Annotated[
         float, DURATION, "time before the window in which perturbations align with the directions of fastest growth"

@@ -39,7 +39,7 @@ def _values(one: Number, longest: float) -> Several:
     steps = {
         "from": Field(one, "first value"),
         "to": Field(one, "last value"),
-        "step": Field(Number(0.0, longest, above=True), "distance between values, which divides the range"),
+        "step": Field(Number(0.0, longest, above=True), "distance between values; must divide the length of the range"),
     }
     return Several(Either((one, Keys(steps))), 1)
 
