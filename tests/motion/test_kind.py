@@ -185,10 +185,10 @@ def test_an_approach_that_turns_round_the_limit_has_no_period():
 @pytest.mark.parametrize(
     ("motion", "words"),
     [
-        (Motion(MotionKind.PERIODIC, 48, 157.2), "periodic, section points repeat after 48"),
+        (Motion(MotionKind.PERIODIC, 48, 157.2), "periodic, repeats after 48 section points"),
         (
             Motion(MotionKind.SYNCHRONIZED, 1, 5.7, unstable=True),
-            "unstable synchronized, section points repeat after 1",
+            "unstable synchronized, repeats after 1 section point",
         ),
         (Motion(MotionKind.QUASIPERIODIC), "quasiperiodic within 2000 time units"),
         (

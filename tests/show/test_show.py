@@ -58,7 +58,7 @@ def test_a_point_in_words(point, capsys):
         "U(0)  = 0.989, -0.993, -0.991\n",
         "transient 3000, window 1000 in 4 batches\n",
         "completed at tau = 4000\n",
-        "periodic, section points repeat after 48\n",
+        "periodic, repeats after 48 section points\n",
         " of all 6 are -infinity\n",
     ):
         assert words in said

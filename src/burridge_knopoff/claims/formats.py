@@ -103,7 +103,8 @@ def as_markdown(content: Mapping[str, Any], figures: str) -> str:
     topics = group_by_topic(content["claims"])
     if topics:
         rows = [
-            f"| {_cell(claim['statement'])} | {claim['verdict']} | [{claim['name']}](#{claim['name']}) |"
+            f"| {_cell(claim['statement'])} | {claim['verdict']}{' (dependent)' if claim['depends_on'] else ''} "
+            f"| [{claim['name']}](#{claim['name']}) |"
             for claims in topics.values()
             for claim in claims
         ]

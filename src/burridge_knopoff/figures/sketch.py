@@ -22,10 +22,10 @@ CONDITION = "has_one_chain"
 INPUTS = ()
 FROM_STUDY = ("chain_description",)
 CAPTION = """\
-The chain of the study. Springs couple neighbouring blocks and pull blocks to a driver that moves with velocity v; the
-number next to a spring is its stiffness in units of the spring constant k. U_i is the position of block i. Dry friction
-holds a block up to its static friction F, in units of F(0); F is given if it differs between blocks. Of a long chain,
-only the first two blocks and the last are drawn. Springs of a network and dashpots are not drawn.
+The chain of the study. Springs couple neighbouring blocks, and others connect blocks to a driver that moves with
+velocity v; the number next to a spring is its stiffness in units of the spring constant k. U_i is the position of block
+i. Dry friction holds a block up to its static friction F, in units of F(0); F is given if it differs between blocks. Of
+a long chain, only the first two blocks and the last are drawn. Springs of a network and dashpots are not drawn.
 """
 
 #: Longer chains are drawn in part.

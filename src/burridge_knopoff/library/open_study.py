@@ -101,7 +101,8 @@ class StudyResults(Mapping[str, xarray.DataTree]):
             elif names := [name for name in self if not path or name.startswith(f"{path}/")]:
                 parts = {name.removeprefix(path).strip("/"): self._open(name) for name in names}
                 return xarray.DataTree.from_dict(parts, name=path.rpartition("/")[2] or self._study.name)
-        raise KeyError(f"{path}: not among the results in {self._results}")
+        example = next(iter(self._points))
+        raise KeyError(f"{path}: not among the results in {self._results}; a point is named as in {example}")
 
     def __repr__(self) -> str:
         sizes = ", ".join(f"{name} {len(values)}" for name, values in self._study.parameters.items())

@@ -234,5 +234,6 @@ def format_motion(motion: Motion, settings: MotionSettings) -> str:
     if motion.kind == MotionKind.QUASIPERIODIC:
         locked = f"; locked with a period of {motion.period:.5g}" if math.isfinite(motion.period) else ""
         return f"quasiperiodic within {settings.longest_period:g} time units{locked}"
-    period = f", section points repeat after {motion.section_period}" if motion.section_period else ""
+    points = motion.section_period
+    period = f", repeats after {points} section point{'s' * (points > 1)}" if points else ""
     return f"{'unstable ' if motion.unstable else ''}{motion.kind.words}{period}"

@@ -110,7 +110,7 @@ def chain_text(chain: Chain) -> str:
     else:
         parts = [f"coupling {_format_numbers(chain.coupling)}"]
     parts.append(
-        "pulling as many springs as the block has neighbours"
+        "pulling springs, one per neighbour of the block"
         if chain.pulling == NEIGHBOURS
         else f"pulling {_format_numbers(chain.pulling)}"
     )

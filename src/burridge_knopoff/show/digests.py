@@ -55,16 +55,17 @@ def mean_distance(data: xarray.Dataset) -> str:
 
 
 def lyapunov(data: xarray.Dataset) -> str:
-    """Return where each law and initial state is synchronized and chaotic, and its largest Lyapunov exponent."""
+    """Return where the runs of each law and initial state are chaotic or undetermined, and the largest exponent."""
 
     def sentence(one: xarray.Dataset, a: np.ndarray) -> str:
         kind = one["run_kind"].values
         is_chaotic = np.isin(kind, CHAOS)
         first = f", first at a = {a[is_chaotic.argmax()]:g}" if is_chaotic.any() else ""
+        unclear = np.count_nonzero(kind == MotionKind.UNDETERMINED)
         return "; ".join(
             [
-                _synchrony(kind == MotionKind.SYNCHRONIZED, a),
                 f"chaotic at {is_chaotic.sum()} of {len(a)} values of a{first}",
+                *([f"by the run alone undetermined at {unclear} (see agreement.nc)"] if unclear else []),
                 *_largest("exponent", one["lyapunov_exponent"].values.max(axis=-1, initial=-np.inf), a),
             ]
         )

@@ -59,7 +59,12 @@ PAIR_VARIABLES = {
     ),
     "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
     "event_order_count": Variable(_PAIR, "i8", "number of events that occur in the same order under both laws"),
-    "same_kind": Variable(_PAIR, "i1", "whether both laws lead to the same kind of motion", ANSWER),
+    "same_kind": Variable(
+        _PAIR,
+        "i1",
+        "whether both laws lead to the same kind of motion, periodic and quasiperiodic motion being one",
+        ANSWER,
+    ),
     "agrees": Variable(_PAIR, "i1", "whether the kind of motion and <J> agree", ANSWER),
     "parting_a": Variable(_PAIR[:2], "f8", "smallest a of the grid at which the laws disagree, NaN if there is none"),
 }
