@@ -235,5 +235,5 @@ def format_motion(motion: Motion, settings: MotionSettings) -> str:
         locked = f"; locked with a period of {motion.period:.5g}" if math.isfinite(motion.period) else ""
         return f"quasiperiodic within {settings.longest_period:g} time units{locked}"
     points = motion.section_period
-    period = f", repeats after {points} section point{'s' * (points > 1)}" if points else ""
+    period = f", repeats after {points} section point{'s' if points > 1 else ''}" if points else ""
     return f"{'unstable ' if motion.unstable else ''}{motion.kind.words}{period}"
