@@ -74,6 +74,13 @@ def test_numbers_follow_the_order_in_which_branches_appear_under_the_first_law()
     assert all_laws.number_in_order([ranges((3, 0, 4, 0.2), (7, 0, 4, 0.1))], [{3: 3, 7: 7}]) == {7: 1, 3: 2}
 
 
+def test_without_synchrony_on_the_grid_its_number_remains_free(one_law):
+    part = one_law("linearized")
+    part["branch"][...] = np.where(part["branch"] == 0, -1, part["branch"])
+    model = Model(Chain(3), law_of("linearized", 0.0), 0.2)
+    assert all_laws.branch_numbers([part], [model], SETTINGS) == [{1: 1}]
+
+
 @given(st.lists(st.tuples(st.integers(0, 8), st.integers(1, 2)), max_size=4))
 def test_what_a_deeper_search_finds_in_addition_leaves_the_numbers_of_lasting_branches(short):
     lasting = (0, 0, 5, 0.0), (1, 3, 4, 0.2), (2, 1, 9, 0.3), (3, 6, 3, 0.4)

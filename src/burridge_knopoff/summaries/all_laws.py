@@ -95,7 +95,8 @@ def branch_numbers(
         firsts, seconds = ([item.at(a) for a in grid] for item in (models[0], model))
         renamed = match_branches(firsts, seconds, first, _states(part, model), settings, processes=processes)
         numbers.append(_number_remaining(renamed, part, numbers))
-    order = number_in_order(parts, numbers)
+    # The synchronized branch may exist only between the values of the grid.
+    order = {0: 0} | number_in_order(parts, numbers)
     return [{own: order[number] for own, number in renamed.items()} for renamed in numbers]
 
 
