@@ -14,7 +14,7 @@ from tests.small_study import SMALL, STUDIES
 
 
 def grid_of(poor):
-    return Grid.of(poor.folder / "points", poor.study.points)
+    return Grid.from_points(poor.folder / "points", poor.study.points)
 
 
 def test_the_blocks_move_as_in_the_point_files(poor):
@@ -48,4 +48,4 @@ def test_a_large_study_has_the_runs_at_some_values_of_a(poor, monkeypatch):
 
 def test_a_ring_is_not_drawn_as_a_chain():
     study = load_study({**SMALL, **STUDIES["ring"]}, "ring.yaml")
-    assert embedded_trajectories(Grid.of("points", study.points)) is None
+    assert embedded_trajectories(Grid.from_points("points", study.points)) is None
