@@ -13,12 +13,19 @@ ROOT = Path(__file__).parents[1]
 REPORT = ROOT / "results" / "paper" / "report.html"
 PICTURE = ROOT / "docs" / "figures" / "report.png"
 
-with sync_playwright() as tools:
-    browser = tools.chromium.launch(executable_path=sys.argv[1], args=["--no-sandbox"])
-    page = browser.new_page(viewport={"width": 1440, "height": 1270}, color_scheme="light")
-    page.goto(REPORT.as_uri())
-    page.locator(".chart[data-drawn]").nth(1).wait_for()
-    page.screenshot(path=PICTURE)
-    browser.close()
-colors = Image.open(PICTURE).convert("RGB").quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-colors.save(PICTURE, optimize=True)
+
+def main(program: str) -> None:
+    """Write the picture."""
+    with sync_playwright() as tools:
+        browser = tools.chromium.launch(executable_path=program, args=["--no-sandbox"])
+        page = browser.new_page(viewport={"width": 1440, "height": 1270}, color_scheme="light")
+        page.goto(REPORT.as_uri())
+        page.locator(".chart[data-drawn]").nth(1).wait_for()
+        page.screenshot(path=PICTURE)
+        browser.close()
+    colors = Image.open(PICTURE).convert("RGB").quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    colors.save(PICTURE, optimize=True)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

@@ -200,7 +200,7 @@ def test_no_events(tmp_path):
         ([*RUN, "--blocks", "4", "--out", "x.nc"], "blocks: 4"),
         ([*RUN, "--blocks", "1", "--out", "x.nc"], "blocks: 1"),
         ([*RUN, "--position", "1,2,z", "--out", "x.nc"], "--position"),
-        ([*RUN, "--position", "1,2", "--out", "x.nc"], "velocity: missing, expected numbers, one a block"),
+        ([*RUN, "--position", "1,2", "--out", "x.nc"], "velocity: missing, expected one number per block"),
         ([*RUN, "--velocity", "0.1,-0.1,0.1", "--out", "x.nc"], "one_sided"),
         ([*RUN, "--window", "0", "--out", "x.nc"], "window: 0"),
         ([*RUN, "--transient", "-5", "--out", "x.nc"], "transient: -5"),

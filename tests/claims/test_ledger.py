@@ -75,7 +75,7 @@ def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
         (EDGE, EDGE, "", ", expected named entries"),
         (EDGE, "edge:", '"edge\\n":', "got 'edge\\n', expected small letters"),
         (EDGE, "  place: Fig. 3\n", "", "place: missing"),
-        (EDGE, "figure: orbits", "figure: no_such", "edge.figure: got 'no_such', expected agreement | basin"),
+        (EDGE, "figure: orbits", "figure: no_such", "edge.figure: got 'no_such', expected agreement | attractor"),
         (EDGE, "  figure", "  verdict: holds\n  figure", "verdict: unknown key"),
         (EDGE, "  figure", "  depends_on: [other]\n  figure", "edge.depends_on: got 'other', expected"),
         (EDGE, "  figure", "  depends_on: [edge]\n  figure", "edge.depends_on: got 'edge', expected"),
@@ -226,7 +226,10 @@ def test_a_section_has_the_evidence_of_its_claim(content: dict) -> None:
     }
     claim |= {"changing_choices": ["holds if c"], "depends_on": ["other_claim"]}
     lines = as_markdown({**content, "claims": [claim]}, "figures").split("\n\n")
-    assert f"| A\\|B. | depends on reading | [{claim['name']}](#{claim['name']}) |" in "\n".join(lines).splitlines()
+    assert (
+        f"| A\\|B. | depends on reading (dependent) | [{claim['name']}](#{claim['name']}) |"
+        in "\n".join(lines).splitlines()
+    )
     assert lines[lines.index(f"#### {claim['name']}") + 1 :] == [
         f"*A|B.* ({claim['place']})",
         "**Depends on reading** (under the first reading: holds). Why.",

@@ -60,7 +60,7 @@ def test_attractors(capsys, tmp_path):
     assert said(capsys, "show", str(out)).count(f"\n{name}  ") == 1
 
 
-def test_basins(capsys, tmp_path):
+def test_basins(capsys, tmp_path, monkeypatch):
     files = [tmp_path / name for name in ("basins.nc", "attractors.nc")]
     plane = ["--pixels", "6", "--first-position", "-1.2,1", "--threads", "2"]
     out = ["--out", str(files[0]), "--attractors-out", str(files[1])]
@@ -73,6 +73,7 @@ def test_basins(capsys, tmp_path):
         row = next(line for line in printed.splitlines() if line.startswith(f"{name}  "))
         assert row.endswith(f"  {100 * (branch == number).mean():.2f} %")
     picture = tmp_path / "basins.png"
+    monkeypatch.setenv("COLUMNS", "1000")
     assert f"{picture}: Basins of attraction. " in said(capsys, "show", str(files[0]), "--plot", str(picture))
     assert picture.stat().st_size > 10_000
 

@@ -60,4 +60,4 @@ def test_one_of_two_mirror_images_is_not_called_alternating():
     """A branch has the name of most of its attractors; at some a its motion may be one of a mirror pair."""
     pixels = xr.Dataset({name: ("pixel", values) for name, values in {"branch": [7, 7, 7], "side": [0, 1, -1]}.items()})
     parts = map_parts(pixels, {7: BRANCHES[2]}, {7: "alternating (7)"})
-    assert [part.name for part in parts] == ["mirror pair (7) (+)", "alternating (7)", "mirror pair (7) (−)"]
+    assert [part.name for part in parts] == ["mirror pair (7+)", "alternating (7)", "mirror pair (7−)"]

@@ -124,5 +124,5 @@ def test_runs_in_other_processes():
 def test_a_state_of_another_version_is_refused():
     made = run().final.last_step[1]
     for bytes_ in (b"", made.__getstate__()[:-1], made.__getstate__() + b"\0"):
-        with pytest.raises(ValueError, match=r"^state: got one pickled by another version of the kernel"):
+        with pytest.raises(ValueError, match=r"^state: got a state pickled by another version of the kernel"):
             type(made).__new__(type(made)).__setstate__(bytes_)

@@ -48,7 +48,7 @@ def test_the_derivative_by_a_is_that_of_the_same_events_of_each_block(monkeypatc
     def ran(events, after):
         """Return what stands for a runner that has come to an end with these events."""
         columns = tuple(np.array(events).reshape(-1, 3).T)
-        return SimpleNamespace(events=lambda: columns, after=lambda start, time: after)
+        return SimpleNamespace(events=lambda: columns, state_after=lambda start, time: after)
 
     def runner(model, keep_events):
         size, events = next(left)

@@ -41,6 +41,12 @@ def study(small_studies, tmp_path_factory):
     return results
 
 
+@pytest.fixture(autouse=True)
+def wide_terminal(monkeypatch):
+    """Paths of tests are long."""
+    monkeypatch.setenv("COLUMNS", "1000")
+
+
 def shown(capsys, *arguments, code=0):
     """Return what `bk show` prints, or the one line with which it refuses."""
     assert main(["show", *map(str, arguments)]) == code

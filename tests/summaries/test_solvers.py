@@ -86,7 +86,7 @@ def test_a_file_of_another_solver_is_refused(files):
 def test_the_figure_draws_every_solver(files):
     dataset = summarize(*files, 0.01)
     panels = figure.draw(dataset).axes
-    shown = [line.get_ydata().tolist() for line in panels[0].get_lines() if len(line.get_ydata()) == 2]
+    shown = [line.get_xdata().tolist() for line in panels[0].get_lines() if len(line.get_xdata()) == 2]
     for solver in SOLVERS["linearized"]:
         assert dataset["mean_distance"].sel(law="linearized", solver=solver, initial="plus").values.tolist() in shown
     assert len(panels[1].containers) == 2

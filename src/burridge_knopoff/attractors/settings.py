@@ -28,7 +28,7 @@ class SearchSettings:
     samples: Annotated[
         int,
         Whole(0, 1_000_000),
-        "number of random initial states at each a from which the search starts, in addition to the study's own",
+        "number of random initial states at each a from which the search starts, in addition to the given ones",
     ] = 200
     fraction_width: Annotated[
         float,
