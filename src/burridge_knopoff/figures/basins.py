@@ -21,8 +21,8 @@ INPUTS = ("basins", "attractors")
 FROM_STUDY = ("marked_states",)
 CAPTION = """\
 Basins of attraction in the plane of the initial positions U_1(0) and U_N(0) of the end blocks. Each pixel has the
-colour of the branch that its state reaches. Of a mirror pair, (+) and (−) are the two motions, the second in a lighter
-shade. Black: undetermined. Numbers mark the study's initial states in this plane.
+colour of the branch that its state reaches. The two motions of a mirror pair have + and − after the number, and the
+second has a lighter shade. Black: undetermined. Numbers mark the study's initial states in this plane.
 """
 
 COLUMNS = 2
