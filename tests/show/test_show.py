@@ -123,7 +123,10 @@ def test_every_summary_in_words(study):
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("mean_distance", "⟨J⟩ versus a. The time average ⟨J⟩"), ("basins", "Basins of attraction. Basins of attraction in")],
+    [
+        ("mean_distance", "⟨J⟩ versus a. The time average ⟨J⟩"),
+        ("basins", "Basins of attraction. Basins of attraction in"),
+    ],
 )
 def test_a_summary_as_its_figure(study, tmp_path, capsys, name, words):
     """With the other summaries and the properties of the study that the figure needs."""
