@@ -31,7 +31,7 @@ from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING, schedule
 MOMENTS, LEAST = 400, 10.0
 
 LONG = re.compile(r"(.+)_of_law law=(\w+)")
-PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s(; \d+ kept.*)?$", re.MULTILINE)
+PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s(; \d+ from the cache)?$", re.MULTILINE)
 
 
 def planned(config, *targets, cores=2):
@@ -88,7 +88,7 @@ def parts_of(results, job):
     for name, *seconds, kept in PART.findall(text):
         if kept:
             sys.exit(
-                f"{log}: what was kept from a run before took no time: rm -r .snakemake/study_cache, and run it again"
+                f"{log}: what came from the cache took no time: rm -r .snakemake/study_cache, and run it again"
             )
         parts[name].append([float(value) for value in seconds])
     return [(sum(total for total, _ in each), max(longest for _, longest in each)) for each in parts.values()]

@@ -170,7 +170,7 @@ def test_a_wider_grid_is_searched_where_it_is_new(copy):
     )
     assert f"searched from initial states: {values + 1}, " in search
     assert f"; {values} from the cache" in search.splitlines()[0]
-    assert re.search(r"closed orbits: .*; [1-9]\d* from the cache", bifurcations)
+    assert re.search(r"periodic orbits: .*; [1-9]\d* from the cache", bifurcations)
     after = {path.name for path in folder.rglob("searched*/*")}
     assert before < after
     assert len(after) == values + 1
