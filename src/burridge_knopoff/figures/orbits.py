@@ -33,9 +33,9 @@ CAPTION = """\
 (a) Floquet multipliers of the synchronized orbit. At a_c (dots) the modulus of the transverse multiplier μ passes 1;
 the orbit is stable where it is smaller. (b) ⟨J⟩ of the stable and unstable orbits near a_c, with the study's runs in
 that range; symbols of the first law are smaller. (c) The distance between the end blocks on the asymmetric orbit that
-branches off at a_c: points, and the power of |a − a_c| fitted to them. (d) The difference between each law and the
-first law in μ and in the period T, at the same a and, for the paper's laws, at the same slope of friction at the driver
-velocity. Values of 0 are left out.
+branches off at a_c: points, and the power law in the distance from a_c fitted to them. (d) The difference between each
+law and the first law in μ and in the period T, at the same a and, for the paper's laws, at the same slope of friction
+at the driver velocity. Values of 0 are left out.
 """
 
 # Range of the second panel: from this fraction of a_c to the last orbit that branches off.
