@@ -87,9 +87,7 @@ def parts_of(results, job):
     parts = defaultdict(list)
     for name, *seconds, kept in PART.findall(text):
         if kept:
-            sys.exit(
-                f"{log}: what came from the cache took no time: rm -r .snakemake/study_cache, and run it again"
-            )
+            sys.exit(f"{log}: what came from the cache took no time: rm -r .snakemake/study_cache, and run it again")
         parts[name].append([float(value) for value in seconds])
     return [(sum(total for total, _ in each), max(longest for _, longest in each)) for each in parts.values()]
 
