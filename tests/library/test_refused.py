@@ -162,7 +162,7 @@ def test_names_of_folders_are_shown_in_a_line(tmp_path, content):
     if content is not None:
         folder.mkdir()
         (folder / "study.json").write_text(content)
-    with refused("a\\nb", "not the "):
+    with refused("a\\nb", "not "):
         open_study(folder)
 
 

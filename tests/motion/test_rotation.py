@@ -68,5 +68,5 @@ def test_plateaux_are_runs_of_one_rotation_number():
     assert low < share < high
     assert np.isnan(locked_share(found.sel(law="linearized"), a > 1.0)).all()
     panel = draw(found).axes[0]
-    assert panel.get_title(loc="left") == "linearized law: 80 % of $a$ locked"
+    assert panel.get_title(loc="left") == "linearized law: 80 % of grid values locked"
     assert {text.get_text() for text in panel.texts} == {"9/14", "7/11"}
