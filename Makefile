@@ -168,7 +168,9 @@ docs: .venv/kernel .venv/site  ## update all that the pages print from the defau
 	$(BIN)/snakemake -c2 chains
 	$(BIN)/snakemake -c2
 	$(BIN)/python docs/refresh.py results/paper
+	$(BIN)/python docs/dictionary.py
 	$(BIN)/python docs/keys.py
+	$(BIN)/python docs/rules.py
 	$(BIN)/python docs/notebook.py
 
 # Needs uv. The lock files hold names, versions and hashes only.

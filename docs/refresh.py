@@ -17,6 +17,7 @@ import numpy as np
 import xarray
 from PIL import Image
 
+from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.claims.formats import as_json, as_markdown, count_sentence, dependent_sentence
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.provenance.files import write_text
@@ -57,11 +58,8 @@ def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
 
     attractors : attractors.nc
     """
-    names = dict(
-        zip(attractors["branch_number"].values.tolist(), attractors["branch_name"].values.tolist(), strict=True)
-    )
     found = []
-    for number, name in sorted(names.items()):
+    for number, name in sorted(branch_names(attractors).items()):
         for law in attractors["law"].values.tolist():
             of_law = attractors.sel(law=law)
             there = of_law["branch"].values == number

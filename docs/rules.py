@@ -42,11 +42,16 @@ def chart(graph: str) -> str:
     return "```mermaid\n" + "\n".join(lines) + "\n```\n"
 
 
+def rule_graph() -> str:
+    """Return Snakemake's graph of the rules of the default study."""
+    command = [sys.executable, "-m", "snakemake", "--rulegraph", "mermaid-js", "--quiet", "all"]
+    return subprocess.run(command, check=True, capture_output=True, text=True, cwd=PAGE.parent.parent).stdout
+
+
 def main() -> None:
     """Replace the chart of the page."""
-    command = [sys.executable, "-m", "snakemake", "--rulegraph", "mermaid-js", "--quiet", "all"]
-    said = subprocess.run(command, check=True, capture_output=True, text=True, cwd=PAGE.parent.parent).stdout
-    write_text(PAGE, CHART.sub(lambda _: chart(said), PAGE.read_text(encoding="utf-8")))
+    new = chart(rule_graph())
+    write_text(PAGE, CHART.sub(lambda _: new, PAGE.read_text(encoding="utf-8")))
 
 
 if __name__ == "__main__":
