@@ -67,8 +67,8 @@ class LogHandler(LogHandlerBase):
         self._display: Lines | Picture | None = None
         #: Failed jobs with an empty log, and their logs: a job may fail by Ctrl-C before Snakemake reports the signal.
         self._silent_jobs: list[tuple[str, list[str]]] = []
-        #: Reasons of failures that have been written.
-        self._reasons: set[str] = set()
+        #: {reason of a failure that has been written: first job that failed for it}
+        self._reasons: dict[str, str] = {}
 
     def emit(self, record: LogRecord) -> None:
         """Take a record of Snakemake's log."""
@@ -92,8 +92,10 @@ class LogHandler(LogHandlerBase):
         """Return the line that reports a failed job; a reason, and its remedy, is written once."""
         reason = failure_reason(logs)
         if reason in self._reasons:
-            return f"failed: {job}: for the same reason (log {', '.join(map(str, logs)) or 'none'})"
-        self._reasons.add(reason)
+            first = self._reasons[reason]
+            known = "again, for the same reason" if first == job else f"for the same reason as {first}"
+            return f"failed: {job}: {known} (log {', '.join(map(str, logs)) or 'none'})"
+        self._reasons[reason] = job
         return failure_line(job, logs)
 
     def _replacement(self, record: Any) -> str | None:

@@ -234,7 +234,7 @@ def test_routine_is_replaced_and_all_else_is_written(written):
     said = written(*ROUTINE, *plain, hidden, start(1), FAILURE, record("the end"))
     assert said == [BEGIN, "Building DAG of jobs...", "careful", TOLD, "the end"]
     # Snakemake 9.22 reports a failure twice; a repeated job may fail again.
-    again = "failed: simulate a=0.0800: for the same reason (log x.log)"
+    again = "failed: simulate a=0.0800: again, for the same reason (log x.log)"
     assert written(*BEGUN, FAILURE, FAILURE, start(1), FAILURE) == [BEGIN, TOLD, again]
 
 

@@ -126,12 +126,12 @@ def go_on(study: Study, *arguments: str) -> list[str]:
 
 
 def failures(text: str) -> dict[str, str]:
-    """Return {log below results/<study>/logs: reason} from the last words of a run that failed."""
-    end = re.search(r"study \w+: stopped.*", text, re.DOTALL)
-    assert end, text
-    lines = end[0].splitlines()
-    found = [re.fullmatch(r"failed: (.+?): (.*) \(log results/\w+/logs/(\S+)\)", line) for line in lines]
-    return {line[3]: line[2] for line in found if line}
+    """Return {log below results/<study>/logs: reason} from the lines in which a run reports its failures."""
+    assert re.search(r"^study \w+: stopped", text, re.MULTILINE), text
+    found = re.findall(r"^failed: (.+?): (.*) \(log results/\w+/logs/(\S+)\)$", text, re.MULTILINE)
+    reasons = {job: reason for job, reason, _ in found}
+    same = "for the same reason as "
+    return {log: reasons.get(reason.removeprefix(same), reason) for _, reason, log in found}
 
 
 def remedies(text: str) -> list[str]:
@@ -189,12 +189,17 @@ module.{function} = provoked
 """
 
 
-def out_of_memory(modules: str, megabytes: int) -> str:
-    """Return code that leaves a process, all imports done, so much memory only."""
+def out_of_memory(modules: str) -> str:
+    """Return code that leaves a process, all imports done, no memory but what is free in blocks of less than 16 KiB."""
     return f"""
 import resource, netCDF4, {modules}
-used = int(open("/proc/self/statm").read().split()[0]) * os.sysconf("SC_PAGE_SIZE")
-resource.setrlimit(resource.RLIMIT_AS, (used + {megabytes} * 1000000,) * 2)
+resource.setrlimit(resource.RLIMIT_AS, (1, 1))
+taken, size = [], 1 << 24
+while size > 1 << 13:
+    try:
+        taken.append(bytearray(size))
+    except MemoryError:
+        size //= 2
 """
 
 

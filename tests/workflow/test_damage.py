@@ -270,7 +270,7 @@ def test_damaged_texts_and_pictures_are_made_again(copy, finished):
     found = {finding.path.name: finding.kind for finding in check_study(results).findings}
     assert found == dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt")
     said = copy.ok()
-    assert "results/tiny/figures/orbits.png: has other bytes than were written: it is recreated" in said
+    assert "results/tiny/figures/orbits.png: was changed after it was written: it is recreated" in said
     assert not check_study(results).findings
     check_end(copy, finished)
 

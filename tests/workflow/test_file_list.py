@@ -23,7 +23,7 @@ window: 20
 batches: 2
 without: [attractors, solvers, proof, claims]
 """
-ROW = '        of_points("unseen", "Average J, which no figure shows.", "synchronization_threshold"),\n'
+ROW = '        point_summary("unseen", "Average J, which no figure shows.", "synchronization_threshold"),\n'
 SEEN = "summary/mean_distance.nc"
 UNSEEN = "summary/unseen.nc"
 
@@ -37,7 +37,9 @@ def with_unseen(tmp_path):
         subprocess.run(["cp", "-a", str(REPOSITORY / name), str(tree)], check=True)
     rows = tree / "src/burridge_knopoff/jobs/shown.py"
     before = rows.read_text()
-    rows.write_text(before.replace("    return [\n        of_points(", f"    return [\n{ROW}        of_points("))
+    rows.write_text(
+        before.replace("    return [\n        point_summary(", f"    return [\n{ROW}        point_summary(")
+    )
     assert rows.read_text() != before
     shutil.copy(tree / "src/burridge_knopoff/summaries/mean_distance.py", rows.parents[1] / "summaries/unseen.py")
     return Study(tmp_path / "study", ONE_POINT, tree)

@@ -163,7 +163,7 @@ def test_a_wider_grid_is_searched_where_it_is_new(copy):
     law, values = "linearized", 4
     folder = copy.folder / f".snakemake/study_cache/tiny/attractors {law}"
     copy.config.write_text(TINY.replace("[0.05,", "[0.05, 0.06,"))
-    before = {path.name for path in folder.rglob("searched*/*")}
+    before = {path.name for path in folder.rglob("searched from initial states/*")}
     copy.ok(f"results/tiny/bifurcations/{law}.nc")
     search, bifurcations = (
         (copy.folder / f"results/tiny/logs/{stage}/{law}.log").read_text() for stage in ("attractors", "bifurcations")
@@ -171,7 +171,7 @@ def test_a_wider_grid_is_searched_where_it_is_new(copy):
     assert f"searched from initial states: {values + 1}, " in search
     assert f"; {values} from the cache" in search.splitlines()[0]
     assert re.search(r"periodic orbits: .*; [1-9]\d* from the cache", bifurcations)
-    after = {path.name for path in folder.rglob("searched*/*")}
+    after = {path.name for path in folder.rglob("searched from initial states/*")}
     assert before < after
     assert len(after) == values + 1
     assert len(list(folder.iterdir())) == 1
