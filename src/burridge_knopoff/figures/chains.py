@@ -20,7 +20,7 @@ INPUTS = ("chains",)
 CAPTION = """\
 The fraction of random initial states, sampled independently at each a, that lead to synchrony of all mirror blocks,
 versus a for each number of blocks N, with 95 % Wilson intervals. Open circles count undetermined states as
-synchronized. Squares (row "stable") mark values of a at which synchrony is stable.
+synchronized. Squares at the top mark values of a at which synchrony is stable.
 """
 
 COLUMNS = 3
@@ -52,10 +52,10 @@ def draw(chains: xarray.Dataset) -> Figure:
     for panel in panels[max(0, len(blocks) - COLUMNS) : len(blocks)]:
         panel.set_xlabel("$a$")
     for panel in grid[:, 0]:
-        panel.set_ylabel("fraction")
+        panel.set_ylabel("fraction of states")
     handles, labels = legend_entries(panels[: len(blocks)])
     # Points with error bars are drawn last anyway.
-    order = sorted(range(len(labels)), key=lambda k: not labels[k].startswith("synchronized"))
+    order = sorted(range(len(labels)), key=lambda k: " or " in labels[k] or labels[k].startswith("stable"))
     legend_below(figure, [handles[k] for k in order])
     label_panels(panels[: len(blocks)], [f"$N={count}$" for count in blocks])
     return figure
@@ -75,7 +75,7 @@ def _draw_fraction(panel: Axes, chain: xarray.Dataset) -> None:
         panel.errorbar(shifted, fraction, np.maximum(bars, 0.0), label=f"synchronized{name}", **line, **look)
         unknown = run["undetermined_fraction"].values
         places, totals = shifted[unknown > 0.0], (fraction + unknown)[unknown > 0.0]
-        panel.plot(places, totals, "o", markersize=2.8, fillstyle="none", label=f"or undetermined{name}", **look)
+        panel.plot(places, totals, "o", markersize=2.8, fillstyle="none", label=f"synchronized or undetermined{name}", **look)
         below = run["symmetric_exponent"] + STANDARD_ERRORS * run["symmetric_error"] < 0.0
         stable = a[below.any("symmetric_state").values]
         height = np.full(len(stable), 1.1 + 0.05 * index)
@@ -83,4 +83,4 @@ def _draw_fraction(panel: Axes, chain: xarray.Dataset) -> None:
     laws = chain.sizes["law"]
     panel.axhline(1.05, color="0.6", linewidth=0.5)
     panel.set_ylim(-0.05, 1.15 + 0.05 * laws)
-    panel.set_yticks([0.0, 0.5, 1.0, 1.1 + 0.025 * (laws - 1)], ["0", "0.5", "1", "stable"])
+    panel.set_yticks([0.0, 0.5, 1.0], ["0", "0.5", "1"])
