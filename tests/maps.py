@@ -68,7 +68,7 @@ def observe(model, start, transient, window, settings, mean_distance=None, expon
     error = np.where(exponent == 0.0, 0.0, np.std(batches) / np.sqrt(BATCHES))
     found = returns_of(model, window, np.ones(len(x)), rows_of(x).__getitem__)
     points = repetition_length(x, settings.period_tolerance, int(min(settings.longest_period, len(x) // 3)))
-    told = motion_from_period(points, float(points) if points else np.nan, np.inf, exponent, error, settings)
+    motion = motion_from_period(points, float(points) if points else np.nan, np.inf, exponent, error, settings)
     return SteadyMotion(
         found.returns,
         found.mirror_returns,
@@ -76,10 +76,10 @@ def observe(model, start, transient, window, settings, mean_distance=None, expon
         float(x.mean()),
         float(x.std() / np.sqrt(len(x))),
         np.ones(1),
-        told.kind,
-        told.section_period,
+        motion.kind,
+        motion.section_period,
         exponent,
-        period=told.period,
+        period=motion.period,
     )
 
 

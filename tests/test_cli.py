@@ -62,8 +62,8 @@ def test_all_options(tmp_path):
     )
     assert main(["simulate", *options.split(), "--out", str(out)]) == 0
     with netCDF4.Dataset(out) as dataset:
-        told = {"solver": "rk4", "step": 0.01, "initial": "pair", "contact": "symmetric", "start": "tested"}
-        assert {name: dataset.getncattr(name) for name in told} == told
+        expected = {"solver": "rk4", "step": 0.01, "initial": "pair", "contact": "symmetric", "start": "tested"}
+        assert {name: dataset.getncattr(name) for name in expected} == expected
         assert dataset["v"][...] == 0.2
         assert dataset["initial_position"][:].tolist() == [-0.9, -1.1]
         sizes = {"sample": 31, "trajectory_time": 11, "batch": 3, "exponent": 2}
@@ -112,8 +112,8 @@ def test_numbers_without_a_name_are_not_those_of_the_paper(tmp_path, given, posi
 
 def test_what_is_longer_than_the_run_is_said(tmp_path, capsys):
     assert main([*RUN, "--trajectory", "5000", "--event-window", "25", "--out", str(tmp_path / "x.nc")]) == 0
-    said = capsys.readouterr().err.splitlines()
-    assert said == [
+    output = capsys.readouterr().err.splitlines()
+    assert output == [
         "note: bk simulate: trajectory: 5000 is longer than the run; all 30 time units were recorded",
         "note: bk simulate: event_window: 25 is longer than the window; all 20 time units were recorded",
     ]
@@ -123,9 +123,9 @@ def test_what_a_long_chain_costs_is_said_before_it_starts(tmp_path):
     options = "--law nonlinear --a 0.3 --blocks 100000 --position=-0.9 --velocity 0.1 --initial all --trajectory 1"
     command = [BK, "simulate", *options.split(), "--lyapunov-exponents", "0", "--out", tmp_path / "x.nc"]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
-        said = process.stderr.readline()
+        output = process.stderr.readline()
         process.send_signal(signal.SIGINT)
-    assert said == (
+    assert output == (
         "note: bk simulate: 100000 blocks: about 5 min per time unit, 35 days for the run if they keep slipping; "
         "0.45 GB in addition to the recorded events\n"
     )
@@ -252,10 +252,10 @@ def test_bad_input(tmp_path, monkeypatch, capsys, arguments, words):
         code = main(without_doubles(arguments))
     except SystemExit as end:
         code = end.code
-    said = capsys.readouterr()
-    assert (code, said.out) == (2, "")
-    assert said.err.count("\n") == 1
-    assert words in said.err or words in said.err.replace(": got ", ": ")
+    output = capsys.readouterr()
+    assert (code, output.out) == (2, "")
+    assert output.err.count("\n") == 1
+    assert words in output.err or words in output.err.replace(": got ", ": ")
     assert list(tmp_path.iterdir()) == []
 
 

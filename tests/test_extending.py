@@ -160,9 +160,9 @@ def test_the_law_meets_its_obligations(extended):
     assert int(re.search(r"(\d+) passed", ran)[1]) >= 20
 
 
-def test_the_page_prints_what_it_says(extended):
-    code, said = (next(block for block in blocks(PAGE) if block.info == info) for info in ("python", "text"))
-    assert run(extended, sys.executable, "-c", code.text) == said.text
+def test_the_page_shows_what_its_code_prints(extended):
+    code, expected = (next(block for block in blocks(PAGE) if block.info == info) for info in ("python", "text"))
+    assert run(extended, sys.executable, "-c", code.text) == expected.text
 
 
 def test_a_study_of_the_laws_ends_in_its_report(extended, tmp_path):

@@ -10,11 +10,11 @@ from burridge_knopoff.study.yaml_file import read_yaml
 
 def test_the_chart_is_that_of_the_rules(repository):
     rules = runpy.run_path(str(repository / "docs/rules.py"))
-    said = rules["rule_graph"]()
+    graph = rules["rule_graph"]()
     page = (repository / "docs/results.md").read_text(encoding="utf-8")
-    assert rules["chart"](said) in page
+    assert rules["chart"](graph) in page
     # What it must not lose: the points lead to figures, and the attractors to the basins.
-    assert {("simulate", "figures"), ("attractors", "basins"), ("claims", "report")} <= rules["arrows"](said)
+    assert {("simulate", "figures"), ("attractors", "basins"), ("claims", "report")} <= rules["arrows"](graph)
 
 
 def test_the_page_names_every_summary_of_the_default_study(repository):

@@ -19,8 +19,8 @@ def test_the_tutorial_prints_what_it_says(repository, tmp_path, monkeypatch):
     headings = {block.heading for block in blocks(page)} - {FROM_FILES}
     results = outputs(page, "docs/tutorial.md", headings)
     assert len(results) >= 5
-    for _, said, printed in results:
-        assert printed == said
+    for _, expected, printed in results:
+        assert printed == expected
     shown = re.findall(r"!\[.*?\]\((figures/tutorial_\w+\.png)\)", page)
     made = sorted(str(path.relative_to(tmp_path / "docs")) for path in tmp_path.rglob("*.png"))
     assert made == sorted(shown)

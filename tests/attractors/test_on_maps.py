@@ -23,8 +23,8 @@ def searched(model, settings=SEARCH):
     ("r", "period"),
     [(2.5, 1), (3.2, 2), (3.5, 4), (3.55, 8), (3.835, 3)],
 )
-def test_a_periodic_orbit_is_the_one_attractor(maps, r, period):
-    """Of the logistic map, also in the window of period 3, in which chaos is a transient."""
+def test_the_periodic_orbit_of_the_logistic_map_is_its_only_attractor(maps, r, period):
+    """This holds in the window of period 3 too, in which chaos is transient."""
     search, _, labels = searched(LOGISTIC.at(r))
     (found,) = search.attractors
     assert (found.motion.kind, found.motion.section_period) == (MotionKind.PERIODIC, period)
@@ -36,7 +36,7 @@ def test_a_periodic_orbit_is_the_one_attractor(maps, r, period):
     assert found.motion.exponent[1] == pytest.approx(np.log(multiplier) / period, abs=1e-6)
 
 
-def test_chaos_is_one_attractor_that_lasts(maps):
+def test_chaos_of_the_logistic_map_is_a_single_attractor_that_lasts(maps):
     """At r = 4 the exponent is ln 2, and no trajectory leaves [0, 1]."""
     search, _, labels = searched(LOGISTIC.at(3.999999))
     (found,) = search.attractors
@@ -55,7 +55,7 @@ def test_motion_that_never_returns_is_quasiperiodic(maps):
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.2, -0.3])
-def test_states_are_labelled_by_the_well_that_they_fall_into(maps, mu):
+def test_states_are_labelled_by_the_well_that_they_reach(maps, mu):
     """The unstable fixed point between the wells separates their basins."""
     model = TWO_WELLS.at(1.0 + mu)
     settings = SearchSettings(samples=60, position=(-1.2, 1.2), transient=100.0, window=100.0, time_limit=400.0)

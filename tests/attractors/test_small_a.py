@@ -61,7 +61,7 @@ def test_the_mean_distance_tends_to_that_of_the_modes(branch: str, limit: float,
             transient=10.0 / a, window=20.0 / a, sampling=1.0 / a, trajectory=0.0, events="none", lyapunov_exponents=0
         )
         found.append(run(model, modes(ends, fast), settings).mean_distance)
-    # The less modes grow between two sticks, the shorter the sticks are: ⟨J⟩ approaches that of the modes.
+    # The less the modes grow between two sticks, the shorter the sticks: ⟨J⟩ approaches that of the modes.
     first, second, third = found
     extrapolated = 2.0 * first - second
     assert closed_form < first < second < third < 1.05 * closed_form
@@ -100,7 +100,7 @@ def vertices() -> dict[tuple[int, ...], np.ndarray]:
 
 
 def test_energy_has_a_maximum_at_three_vertices() -> None:
-    """Along an edge ½ Σ N A² is convex: it falls to both sides only where it falls at once."""
+    """Along an edge ½ Σ N A² is convex: it decreases to both sides only if it decreases at once."""
     corners = vertices()
     maxima = []
     for faces, vertex in corners.items():

@@ -24,7 +24,7 @@ def counted(fraction, noise=0.01, counts=None):
 
 
 @pytest.mark.parametrize(("label", "alpha"), [(half_plane, 1.0), (disc, 1.0), *CANTOR])
-def test_exponents_that_are_known(label, alpha):
+def test_known_exponents(label, alpha):
     found = exponent_of(label, 4000)
     value, error = found.alpha
     assert found.kind == ExponentKind.SINGLE
@@ -36,7 +36,7 @@ def test_exponents_that_are_known(label, alpha):
 
 
 @pytest.mark.parametrize(("label", "alpha"), CANTOR[:2])
-def test_the_error_is_that_of_other_seeds(label, alpha):
+def test_the_error_is_the_scatter_over_seeds(label, alpha):
     found = np.array([exponent_of(label, 1200, seed).alpha for seed in range(40)])
     miss = np.abs(found[:, 0] - alpha) / found[:, 1]
     assert 0.45 < (miss < 1.0).mean() < 0.9
@@ -54,7 +54,7 @@ def test_a_boundary_without_a_single_exponent():
     assert found.local[0][-3:] == pytest.approx(1.0, abs=0.15)
 
 
-def test_no_exponent_where_too_few_pairs_differ():
+def test_there_is_no_exponent_if_too_few_pairs_differ():
     for label in (lambda x: np.zeros(len(x), dtype=int), lambda x: np.full(len(x), -1)):
         found = exponent_of(label, 400)
         assert found.kind == ExponentKind.UNKNOWN

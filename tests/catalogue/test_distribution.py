@@ -1,4 +1,4 @@
-"""The range of a fit in catalogues made of known parts, and the recurrence of blocks by brute force."""
+"""The range of a fit in catalogues composed of known parts, and the recurrence of blocks by brute force."""
 
 import numpy as np
 
@@ -25,7 +25,7 @@ def test_the_range_lies_between_single_blocks_and_the_gap():
     assert fit.p_value > 0.05
 
 
-def test_ends_that_are_given_are_kept():
+def test_given_ends_are_kept():
     magnitude, blocks = parts()
     moment = np.exp(magnitude)
     assert fit_range(magnitude, moment, blocks, low=-4.3) == (-4.3, 1.0)
@@ -39,7 +39,7 @@ def test_there_is_no_range_without_events_of_several_blocks():
 
 
 def test_the_range_begins_where_the_rate_no_longer_bends():
-    """Small events are missed, by a normal distribution around −1: a range from the mode on gives too low a slope."""
+    """Small events are missing, by a normal distribution around −1: a range from the mode gives too low a slope."""
     slopes = []
     for seed in range(40):
         everything = drawn(0.8, -6.0, 6.0, 40_000, seed)
@@ -53,7 +53,7 @@ def test_the_range_begins_where_the_rate_no_longer_bends():
 def test_recurrence():
     generator = np.random.default_rng(1)
     time = np.sort(generator.uniform(0.0, 100.0, 60))
-    # In a ring, an event over the joint has its first block above its last.
+    # In a ring, the first block of an event that spans the seam is above its last.
     first, last = generator.integers(1, 7, (2, 60))
     members = covered_blocks(first, last, 8)
     count, mean, spread = recurrence(time, members, 8)

@@ -40,7 +40,7 @@ def test_slope_and_its_error(b, low, high):
 )
 def test_p_is_uniform_where_the_distribution_is_the_fitted_one(b, low, high, count):
     """The slope is fitted to the events that are tested (H. W. Lilliefors, J. Am. Stat. Assoc. 62 (1967) 399)."""
-    # Of different numbers of events, so that each has its own bootstrap.
+    # The numbers of events differ, so that each catalogue has its own bootstrap.
     p = np.array([fit_slope(drawn(b, low, high, count + k, k), low, high).p_value for k in range(200)])
     assert 0.015 < (p < 0.05).mean() < 0.1
     assert abs((p < 0.5).mean() - 0.5) < 0.13
@@ -48,8 +48,8 @@ def test_p_is_uniform_where_the_distribution_is_the_fitted_one(b, low, high, cou
     assert p.min() > 0.0
 
 
-def test_p_tells_a_rate_that_bends():
-    """A rate that is lower by half at the lower end, where a catalogue is incomplete."""
+def test_p_rejects_a_rate_that_bends():
+    """The rate is lower by half at the lower end, where a catalogue is incomplete."""
     refused_count = 0
     for seed in range(30):
         magnitude = drawn(0.7, 0.0, 4.0, 2000, seed)
@@ -59,8 +59,8 @@ def test_p_tells_a_rate_that_bends():
 
 
 @pytest.mark.parametrize("width", [0.1, 0.5])
-def test_rounded_magnitudes_take_a_range_of_whole_bins(width):
-    """Half a bin outside the first and the last centre; b is too high between centres, too low a bin further out."""
+def test_rounded_magnitudes_require_a_range_of_whole_bins(width):
+    """The range ends half a bin outside the outer centres; b is too high between them and too low a bin further out."""
     magnitude = drawn(0.81, -5.0, 5.0, 100_000, 1)
     rounded = width * np.round(magnitude / width)
     assert fit_slope(rounded, -2.0 - width / 2, 2.0 + width / 2).b == pytest.approx(0.81, abs=0.025)
@@ -70,7 +70,7 @@ def test_rounded_magnitudes_take_a_range_of_whole_bins(width):
 
 @pytest.mark.parametrize("width", [0.1, 0.5])
 @pytest.mark.parametrize("last", [2.0, 10.0])
-def test_rounding_biases_as_much_as_the_page_says(width, last):
+def test_the_bias_by_rounding_is_that_of_the_page(width, last):
     """docs/catalogues.md: w²/(12 s²) half a bin outside the centres, 2w/range and bw/2 on them."""
     b, low, high = 0.8, -width / 2, last + width / 2
     magnitude = drawn(b, low, high, 2_000_000, 1)
@@ -109,14 +109,14 @@ def test_infinite_magnitudes():
 
 
 @pytest.mark.parametrize("number", [np.nan, -np.nan])
-def test_what_is_no_magnitude_is_refused(number):
-    """It belongs to no range: the others alone would pass for the whole catalogue."""
+def test_nan_magnitudes_are_refused(number):
+    """NaN belongs to no range, so the other magnitudes would be taken for the whole catalogue."""
     with refused("magnitude: got nan, expected numbers"):
         fit_slope(np.append(drawn(1.0, 0.0, np.inf, 100, 1), number), 0.0)
 
 
 @pytest.mark.parametrize("far", [1e4, 1e62, 1e100, 1e155, 1e200, 1e308])
-def test_an_end_that_is_far_from_all_events_is_none(far):
+def test_an_end_far_beyond_all_events_does_not_change_the_fit(far):
     magnitude = drawn(0.9, 0.0, np.inf, 200, 4)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -138,7 +138,7 @@ def test_an_end_that_is_far_from_all_events_is_none(far):
     st.sampled_from([0.0, 1e5, 1e300]),
 )
 def test_slopes_scale_with_the_magnitudes(exponent, width, rises, beyond):
-    """In any unit, with an end as far as the largest event, far beyond it, or nowhere."""
+    """This holds in any unit, for an end at the largest event, far beyond it, or without an end."""
     size, magnitude = 10.0**exponent, drawn(1.0, 0.0, 3.0, 50, 2)
     high = width * float(magnitude.max())
     expected, inside = fit_slope(magnitude, 0.0, high), size * magnitude
@@ -192,13 +192,13 @@ def test_events_outside_the_range_do_not_count():
     assert fit_slope(with_others, 0.0, 3.0) == fit_slope(magnitude, 0.0, 3.0)
 
 
-def test_another_distribution_is_told():
-    """A bump of large events is no straight line."""
+def test_another_distribution_is_rejected():
+    """A bump of large events is not a straight line."""
     magnitude = np.concatenate([drawn(1.0, 0.0, 5.0, 2000, 1), np.random.default_rng(2).normal(4.0, 0.2, 300)])
     assert fit_slope(magnitude, 0.0, 5.0).p_value < 0.005
 
 
-def test_what_has_no_slope():
+def test_too_few_or_equal_magnitudes_are_refused():
     with refused("magnitude: got 3 events between 0 and 2, expected 10 or more"):
         fit_slope(np.array([0.5, 1.0, 1.5]), 0.0, 2.0)
     with refused("magnitude: got only 1 between 0 and 2, expected a spread"):

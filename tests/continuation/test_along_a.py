@@ -64,9 +64,9 @@ def test_attractors_at_one_value_seed_the_others(scripted):
     assert found.grid == [0, 1, 2, 3]
 
 
-def test_a_branch_is_remembered_for_two_of_the_widest_steps(scripted, tell):
+def test_a_branch_is_remembered_for_two_of_the_widest_steps(scripted, script_answers):
     """No branch then ends where the grid is coarser."""
-    asked = tell(continuation, "branches", [([], [])])
+    asked = script_answers(continuation, "branches", [([], [])])
     continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=RefinementSettings(1.0))
     ((_, _, _, reach, *_),) = asked
     assert reach == pytest.approx(0.6)
@@ -116,7 +116,7 @@ def test_results_do_not_depend_on_processes_or_the_cache(tmp_path, monkeypatch, 
     for two in others:
         for item in fields(one):
             same(getattr(one, item.name), getattr(two, item.name))
-    told = [line for line in caplog.messages if line.startswith("searched from initial states")]
-    assert [line.partition("; ")[2] for line in told] == ["", "", *(f"{n} from the cache" for n in (2, 3))]
+    lines = [line for line in caplog.messages if line.startswith("searched from initial states")]
+    assert [line.partition("; ")[2] for line in lines] == ["", "", *(f"{n} from the cache" for n in (2, 3))]
     # The cache has one file for each gap of the grid.
     assert len(list((tmp_path / "neighbours compared").iterdir())) == 2

@@ -76,8 +76,8 @@ def test_between_values_of_the_grid_orbits_are_followed_next_to_changes(changes,
     one = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
     one.attrs["refine_longest_period"] = 500.0
     one = one.assign(in_grid=("value", [1, 0, 0, 0, 1]))
-    told = [BranchChange(*change, 0, 0, Change.CHANGE) for change in changes]
-    assert followed_orbits._places(one, told) == expected
+    known_changes = [BranchChange(*change, 0, 0, Change.CHANGE) for change in changes]
+    assert followed_orbits._places(one, known_changes) == expected
     # Longer orbits are not followed.
     one["period"][0] = 501.0
-    assert followed_orbits._places(one, told) == [place for place in expected if place[0] != 0]
+    assert followed_orbits._places(one, known_changes) == [place for place in expected if place[0] != 0]

@@ -71,12 +71,14 @@ def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monk
 
 
 @pytest.fixture
-def follow(tell):
+def follow(script_answers):
     """Return a function that calls `follow_law` with scripted sets at each step; None where no motion settles."""
 
     def found(places):
         sets = [None if place is None else np.full((10, 6), place) for place in places]
-        asked = tell(law_homotopy, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets])
+        asked = script_answers(
+            law_homotopy, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets]
+        )
         pair = [Model(Chain(3), law_of(law, 0.5), 0.2, "symmetric") for law in ("linearized", "nonlinear")]
         start = shown(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).state()
         return follow_law(*pair, start, SETTINGS), asked

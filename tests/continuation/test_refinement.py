@@ -43,7 +43,7 @@ def test_bisection_ends_at_the_resolution(values):
     change = after(0.3, [at(STILL)], [at(STILL, section_period=2)])
     found, asked = values(change)
     assert found == BISECTED
-    assert {told[2:] for told in asked} == {(1, False)}
+    assert {call[2:] for call in asked} == {(1, False)}
     # No value is inserted into a step of the grid that is small enough, up to rounding.
     assert values(change, resolution=1.0)[0] == []
     assert values(change, low=0.2, high=0.2 + 0.1 * (1 + 1e-12))[0] == []

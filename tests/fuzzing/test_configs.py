@@ -272,8 +272,8 @@ def check_states(study):
         lengths |= {len(numbers) for numbers in lists.values()}
         drawn = [value for value in state.values() if isinstance(value, str)]
         assert all(value.startswith("random=uniform,low=") for value in drawn)
-        told = [numbers for key, numbers in lists.items() if state[key] not in drawn]
-        assert all(type(number) in (int, float) for numbers in told for number in numbers)
+        listed = [numbers for key, numbers in lists.items() if state[key] not in drawn]
+        assert all(type(number) in (int, float) for numbers in listed for number in numbers)
         position, velocity = study.state(name).coordinates(study.blocks)
         assert max(map(abs, (*position, *velocity))) <= 1e6
         assert study.config["contact"] == "symmetric" or velocity.min() >= 0.0

@@ -29,7 +29,7 @@ def jobs_of(changes):
     return Jobs(load_study(changed_config(changes), "tiny.yaml"))
 
 
-def told(jobs):
+def origins(jobs):
     """Return {(rule, files of a job): what these must be made from}."""
     return {
         (rule.name, tuple(form.format(**job) for form in rule.files)): jobs.expected(rule.files[0].format(**job))
@@ -40,12 +40,12 @@ def told(jobs):
 
 
 BEFORE = jobs_of({})
-TOLD = told(BEFORE)
+ORIGINS = origins(BEFORE)
 
 
 def counts(jobs):
     """Return {rule: number of its jobs whose files are others than before}."""
-    found = [rule for (rule, files), about in told(jobs).items() if TOLD.get((rule, files)) != about]
+    found = [rule for (rule, files), about in origins(jobs).items() if ORIGINS.get((rule, files)) != about]
     return {rule: found.count(rule) for rule in found}
 
 

@@ -172,7 +172,7 @@ def test_groups_and_the_chain_as_a_whole_have_the_same_events():
 
 
 @pytest.mark.parametrize("blocks", [3, 40])
-def test_runs_that_continue_one_another_have_the_catalogue_of_the_whole(blocks):
+def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks):
     model = Model(Chain(blocks, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
     whole = record_events(model, at_rest(model), 400.0, loading="quasistatic")
     parts, at = [], at_rest(model)

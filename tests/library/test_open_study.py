@@ -142,17 +142,17 @@ def test_a_file_that_is_damaged_or_not_of_the_study_is_named(results, tmp_path, 
     """With the same line, and command that recreates the file, as `bk show`."""
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     damage(tmp_path / name)
-    said = []
+    messages = []
     study = open_study(tmp_path)
     for read in (lambda: study[name.removesuffix(".nc")], lambda: open_result(tmp_path / name)):
         with pytest.raises(ValueError, match=reason) as caught:
             read()
-        said.append(str(caught.value))
-    assert said[0] == said[1]
-    assert said[0].startswith(f"{tmp_path / name}: ")
+        messages.append(str(caught.value))
+    assert messages[0] == messages[1]
+    assert messages[0].startswith(f"{tmp_path / name}: ")
     root = tmp_path.parents[1]
     remedy = f"snakemake -c2 --configfile few.yaml -R {tmp_path.relative_to(root)}/{name}"
-    assert said[0].endswith(f"; remake it: cd {root} && {remedy}")
+    assert messages[0].endswith(f"; remake it: cd {root} && {remedy}")
 
 
 def test_a_folder_without_a_study_is_refused(tmp_path):

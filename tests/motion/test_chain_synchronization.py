@@ -205,20 +205,20 @@ FAR, NEAR_SYMMETRY = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
         (FAR[:9], None, Fate(Outcome.UNDETERMINED)),
     ],
 )
-def test_the_fate_that_distances_tell(tell, distances, exponent, expected):
-    asked = tell(chains, "transverse_exponent", [exponent])
+def test_the_fate_that_distances_tell(script_answers, distances, exponent, expected):
+    asked = script_answers(chains, "transverse_exponent", [exponent])
     found = watch_state(Scripted(distances), ChainState(np.zeros(4), np.zeros(4), np.zeros(4, bool)), Watch(200.0))
     assert astuple(found) == pytest.approx(astuple(expected), nan_ok=True)
-    assert [told[2:] for told in asked] == ([(200.0, 50.0)] if exponent else [])
+    assert [call[2:] for call in asked] == ([(200.0, 50.0)] if exponent else [])
 
 
 @pytest.mark.parametrize(("v", "pair", "near"), [(0.05, 0.5e-6, 0.005), (0.2, 1e-6, 0.02)])
-def test_distances_are_judged_by_the_speed(tell, v, pair, near):
+def test_distances_are_judged_by_the_speed(script_answers, v, pair, near):
     """Those of pairs below the speed of the paper alone, those from symmetric motion at any."""
     runner = Scripted([])
     runner.model = Model(Chain(4), law_of("linearized", 0.1), v)
     for share, inside in ((0.99, True), (1.01, False)):
-        asked = tell(chains, "transverse_exponent", [(1.0, 0.1)] * 2)
+        asked = script_answers(chains, "transverse_exponent", [(1.0, 0.1)] * 2)
         runner.distances = [(0.5, share * pair)] * 10
         assert watch_state(runner, None, Watch(200.0)).pairs == inside
         assert not asked
@@ -228,11 +228,11 @@ def test_distances_are_judged_by_the_speed(tell, v, pair, near):
 
 
 @pytest.mark.parametrize("start", ["moving", "tested"])
-def test_a_watched_chain_begins_as_it_is_told_to(tell, start):
+def test_a_watched_chain_begins_as_it_is_told_to(script_answers, start):
     """Tested, blocks with a spring force −(K U) of at most the threshold stick."""
-    watched = tell(chains, "watch_state", [Fate(APART)] * SAMPLE.samples)
-    perturbed = tell(chains, "transverse_exponent", [(0.0, 0.0)] * SAMPLE.symmetric_samples)
-    runs = tell(chains, "run", [SimpleNamespace(lyapunov_exponent=[0.1], lyapunov_error=[0.2])])
+    watched = script_answers(chains, "watch_state", [Fate(APART)] * SAMPLE.samples)
+    perturbed = script_answers(chains, "transverse_exponent", [(0.0, 0.0)] * SAMPLE.symmetric_samples)
+    runs = script_answers(chains, "run", [SimpleNamespace(lyapunov_exponent=[0.1], lyapunov_error=[0.2])])
     chains.watch_chain([model(3, 0.0)], [0.05], replace(SAMPLE, start=start))
     position = np.array([state.position for state in SAMPLE.initial_states(3, 0.05)])
     stuck = position @ np.array([[-2.0, 1.0, 0.0], [1.0, -4.0, 1.0], [0.0, 1.0, -2.0]]) <= 1.0
@@ -306,8 +306,8 @@ def test_a_watched_chain_is_its_states_one_by_one():
             np.testing.assert_array_equal(results[name][i, j], values, name)
         starts = [chain.begin(state) for state in SAMPLE.initial_states(3, a)[:2]]
         exponents = [transverse_exponent(chain, start, 150.0, 150.0) for start in starts]
-        told = np.stack([results[f"symmetric_{name}"][i, j] for name in ("exponent", "error")], axis=1)
-        assert told.tolist() == [list(item) for item in exponents]
+        symmetric = np.stack([results[f"symmetric_{name}"][i, j] for name in ("exponent", "error")], axis=1)
+        assert symmetric.tolist() == [list(item) for item in exponents]
         run = simulate(
             law, a, SAMPLE.initial_states(3, a)[0], transient=300.0, window=300.0, batches=5, lyapunov_exponents=1
         )

@@ -137,10 +137,10 @@ def test_the_words_of_a_kind():
 )
 def test_kinds(mean_distance, period, exponents, error, kind):
     """By one error of all exponents, or one each; a period is one of section points."""
-    assert told(mean_distance, period, exponents, error).kind == kind
+    assert motion_with(mean_distance, period, exponents, error).kind == kind
 
 
-def told(mean_distance, period, exponents, error, settings=MOTION, points=2000):
+def motion_with(mean_distance, period, exponents, error, settings=MOTION, points=2000):
     """Return the motion of a run with section points at τ = 0, 1, … and without events."""
     random = np.random.default_rng(3).random(period or points)
     run = run_of(np.resize(random, points), np.zeros((points, 3)), first_event=np.inf)
@@ -156,7 +156,7 @@ REGULAR = (0.1, (0.0, -1e-5), 1e-5)
 @pytest.mark.parametrize("points", [40, 400, 4000])
 def test_the_longest_period_decides_and_no_window(period, kind, points):
     mean, *exponents = REGULAR
-    found = told(mean, period, *exponents, replace(MOTION, longest_period=5.0), points)
+    found = motion_with(mean, period, *exponents, replace(MOTION, longest_period=5.0), points)
     assert found.kind.name == kind
     assert found.section_period == (5 if kind == "PERIODIC" else 0)
 
@@ -205,7 +205,7 @@ def test_a_motion_in_words(motion, words):
 @pytest.mark.parametrize(("points", "kind"), [(2, MotionKind.PERIODIC), (3, MotionKind.PERIODIC)])
 def test_stops_tell_a_period_that_section_points_do_not(points, kind):
     run = run_of(np.arange(points), np.ones((points, 3)))
-    told = {
+    averages = {
         "status": "completed",
         "mean_distance": 0.1,
         "lyapunov_exponent": np.zeros(0),
@@ -214,7 +214,7 @@ def test_stops_tell_a_period_that_section_points_do_not(points, kind):
     states = np.tile([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]], (20, 1))
     stops = {"event_position": states, "event_velocity": states, "event_time": np.arange(40.0)}
     stops |= {"event_block": np.tile([2, 3], 20), "event_kind": np.zeros(40, dtype=int)}
-    assert motion_of_run({**run, **told, **stops}, True, MOTION).kind == kind
+    assert motion_of_run({**run, **averages, **stops}, True, MOTION).kind == kind
 
 
 @pytest.mark.parametrize("name", ["period_tolerance", "zero_exponent", "chaotic_exponent"])
@@ -241,7 +241,7 @@ def test_motion_under_a_slow_driver_is_smaller_and_slower(name):
     ],
 )
 def test_an_orbit_that_repels(period, exponents, error, unstable):
-    assert told(0.1, period, exponents, error).unstable is unstable
+    assert motion_with(0.1, period, exponents, error).unstable is unstable
 
 
 @pytest.mark.parametrize(

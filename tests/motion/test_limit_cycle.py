@@ -23,7 +23,7 @@ def test_a_state_returns_after_the_time_that_is_told(initial, a, symmetry):
     runner.begin(model.begin(PAPER_STATES[initial]))
     runner.run(5500.0)
     found = list(_close_returns(model, runner.log.events.times(), runner.log.events.values()))
-    assert {told for _, _, told, _ in found} == {symmetry}
+    assert {returned for _, _, returned, _ in found} == {symmetry}
     for start, time, _, size in found:
         assert time > 1.0
         end = Runner(model).state_after(start, time)

@@ -119,9 +119,9 @@ def test_an_orbit_has_to_be_there_to_attract_and_to_be_approached():
         (0.1, (0.02,), False),  # a single one does not
     ],
 )
-def test_each_turn_has_to_be_nearer(tell, v, away, expected):
+def test_each_turn_has_to_be_nearer(script_answers, v, away, expected):
     on_orbit = np.random.default_rng(5).uniform(-1.0, 1.0, (40, 6))
-    asked = tell(locking, "visit", [SimpleNamespace(returns=on_orbit)])
+    asked = script_answers(locking, "visit", [SimpleNamespace(returns=on_orbit)])
     orbit = SimpleNamespace(model=replace(LOCKED, v=v), reference="reference", period=100.0)
     # The oldest cycle is incomplete and is not compared.
     returns = np.concatenate([on_orbit[20:], *(on_orbit + distance for distance in away[::-1])])
@@ -129,7 +129,7 @@ def test_each_turn_has_to_be_nearer(tell, v, away, expected):
     assert asked[0][:4] == (orbit.model, "reference", 0.0, 100.0)
 
 
-def test_what_an_orbit_that_does_not_complete_shows_is_not_approached(tell):
-    tell(locking, "visit", [None])
+def test_what_an_orbit_that_does_not_complete_shows_is_not_approached(script_answers):
+    script_answers(locking, "visit", [None])
     orbit = SimpleNamespace(model=LOCKED, reference="reference", period=100.0)
     assert not locking._is_approaching(np.zeros((5, 6)), orbit)

@@ -50,9 +50,9 @@ def rotation(number, locked, in_grid, error=1e-9):
 def test_plateaux_are_runs_of_one_rotation_number():
     number = [0.65, 9 / 14, 9 / 14, 7 / 11, 7 / 11 + 1e-10, 7 / 11, np.nan, 7 / 11]
     found = rotation(number, [0, 1, 1, 1, 1, 1, -1, 1], [1, 1, 0, 1, 0, 1, 1, 1])
-    told = plateaux(found.sel(law="linearized"))
+    listed = plateaux(found.sel(law="linearized"))
     a = found["a"].values[0]
-    assert told == [
+    assert listed == [
         Plateau(a[1], a[2], Fraction(9, 14)),
         # Over what was not looked at.
         Plateau(a[3], a[7], Fraction(7, 11)),

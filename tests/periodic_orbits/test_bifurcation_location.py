@@ -47,8 +47,8 @@ def branch(monkeypatch):
     def made(value, a=lambda length: length, at=-1.0):
         def point(length, slope=1.0):
             orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
-            told = {"value": a(length), "multipliers": only(at + value(length)), "length": length, "tangent": [slope]}
-            return stand_in(BranchOrbit, line=LINE, orbit=orbit, **told)
+            fields = {"value": a(length), "multipliers": only(at + value(length)), "length": length, "tangent": [slope]}
+            return stand_in(BranchOrbit, line=LINE, orbit=orbit, **fields)
 
         monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
         return point
@@ -123,8 +123,8 @@ def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeyp
         keeping = np.array([*pair, -1.0 - (length - 0.4), 1.0 + 0.1 * (length - 0.7)])
         multipliers = Multipliers(keeping, np.array([1.0 + length - 0.2]), power=1)
         orbit = SimpleNamespace(symmetry=Symmetry.SYNCHRONIZED)
-        told = {"value": 0.1 + length, "multipliers": multipliers, "length": length, "tangent": [1.0]}
-        return stand_in(BranchOrbit, line=LINE, orbit=orbit, **told)
+        fields = {"value": 0.1 + length, "multipliers": multipliers, "length": length, "tangent": [1.0]}
+        return stand_in(BranchOrbit, line=LINE, orbit=orbit, **fields)
 
     monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
     found = bifurcations._roots(point(0.0), point(0.5))

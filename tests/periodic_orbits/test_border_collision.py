@@ -78,8 +78,10 @@ def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
 )
 def test_a_grazing_is_ahead_where_what_is_0_there_falls(before, here, expected):
     points = [
-        SimpleNamespace(grazing_distances=SimpleNamespace(values=lambda told=told: np.array(told)), length=0.1)
-        for told in (before, here)
+        SimpleNamespace(
+            grazing_distances=SimpleNamespace(values=lambda distances=distances: np.array(distances)), length=0.1
+        )
+        for distances in (before, here)
     ]
     assert border_collision.distance_to_grazing(*points) == pytest.approx(expected)
 
@@ -104,7 +106,7 @@ class Place:
 def approach(monkeypatch):
     """Return the approach to a corner from 0, and the attempted steps; steps beyond the corner fail."""
 
-    def come(length, fails=lambda tried: False, joint=np.inf, **told):
+    def come(length, fails=lambda tried: False, joint=np.inf, **fields):
         tried = []
 
         def step(way, length):
@@ -116,7 +118,7 @@ def approach(monkeypatch):
             return replace(way[-1], orbit=place, length=length, reduced_orbit="simpler" if place > joint else None)
 
         monkeypatch.setattr(border_collision, "smooth_step", step)
-        way = border_collision.approach_grazing([Place(place, **told) for place in (-2e-3, -1e-3, 0.0)], length)
+        way = border_collision.approach_grazing([Place(place, **fields) for place in (-2e-3, -1e-3, 0.0)], length)
         return way, tried
 
     return come

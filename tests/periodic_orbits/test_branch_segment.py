@@ -105,8 +105,8 @@ def test_the_mean_distance_may_be_off_by_a_thousandth_for_v_0_1(off, scale, expe
 
 
 def test_a_half_branch_ends_two_orbits_after_the_first_unstable_one():
-    is_complete, points, told = _stop_after_unstable(2), [], []
+    is_complete, points, complete = _stop_after_unstable(2), [], []
     for unstable in (0, 0, 2, 0, 1):
         points.append(point(0.1, unstable=unstable))
-        told.append(is_complete(points))
-    assert told == [False, False, False, False, True]
+        complete.append(is_complete(points))
+    assert complete == [False, False, False, False, True]

@@ -113,8 +113,8 @@ class Step:
         return self.orbit.a
 
 
-def a_step(a, length=0.0, **told):
-    return Step(SimpleNamespace(a=a), length, **told)
+def a_step(a, length=0.0, **fields):
+    return Step(SimpleNamespace(a=a), length, **fields)
 
 
 @pytest.fixture
@@ -173,18 +173,18 @@ def test_a_branch_ends_where_it_has_gone_past_another_one(walk, monkeypatch):
 
 
 def test_a_branch_ends_when_it_is_complete(walk):
-    told = []
+    counts = []
 
     def enough(points):
-        told.append(len(points))
+        counts.append(len(points))
         return len(points) == 3
 
     assert len(walk([a_step(0.11), a_step(0.12)], [], [], is_complete=enough)[0]) == 3
-    assert told == [1, 2, 3]
+    assert counts == [1, 2, 3]
     # This also applies to the approach to a corner.
-    told.clear()
+    counts.clear()
     assert len(walk([None], [[a_step(0.11), a_step(0.12), a_step(0.13)]], [], is_complete=enough)[0]) == 3
-    assert told == [1, 2, 3]
+    assert counts == [1, 2, 3]
 
 
 @pytest.mark.parametrize(("most", "count"), [(2, 2), (3, 3), (4, 5), (5, 5), (6, 6)])

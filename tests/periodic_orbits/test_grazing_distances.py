@@ -110,16 +110,16 @@ def test_contacts_are_those_of_the_same_motion_in_other_units(six):
     model = Model(stiff, law_of("linearized", 30.0 * six.a), six.model.v / 30.0)
     moved = ChainState(start.position / 900.0, start.velocity / 30.0, start.stuck)
     found = grazing_distances(find_periodic_orbit(model, moved, six.return_time / 30.0, six.symmetry))
-    told = grazing_distances(six)
+    expected = grazing_distances(six)
     for name, scale in {"stick": 30.0, "slip": 30.0, "speed": 30.0, "force": 1.0}.items():
-        assert scale * getattr(found, name) == pytest.approx(getattr(told, name), rel=1e-5), name
+        assert scale * getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-5), name
 
 
 def test_all_that_falls_to_0_in_proportion(six):
-    told = [np.array([2.0, 3.0, np.inf]), *(np.full(3, value) for value in (0.5, 0.2, 0.1, 0.3))]
-    assert GrazingDistances(*told).values().tolist() == [4.0, 9.0, np.inf] + 3 * [0.25] + 3 * [0.2] + 3 * [0.1] + 3 * [
-        0.3**2
-    ]
+    distances = [np.array([2.0, 3.0, np.inf]), *(np.full(3, value) for value in (0.5, 0.2, 0.1, 0.3))]
+    assert GrazingDistances(*distances).values().tolist() == [4.0, 9.0, np.inf] + 3 * [0.25] + 3 * [0.2] + 3 * [
+        0.1
+    ] + 3 * [0.3**2]
 
 
 BACKWARD = ChainState(np.array([1.7, 0.4, 0.3]), np.array([-0.6, 0.3, 0.0]), np.array([False, False, True]))
@@ -196,7 +196,7 @@ def test_a_deceleration_grows_with_the_threshold(dropping):
 
 
 @pytest.mark.parametrize(
-    ("law", "told"),
+    ("law", "expected"),
     [
         (law_of("linearized", 0.1), False),
         # Its value at rest rounds to the double below 1.
@@ -205,9 +205,9 @@ def test_a_deceleration_grows_with_the_threshold(dropping):
         (law_of("carlson_langer", 0.1), True),
     ],
 )
-def test_rounding_is_no_drop_of_friction(law, told):
+def test_rounding_is_no_drop_of_friction(law, expected):
     assert float(law(0.0)) < 1.0 or law.name == "linearized"
-    assert has_friction_drop(Model(Chain(3), law)) is told
+    assert has_friction_drop(Model(Chain(3), law)) is expected
 
 
 def peaks(values, among):

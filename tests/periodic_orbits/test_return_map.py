@@ -37,13 +37,13 @@ def test_what_a_law_does_not_allow_is_no_orbit():
 def test_the_derivative_by_a_is_that_of_the_same_events_of_each_block(monkeypatch):
     model = Model(Chain(3), law_of("linearized", 0.1))
     end = ChainState(np.zeros(3), np.zeros(3), np.zeros(3, dtype=bool))
-    told = [
+    runs = [
         (1e-7, [(0.1, 0, 1), (0.2, 0, 0), (0.3, 1, 0)]),  # one more
         (1e-7, [(0.1, 0, 0)]),
         (1e-8, [(0.1, 0, 1), (0.2, 1, 0)]),  # of another kind
         (1e-8, [(0.3, 1, 0), (0.4, 0, 0)]),  # of two blocks, in another order
     ]
-    left = iter(told)
+    left = iter(runs)
 
     def ran(events, after):
         """Return what stands for a runner that has come to an end with these events."""

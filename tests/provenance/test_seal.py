@@ -42,8 +42,8 @@ def test_the_netcdf_library_reads_a_sealed_file(path, tmp_path):
 
 @needs("BK_NCDUMP")
 def test_ncdump_reads_a_sealed_file(path):
-    said = subprocess.run([setting("BK_NCDUMP"), "-v", "status", str(path)], capture_output=True, text=True)
-    assert "status = 0" in said.stdout, said.stderr
+    process = subprocess.run([setting("BK_NCDUMP"), "-v", "status", str(path)], capture_output=True, text=True)
+    assert "status = 0" in process.stdout, process.stderr
 
 
 def test_missing_empty_and_unreadable_files(tmp_path):

@@ -127,7 +127,7 @@ def test_nothing_is_a_pickle(tmp_path):
         unpack(b'[["object",0],[["attributes","antigravity:x",{}]]]\n')
 
 
-def told(number):
+def number_and_process(number):
     return number, os.getpid()
 
 
@@ -135,18 +135,18 @@ def told(number):
 def test_what_nothing_asks_for_is_deleted_at_the_end(tmp_path, processes):
     """Caches of other settings in neighbouring folders too, but nothing if a call failed, and no other files."""
     before, now = tmp_path / (16 * "0"), tmp_path / (16 * "1")
-    others = [tmp_path / "mine", now / "mine", now / "told" / "mine", tmp_path / "kept/told" / (32 * "a")]
+    others = [tmp_path / "mine", now / "mine", now / "numbers" / "mine", tmp_path / "kept/numbers" / (32 * "a")]
     for path in others:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text("mine")
     for folder, numbers in ((before, [1]), (now, [1, 2])):
         with parallel_map(processes, folder) as each:
-            each("told", told, numbers)
+            each("numbers", number_and_process, numbers)
     assert not any(path.is_file() for path in before.rglob("*"))
     with pytest.raises(ZeroDivisionError), parallel_map(processes, now) as each:
         each("fails", divmod, [1], [0])
     with parallel_map(processes, now) as each:
-        assert [pid != os.getpid() for _, pid in each("told", told, [2])] == [processes == 2]
+        assert [pid != os.getpid() for _, pid in each("numbers", number_and_process, [2])] == [processes == 2]
     left = {path for path in tmp_path.rglob("*") if path.is_file()}
     assert set(others) <= left
     assert len(left) == len(others) + 1

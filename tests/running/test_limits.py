@@ -43,8 +43,8 @@ def test_ctrl_c_ends_a_long_chain_at_once(program):
         process.wait(timeout=2)
     begin = time.monotonic()
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
-    assert said.splitlines()[-1] == "KeyboardInterrupt"
+    _, output = process.communicate(timeout=60)
+    assert output.splitlines()[-1] == "KeyboardInterrupt"
     assert time.monotonic() - begin < 10
 
 
@@ -66,6 +66,6 @@ def test_a_run_that_keeps_too_much_ends_with_one_line(key, numbers, options, mon
     monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * kept)
     assert simulate("linearized", 0.08, "plus", **options).event_count == run.event_count
     monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * (kept - 1))
-    told = rf"^{key}: got more than \S+ numbers to store by τ = [\d.]+, expected [\w, ]+$"
-    with pytest.raises(ValueError, match=told):
+    pattern = rf"^{key}: got more than \S+ numbers to store by τ = [\d.]+, expected [\w, ]+$"
+    with pytest.raises(ValueError, match=pattern):
         simulate("linearized", 0.08, "plus", **options)

@@ -12,7 +12,7 @@ import pytest
 from burridge_knopoff.running.processes import parallel_map
 
 
-def told(first, second):
+def sum_and_process(first, second):
     return first + second, os.getpid()
 
 
@@ -23,8 +23,8 @@ def refused(number):
 @pytest.mark.parametrize("processes", [1, 3])
 def test_results_come_in_order(processes, caplog):
     with parallel_map(processes) as each, caplog.at_level(logging.INFO):
-        found = each("sums", told, range(30), range(100, 130))
-        assert each("nothing", told, [], []) == []
+        found = each("sums", sum_and_process, range(30), range(100, 130))
+        assert each("nothing", sum_and_process, [], []) == []
     assert [total for total, _ in found] == list(range(100, 160, 2))
     assert ({process for _, process in found} == {os.getpid()}) == (processes == 1)
     assert caplog.messages[0].startswith("sums: 30, 0.0 s, the longest 0.0 s")
@@ -61,7 +61,7 @@ def test_an_error_on_the_way_ends_all(processes):
 def test_where_the_system_forbids_fork_this_process_does_all_the_work(monkeypatch):
     monkeypatch.setattr("sys.platform", "darwin")
     with parallel_map(3) as each:
-        assert each("sums", told, [1, 2], [10, 20]) == [(11, os.getpid()), (22, os.getpid())]
+        assert each("sums", sum_and_process, [1, 2], [10, 20]) == [(11, os.getpid()), (22, os.getpid())]
 
 
 @pytest.mark.parametrize("processes", [1, 3])

@@ -146,8 +146,8 @@ def test_the_order_of_events_is_compared_until_the_first_run_ends(compare, law):
     ],
 )
 def test_a_run_may_not_reach_the_attractor_of_its_state(runs, compare, mean, error, branch, settled):
-    told = {key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs}
-    _, found = compare(told, mean=mean, error=error, branch=branch)
+    given = {key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs}
+    _, found = compare(given, mean=mean, error=error, branch=branch)
     assert (found["settled"] == settled).all()
 
 
@@ -300,9 +300,9 @@ def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
 
 def test_parting_a_is_the_smallest_a_of_disagreement():
     names = ("mean_distance", "mean_distance_error", "kind")
-    told = np.array([[[[1.0, 1.0, 1.0]], [[1.0, 2.0, 3.0]]], np.zeros((2, 1, 3)), np.ones((2, 1, 3))])
+    given = np.array([[[[1.0, 1.0, 1.0]], [[1.0, 2.0, 3.0]]], np.zeros((2, 1, 3)), np.ones((2, 1, 3))])
     filled = ("difference", "difference_error", "same_kind", "agrees")
-    values = dict(zip(names, told, strict=True)) | {name: np.zeros((1, 3)) for name in filled}
+    values = dict(zip(names, given, strict=True)) | {name: np.zeros((1, 3)) for name in filled}
     values["parting_a"] = np.zeros(1)
     judgement.compare(values, np.array([0.1, 0.2, 0.3]), 1e-6, AGREEMENT)
     assert values["agrees"].tolist() == [[1, 0, 0]]

@@ -148,8 +148,8 @@ def test_a_branch_between_has_a_number_of_its_own():
 
 
 def named(names):
-    told = np.array(list(names.values()), dtype=object), {"long_name": "what it is called"}
-    return xr.Dataset({"branch_number": ("number", list(names)), "branch_name": ("number", *told)})
+    names_variable = np.array(list(names.values()), dtype=object), {"long_name": "what it is called"}
+    return xr.Dataset({"branch_number": ("number", list(names)), "branch_name": ("number", *names_variable)})
 
 
 def test_names_are_those_at_the_values_of_the_grid():

@@ -46,5 +46,5 @@ def test_power_law_of_a_power_law():
     noisy = fit_power_law(x, 0.3 * x**0.75 * np.array([1.01, 0.99, 1.01, 0.99]))
     assert 1e-4 < noisy.error < 1e-2
     # The result has ten decimals, on which all machines agree.
-    told = noisy.exponent, noisy.error, noisy.coefficient
-    assert told == tuple(round(value, 10) for value in told)
+    numbers = noisy.exponent, noisy.error, noisy.coefficient
+    assert numbers == tuple(round(value, 10) for value in numbers)

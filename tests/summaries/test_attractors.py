@@ -52,8 +52,8 @@ def test_features_are_sorted_by_branch_and_side(one_law):
     assert found["position"].values[1, 0] == pytest.approx([2.0 - 0.98 * 5 / 6, -0.98 * 2 / 3, -0.98 * 5 / 6])
     assert found["velocity"].values[0, 0].tolist() == [0.0, 0.5, 0.25]
     assert found["block"].values.tolist() == [1, 2, 3]
-    told = {"law": "linearized", "v": 0.2, "contact": "one_sided", "start": "tested", "seed": 1}
-    assert {key: found.attrs[key] for key in told} == told
+    given = {"law": "linearized", "v": 0.2, "contact": "one_sided", "start": "tested", "seed": 1}
+    assert {key: found.attrs[key] for key in given} == given
 
 
 def test_there_are_as_many_slots_as_attractors_at_one_a():
@@ -127,8 +127,8 @@ def test_chaos_that_is_shown_to_last_is_chaos():
 
 
 def test_the_values_put_in_between_have_a_file_of_their_own():
-    told = (SETTINGS, MOTION, RefinementSettings(1e-3), "tested")
-    parts = [refined.one_law(continuation(law), *told) for law in ("linearized", "nonlinear")]
+    given = (SETTINGS, MOTION, RefinementSettings(1e-3), "tested")
+    parts = [refined.one_law(continuation(law), *given) for law in ("linearized", "nonlinear")]
     parts[1] = parts[1].isel(value=slice(0, 2))
     found = all_laws.merge(parts, [{0: 0, 1: 1}, {0: 0, 1: 5}], refined.VARIABLES, "Refined")
     np.testing.assert_array_equal(found["a"].values, [[0.05, 0.07, 0.1, 0.2], [0.05, 0.07, np.nan, np.nan]])

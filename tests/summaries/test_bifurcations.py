@@ -31,7 +31,7 @@ from burridge_knopoff.summaries.bifurcations import _branches_of_segments, _roun
 # Not evenly spaced. Synchrony is lost between the second and third value; its successor becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]
 #: Properties of the attractor at each a.
-TOLD = {
+FEATURES = {
     "branch": [0, 0, 1, 1, 1],
     "side": [0] * 5,
     "kind": [MotionKind[kind] for kind in ("SYNCHRONIZED", "SYNCHRONIZED", "PERIODIC", "PERIODIC", "CHAOTIC")],
@@ -54,7 +54,7 @@ def grid():
         runner.run(8000.0)
         assert runner.run(9000.0, halting_block=0) == Status.HALTED
         states.append((runner.state().position + model.sliding_offset, runner.state().velocity))
-    found = xr.Dataset({name: ("a", values) for name, values in TOLD.items()}, {"a": A, "block": [1, 2, 3]})
+    found = xr.Dataset({name: ("a", values) for name, values in FEATURES.items()}, {"a": A, "block": [1, 2, 3]})
     for name, values in zip(("position", "velocity"), zip(*states, strict=True), strict=True):
         found[name] = ("a", "block"), np.array(values)
     return found.expand_dims("attractor", 1).assign_coords(law="linearized")
@@ -80,15 +80,15 @@ def found(grid):
 
 def test_what_branches_do(grid):
     expected = [(1, 2, 0, 1, Change.END), (1, 2, 0, 1, Change.BEGINNING), (3, 4, 1, 1, Change.CHANGE)]
-    assert told_of(branch_changes(grid, at_all_values(grid))) == expected
+    assert fields_of(branch_changes(grid, at_all_values(grid))) == expected
 
 
-def told_of(changes):
+def fields_of(changes):
     names = ("low", "high", "from_branch", "to_branch", "change")
     return [tuple(getattr(change, name) for name in names) for change in changes]
 
 
-def told(rows, in_grid):
+def attractors_of(rows, in_grid):
     """Return the attractors at all values of a of one law, and at those of the grid: for each value {branch: kind}."""
     filled = np.array([[*row.items(), (-1, -1), (-1, -1)][:2] for row in rows])
     slots = {"branch": filled[..., 0], "kind": filled[..., 1]}
@@ -118,7 +118,7 @@ def told(rows, in_grid):
     ],
 )  # fmt: skip
 def test_what_branches_do_between_values_of_the_grid(rows, in_grid, expected):
-    assert told_of(branch_changes(*told(rows, in_grid))) == expected
+    assert fields_of(branch_changes(*attractors_of(rows, in_grid))) == expected
 
 
 def test_every_change_has_an_entry(grid, found):

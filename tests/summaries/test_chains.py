@@ -77,8 +77,8 @@ def test_fractions_count_outcomes(files):
     assert point["synchronized_high"] == fraction_interval(3, 5)[2]
     assert point["state"].values.tolist() == [1, 2, 3, 4, 5]
     assert point["symmetric_state"].values.tolist() == [1]
-    told = {"confidence": 0.95, "v": 0.1, "contact": "one_sided", "seed": 1, "samples": 5, "start": "moving"}
-    assert {key: point.attrs[key] for key in told} == told
+    given = {"confidence": 0.95, "v": 0.1, "contact": "one_sided", "seed": 1, "samples": 5, "start": "moving"}
+    assert {key: point.attrs[key] for key in given} == given
     assert "blocks" not in point.attrs
 
 
@@ -99,8 +99,8 @@ def test_two_blocks_agree_where_both_synchronize(compared):
     mean = compared["mean_distance"].values
     assert np.array_equal(compared["difference"].values, mean[:, 1:] - mean[:, :1])
     for chain, other, a in product(range(2), range(2), range(3)):
-        told = [compared[f"agreeing_{name}"].values[chain, other, a] for name in ("fraction", "low", "high")]
-        assert told == pytest.approx(two_blocks.agreeing_fraction(compared["agrees"].values[chain, other, :, a]))
+        given = [compared[f"agreeing_{name}"].values[chain, other, a] for name in ("fraction", "low", "high")]
+        assert given == pytest.approx(two_blocks.agreeing_fraction(compared["agrees"].values[chain, other, :, a]))
     assert len(np.unique(compared["agreeing_fraction"])) > 1
 
 
@@ -123,27 +123,27 @@ def test_two_blocks_are_what_their_states_end_on(compared):
         assert tuple(compared["initial_velocity"].values[j]) == state.velocity
         both = [chain(model).at(a) for model in models(2, LAWS)]
         for i, model in enumerate(both):
-            told = {name: compared[name].values[c, i, j, k] for name in two_blocks.MOTION_VARIABLES}
-            assert told == asdict(asymptotic_states(model, STATES, SEARCH)[j])
+            given = {name: compared[name].values[c, i, j, k] for name in two_blocks.MOTION_VARIABLES}
+            assert given == asdict(asymptotic_states(model, STATES, SEARCH)[j])
         runs = [simulate(model, initial=state, settings=SETTINGS) for model in both]
         first, *others = [(run.event_time, run.event_block, run.event_kind) for run in runs]
         for i, other in enumerate(others):
             count, until = common_order(first, other)
             assert compared["event_order_count"].values[c, i, j, k] == count
             assert compared["event_order_time"].values[c, i, j, k] == min(until, 1900.0)
-    told = {
+    given = {
         "transient": 1500.0,
         "search_transient": 3000.0,
         "agreement_standard_errors": 3.0,
         "motion_longest_period": 2000.0,
     }
-    assert {name: compared.attrs[name] for name in told} == told
+    assert {name: compared.attrs[name] for name in given} == given
     assert compared["state"].values.tolist() == [1, 2]
 
 
 def test_one_law_has_nothing_to_be_compared_with():
-    told = two_blocks.run_settings(transient=200.0, window=100.0), SEARCH, MOTION, AGREEMENT
-    alone = two_blocks.summarize(models(2, ["exponential"]), STATES[:1], [0.03], *told)
+    given = two_blocks.run_settings(transient=200.0, window=100.0), SEARCH, MOTION, AGREEMENT
+    alone = two_blocks.summarize(models(2, ["exponential"]), STATES[:1], [0.03], *given)
     assert alone["agrees"].shape == (2, 0, 1, 1)
     assert alone["mean_distance"].shape == (2, 1, 1, 1)
 

@@ -16,7 +16,7 @@ from tests.summaries.points import write_points
 
 RUN = {"transient": 2000.0, "window": 2000.0, "batches": 4}
 PAIR = InitialState("pair", (-0.9, -1.1), (0.1, 0.1))
-TOLD = {"lyapunov_exponents": 3, "synchronization_threshold": 1e-6, "motion": {}}
+SETTINGS = {"lyapunov_exponents": 3, "synchronization_threshold": 1e-6, "motion": {}}
 
 MASSES = {"mass[2]": [0.999999999, 1.0]}
 
@@ -25,7 +25,7 @@ def summary(folder, law, state=PAIR, **parameters):
     named = {name: {f"{value:.9f}": value for value in values} for name, values in parameters.items()}
     models = {**PAPER_MODELS, "laws": {law: {}}, "chain": {**PAPER_MODELS["chain"], "blocks": state.blocks}}
     grid = Grid(folder, {state.name: state}, named, {law: Settings(**RUN)}, models)
-    return summarize(write_points(grid), **TOLD).squeeze(("law", "initial"))
+    return summarize(write_points(grid), **SETTINGS).squeeze(("law", "initial"))
 
 
 def per_velocity(found):
@@ -50,7 +50,7 @@ def test_only_end_blocks_of_one_mass_synchronize(tmp_path):
     assert found["mean_distance"].dims == ("a", "mass_2")
     assert found["mass_2"].values.tolist() == [0.999999999, 1.0]
     assert found["run_kind"].values[0].tolist() == [MotionKind.PERIODIC, MotionKind.SYNCHRONIZED]
-    assert (found["mean_distance"].values < TOLD["synchronization_threshold"]).all()
+    assert (found["mean_distance"].values < SETTINGS["synchronization_threshold"]).all()
 
 
 def test_v_is_a_scale_of_the_linearized_law(tmp_path):

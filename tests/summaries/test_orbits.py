@@ -161,12 +161,12 @@ def test_friction_that_is_the_same_at_every_speed_is_neutral(formula, status):
 
 def test_sweeps_are_as_far_from_the_transition_as_the_chain_is_strong(monkeypatch):
     """With thresholds ten times as high, a_c and all other values of a are a tenth."""
-    told = []
-    monkeypatch.setattr(orbits, "sweep", lambda orbits, values: told.append(values) or np.zeros(len(values)))
+    swept = []
+    monkeypatch.setattr(orbits, "sweep", lambda orbits, values: swept.append(values) or np.zeros(len(values)))
     model = Model(Chain(3, threshold=10.0), law_of("linearized", 0.0))
     critical = summarize([model], [0.005])["critical_a"].item()
     assert critical == pytest.approx(0.00869729047, abs=1e-9)
-    assert told[0] - critical == pytest.approx(0.1 * np.array(orbits.OFFSETS), abs=1e-12)
+    assert swept[0] - critical == pytest.approx(0.1 * np.array(orbits.OFFSETS), abs=1e-12)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

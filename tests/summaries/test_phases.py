@@ -71,8 +71,8 @@ def test_states_are_counted_by_what_they_reach(ruled):
             np.testing.assert_array_equal(one["velocity_correlation"].values, correlation)
             for index in np.ndindex(2, 3):
                 hits, unknown = int((x[index] > 0.04).sum()), int((x[index] < -0.4).sum())
-                told = [one[f"synchronized_{name}"].values[index] for name in ("fraction", "low", "high")]
-                assert told == [*fraction_interval(hits, 5)[:2], fraction_interval(hits + unknown, 5)[2]]
+                shares = [one[f"synchronized_{name}"].values[index] for name in ("fraction", "low", "high")]
+                assert shares == [*fraction_interval(hits, 5)[:2], fraction_interval(hits + unknown, 5)[2]]
                 assert one["undetermined_count"].values[index] == unknown
     assert found["undetermined_count"].sum() > 0
     # With A = 0.05 no velocity becomes negative; with A = 0.5 those of most states do.

@@ -16,7 +16,7 @@ from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcati
 from burridge_knopoff.summaries import proof
 
 PAPER, NONLINEAR = (Model(Chain(3), law_of(law, 0.0)) for law in ("linearized", "nonlinear"))
-TOLD = 1e-13
+TOLERANCE = 1e-13
 
 
 @pytest.fixture(scope="module")
@@ -36,13 +36,13 @@ def test_every_interval_is_about_the_number_of_the_double_code(found, model):
     for name, a in (("given", 0.08), ("critical", a_c)):
         orbit, one = family.at(a), of_law.sel(orbit=name)
         assert one["a"].values == pytest.approx([a, a], abs=2e-15)
-        assert one["period"].values == pytest.approx([orbit.period] * 2, abs=TOLD)
+        assert one["period"].values == pytest.approx([orbit.period] * 2, abs=TOLERANCE)
         at = {(block, kind): time for time, block, kind in orbit.events}
         first = at[1, 1]
         state = flow(orbit.model, orbit.reference, first)[0].state().position[:2]
-        assert one["position"].values == pytest.approx(np.stack([state] * 2, axis=1), abs=TOLD)
+        assert one["position"].values == pytest.approx(np.stack([state] * 2, axis=1), abs=TOLERANCE)
         times = [*((at[event] - first) % orbit.period for event in ((0, 1), (0, 0), (1, 0))), orbit.period]
-        assert one["event_time"].values == pytest.approx(np.stack([times] * 2, axis=1), abs=TOLD)
+        assert one["event_time"].values == pytest.approx(np.stack([times] * 2, axis=1), abs=TOLERANCE)
         multiplier = multipliers(orbit)
         expected = [multiplier.transverse.real, multiplier.symmetry_preserving[0].real]
         assert one["multiplier"].values == pytest.approx(np.stack([expected] * 2, axis=1), abs=1e-11)

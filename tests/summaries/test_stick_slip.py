@@ -214,15 +214,15 @@ def test_frequencies_are_those_of_the_same_motion_in_other_units():
     stiff = Chain(3, coupling=400.0 * chain.coupling, pulling=tuple(400.0 * chain.driving))
     fast = {"transient": 25.0, "window": 30.0, "batches": 2, "trajectory_sampling": 0.005}
     moved = InitialState("moved", np.array(state.position) / 400.0, np.array(state.velocity) / 20.0)
-    told = []
+    frequencies = []
     for model, initial, scale, settings in (
         (Model(chain, law_of("linearized", 0.08)), state, 1.0, {"transient": 500.0, "window": 600.0, "batches": 2}),
         (Model(stiff, law_of("linearized", 1.6), 0.005), moved, 20.0, fast),
     ):
         run = vars(simulate(model, initial=initial, settings=Settings(trajectory=0.5 / scale, **settings)))
         velocity, duration = long_velocity(run, model, settings["transient"])
-        told.append([leading_frequency(velocity[:, block], duration) / scale for block in range(3)])
-    assert told[1] == pytest.approx(told[0], rel=1e-3)
+        frequencies.append([leading_frequency(velocity[:, block], duration) / scale for block in range(3)])
+    assert frequencies[1] == pytest.approx(frequencies[0], rel=1e-3)
 
 
 def test_events_before_the_window_have_no_part_in_frequencies():

@@ -150,9 +150,9 @@ class Fork:
         self.pid = int(self._said[0])
 
     def _listen(self) -> None:
-        said = os.read(self._answers, 64).split()
-        assert said, "the server of Snakemake has died"
-        self._said += said
+        answers = os.read(self._answers, 64).split()
+        assert answers, "the server of Snakemake has died"
+        self._said += answers
 
     def poll(self) -> int | None:
         """Return the exit code, None if it still runs."""

@@ -151,10 +151,10 @@ def test_a_folder_of_results_belongs_to_its_config(tmp_path):
 
 
 def test_a_cluster_that_does_not_answer_gets_no_job(tmp_path):
-    said = "slurm_load_jobs error: Unable to contact slurm controller (connect failure)"
+    message = "slurm_load_jobs error: Unable to contact slurm controller (connect failure)"
     squeue = tmp_path / "bin" / "squeue"
     squeue.parent.mkdir()
-    squeue.write_text(f"#!/bin/sh\necho '{said}' >&2\nexit 1\n")
+    squeue.write_text(f"#!/bin/sh\necho '{message}' >&2\nexit 1\n")
     squeue.chmod(0o755)
     study = Study(tmp_path / "study", TINY)
     environment = study.environment()
@@ -164,7 +164,7 @@ def test_a_cluster_that_does_not_answer_gets_no_job(tmp_path):
     )
     run = run_snakemake(command, study.folder, environment)
     assert run.returncode == 1
-    assert f"no job is submitted, Slurm does not answer: squeue: {said}" in run.stderr.splitlines()
+    assert f"no job is submitted, Slurm does not answer: squeue: {message}" in run.stderr.splitlines()
     assert not (study.folder / "results").exists()
 
 

@@ -131,8 +131,8 @@ def test_a_picture_is_the_same_under_a_users_own_settings_of_matplotlib(study):
 def test_a_change_makes_again_what_depends_on_it(study, capsys):
     results = study.folder / "results/quakes"
     assert main(["check", str(results)]) == 1
-    said = capsys.readouterr().out
-    assert f"{results}: 3 points and 7 other files: 3 missing, 0 corrupt, 0 stale, 0 failed\n" in said
+    output = capsys.readouterr().out
+    assert f"{results}: 3 points and 7 other files: 3 missing, 0 corrupt, 0 stale, 0 failed\n" in output
     plans = {
         "low: -4.0": {"catalogue": 1, "figure_catalogue": 1, "figure_slip_map": 1},
         "window: 900": {"catalogue_of_run": 2, "catalogue": 1, "figure_catalogue": 1, "figure_slip_map": 1},
@@ -176,10 +176,10 @@ catalogue: {transient: 0, window: 300}
 @pytest.mark.slow
 def test_a_catalogue_whose_run_diverged_is_a_failure(tmp_path, capsys):
     study = Study(tmp_path / "study", RUNAWAY)
-    said = study.ok()
+    output = study.ok()
     summary = "results/runaway/summary/catalogue.nc"
-    assert f"catalogues: 1 of 2 did not complete: diverged 1 (status in {summary})\n" in said
-    assert "no slip event" not in said
+    assert f"catalogues: 1 of 2 did not complete: diverged 1 (status in {summary})\n" in output
+    assert "no slip event" not in output
     results = study.folder / "results/runaway"
     assert main(["check", str(results)]) == 3
     path = results / "catalogues/linearized/a1.9000.nc"

@@ -247,12 +247,12 @@ def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
     run = copy.run("-R", *rules, "--until", *rules)
     assert run.returncode == 1
     reasons = failures(run.stderr)
-    said = "\n".join(reasons.values())
+    output = "\n".join(reasons.values())
     tiles = "got basins/linearized/a0.0800/tile0.nc, expected basins/linearized/a0.0800/tile1.nc"
-    assert f"tile1.nc: is another file: {tiles}" in said
-    assert "nonlinear.nc: is another file: got bifurcations/linearized.nc, expected bifurcations/nonlinear.nc" in said
-    assert "mean_distance.nc: was made with points.v: got 0.3, expected 0.1" in said
-    assert re.search(r"stick_slip\.nc: was made with \S+: got .*, expected .*", said)
+    assert f"tile1.nc: is another file: {tiles}" in output
+    assert "nonlinear.nc: is another file: got bifurcations/linearized.nc, expected bifurcations/nonlinear.nc" in output
+    assert "mean_distance.nc: was made with points.v: got 0.3, expected 0.1" in output
+    assert re.search(r"stick_slip\.nc: was made with \S+: got .*, expected .*", output)
     remade(copy, run.stderr)
     assert not check_study(results).findings
     check_end(copy, finished)
@@ -265,12 +265,12 @@ def test_damaged_texts_and_pictures_are_made_again(copy, finished):
     for name in ("summary/claims.json", "figures/orbits.png"):
         as_old_as(results / name, lambda path: rewrite(path, cut))
     as_old_as(results / "summary/agreement.txt", lambda path: path.write_bytes(b""))
-    said = copy.ok("-n")
-    assert "results/tiny/summary/agreement.txt: is empty: it would be recreated" in said
+    output = copy.ok("-n")
+    assert "results/tiny/summary/agreement.txt: is empty: it would be recreated" in output
     found = {finding.path.name: finding.kind for finding in check_study(results).findings}
     assert found == dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt")
-    said = copy.ok()
-    assert "results/tiny/figures/orbits.png: was changed after it was written: it is recreated" in said
+    output = copy.ok()
+    assert "results/tiny/figures/orbits.png: was changed after it was written: it is recreated" in output
     assert not check_study(results).findings
     check_end(copy, finished)
 

@@ -102,8 +102,8 @@ def test_a_drawn_study_ends_with_its_report(number, changes, tmp_path):
     results = study.folder / "results" / name
     if run.returncode and not results.exists():
         # Invalid configs are refused before anything is written.
-        said = [line for line in run.stderr.strip().splitlines() if not line.startswith("Using workflow specific")]
-        assert [line.startswith("study.yaml: ") for line in said] == [True], run.stderr
+        lines = [line for line in run.stderr.strip().splitlines() if not line.startswith("Using workflow specific")]
+        assert [line.startswith("study.yaml: ") for line in lines] == [True], run.stderr
         return
     assert run.returncode == 0, run.stderr
     assert (results / "report.html").stat().st_size > 10_000

@@ -40,8 +40,8 @@ def opened(folder, name):
 def check_page(page, heading):
     results = outputs((REPOSITORY / "docs" / page).read_text(), page, {heading})
     assert results
-    for _, said, printed in results:
-        assert printed == said
+    for _, expected, printed in results:
+        assert printed == expected
 
 
 def test_every_example_is_tested():

@@ -91,9 +91,9 @@ def test_without_a_terminal(finished):
     assert sum(int(count) for count in re.findall(r"\d+", stages)) == int(total)
     progress = [line for line in lines if re.search(rf"all \d+ of {total} jobs; \d+ % done", line)]
     # Snakemake's own last lines come before those of the study.
-    told = [line.split(":")[0] for line in lines[begin + 1 : end]]
-    told.remove("the figures of the paper are in results/tiny/figures")
-    assert told == [*progress, "Complete log(s)"]
+    closing = [line.split(":")[0] for line in lines[begin + 1 : end]]
+    closing.remove("the figures of the paper are in results/tiny/figures")
+    assert closing == [*progress, "Complete log(s)"]
     # Of which there is none in the first ten seconds.
     minutes, seconds = re.search(r"done in (?:(\d+) min )?(\d+) s", lines[end]).groups(default="0")
     if 60 * int(minutes) + int(seconds) > 20:
@@ -142,13 +142,13 @@ def test_failed_jobs_are_named_with_their_logs(copy):
     assert run.returncode != 0
     end = next(n for n, line in enumerate(lines) if line.startswith("study tiny: stopped"))
     assert re.fullmatch(r"study tiny: stopped after [\d min]+ s: 1 job failed, 1 job did not run", lines[end])
-    told, path = lines[end + 1], point.relative_to(copy.folder)
-    assert told == f"failed: mean_distance: {path}: is empty (log results/tiny/logs/mean_distance.log)"
+    closing, path = lines[end + 1], point.relative_to(copy.folder)
+    assert closing == f"failed: mean_distance: {path}: is empty (log results/tiny/logs/mean_distance.log)"
     assert lines[end + 2] == "made: nothing"
     remake = rf"this command recreates the bad files and continues: snakemake -c2 .* -R {path}"
     assert re.fullmatch(remake, lines[end + 3])
     # The same line was written when the job failed, without Snakemake's block of all input files.
-    assert lines.count(told) == 2
+    assert lines.count(closing) == 2
     assert "Error in rule" not in run.stderr
 
 
@@ -179,12 +179,12 @@ def test_a_dry_run_ends_with_a_table_of_its_stages(study):
 
 def test_values_that_change_results_in_place_are_announced(study):
     """Until the results are theirs; not if they are of a study of their own."""
-    said = "--config window: results/tiny will hold the results of the changed config in place of those of "
+    line = "--config window: results/tiny will hold the results of the changed config in place of those of "
     target = "results/tiny/figures/sketch.png"
     changed = target, "--config", "window=300"
     for run, is_said in ((["-n", *changed], True), (changed, True), (["-n", *changed], False), (["-n", target], False)):
-        assert (said in study.ok(*run)) is is_said, run
-    assert said not in study.ok("-n", "results/other/figures/sketch.png", "--config", "window=300", "study=other")
+        assert (line in study.ok(*run)) is is_said, run
+    assert line not in study.ok("-n", "results/other/figures/sketch.png", "--config", "window=300", "study=other")
 
 
 def test_a_report_before_a_run_is_refused_in_a_line(study):
