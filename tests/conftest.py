@@ -28,7 +28,8 @@ settings.load_profile("study")
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Let one of two workers begin with Slurm, the other with the other long tests, and both end with short ones.
 
-    Each worker starts with one half; the one that finishes first takes tests from the end of the other's half, so that no worker is left alone with a long test. This happens last, after deselected tests have been removed.
+    Each has one half; the one that finishes first takes tests from the end of the other's half, so that none is left
+    alone with a long test.
     """
     slurm, slow, workflow, short = groups = [], [], [], []
     for item in items:

@@ -51,9 +51,9 @@ def cloud(scale: float, shift: float) -> Alteration:
 
     def move(world: Summaries) -> None:
         bifurcation = world["bifurcation_diagram"]
-        of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == "plus"
-        bifurcation["crossing_velocity"].values[of_plus] *= scale
-        bifurcation["crossing_velocity"].values[of_plus] += shift
+        from_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == "plus"
+        bifurcation["crossing_velocity"].values[from_plus] *= scale
+        bifurcation["crossing_velocity"].values[from_plus] += shift
 
     return move
 
@@ -103,8 +103,8 @@ def line_from(first: float) -> Alteration:
 def no_crossings(world: Summaries) -> None:
     """Let the runs from plus cross the section downward only."""
     bifurcation = world["bifurcation_diagram"]
-    of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == "plus"
-    bifurcation["crossing_direction"].values[of_plus] = -1
+    from_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == "plus"
+    bifurcation["crossing_direction"].values[from_plus] = -1
 
 
 def crossing(chosen: Callable[[np.ndarray], np.ndarray]) -> Alteration:

@@ -98,7 +98,7 @@ def test_every_figure_of_the_page_is_there(content: dict) -> None:
         assert (ROOT / f"docs/figures/{claim['figure']}.png").exists()
 
 
-def test_the_page_shows_branches_in_their_colours() -> None:
+def test_the_figure_of_basin_fractions_shows_the_colours_of_the_branches() -> None:
     picture = np.asarray(Image.open(ROOT / "docs/figures/basin_fractions.png").convert("RGB"), dtype=int).reshape(-1, 3)
     for name in BRANCHES:
         wanted = np.array([int(name[k : k + 2], 16) for k in (1, 3, 5)])

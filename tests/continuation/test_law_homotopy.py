@@ -62,7 +62,7 @@ def test_mirror_images_are_one_branch():
 
 
 @pytest.mark.parametrize(("v", "expected"), [(0.1, {0: 0}), (0.2, {0: 0, 3: 1})])
-def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monkeypatch):
+def test_the_distance_within_which_branches_match_grows_with_the_velocity(v, expected, found, monkeypatch):
     models = [Model(Chain(3), law_of(law, A), v) for law in ("linearized", "nonlinear")]
     one, other = (part[1].motion.state() for part in found)
     near = other.vector()[None] + 1.5 * SAME_SET
@@ -106,7 +106,7 @@ def test_a_torus_may_be_locked_on_the_way(follow):
     assert follow([torus, 0.3, *[torus] * 15])[0] is not None
 
 
-def test_of_two_branches_that_arrive_at_one_the_longer_is_matched(monkeypatch):
+def test_if_two_branches_arrive_at_one_the_longer_is_matched(monkeypatch):
     """Each is followed at three of the values of a at which it exists; the longer one arrives from two of them."""
     models = [[Model(Chain(3), law_of(law, 0.1 * k)) for k in range(6)] for law in ("linearized", "nonlinear")]
     here, there = (shown(np.full((1, 6), place), np.zeros((0, 6)), 0.0, 0.0) for place in (0.0, 9.0))
@@ -126,7 +126,7 @@ def test_of_two_branches_that_arrive_at_one_the_longer_is_matched(monkeypatch):
     assert [a for _, a in asked] == pytest.approx([a for _, a in expected])
 
 
-def test_motion_that_does_not_continue_smoothly_is_given_up(follow):
+def test_motion_that_jumps_between_steps_is_not_followed_further(follow):
     """A set may move by SAME_SET in a step, which scales with v, and not by more."""
     limit = 2.0 * SAME_SET
     assert follow([0.0, 0.99 * limit, *[0.99 * limit] * 20])[0] is not None

@@ -22,7 +22,7 @@ def followed(found, memory):
     return tuple([row.tolist() for row in values] for values in numbers)
 
 
-def test_a_set_is_as_near_as_two_directions_tell():
+def test_the_distance_of_sets_is_the_smaller_of_both_directions():
     """An orbit on a torus is close to it, although most of the torus is far from the orbit."""
     torus, orbit = at(*np.linspace(0.0, 1.0, 101)), at(0.5)
     one, other = (Outline(item) for item in (torus, orbit))
@@ -35,7 +35,7 @@ def test_a_set_is_as_near_as_two_directions_tell():
     assert left.distances(right) == pytest.approx(np.array([[0.2, 0.2], [0.0, 0.0]]))
 
 
-def test_an_orbit_and_the_chaos_around_it_go_on_as_they_are():
+def test_an_orbit_and_the_chaos_around_it_continue_as_separate_branches():
     """The chaotic sets are farther from each other than an orbit is from any of them."""
     here, there = np.linspace(0.0, 0.1, 6), np.linspace(0.008, 0.108, 6)
     before = outlines([at(*here, partner=0), at(0.041, partner=1)])
@@ -52,7 +52,7 @@ def test_returns_are_thinned_out_evenly():
     assert len(Outline(at(0.0, 1.0)).own) == 2
 
 
-def test_pairs_are_chosen_together():
+def test_all_pairs_are_matched_together():
     """Of two sets close to one the closer is matched, if the other has another match; none matches beyond the limit."""
     before = outlines([at(0.0, partner=0), at(0.02, partner=1)])
     after = outlines([at(0.015, partner=0), at(0.035, partner=1)])
@@ -66,8 +66,8 @@ def test_pairs_are_chosen_together():
     assert Matcher(1.0).match({}, after) == {}
 
 
-def test_synchrony_is_followed_by_synchrony_alone():
-    """However far it has moved."""
+def test_synchrony_is_matched_only_with_synchrony():
+    """This holds however far it has moved."""
     still, far = (at(place, symmetry=SYNCHRONIZED) for place in (0.0, 9.0))
     for before, after, found in ((still, at(0.0), {}), (at(0.0), still, {}), (still, far, {0: 0})):
         assert Matcher(1.0).match(outlines([before]), outlines([after])) == found
@@ -83,7 +83,7 @@ def test_several_synchronized_attractors_are_several_branches():
     assert not np.concatenate(side).any()
 
 
-def test_branches_at_a_pitchfork():
+def test_branches_are_matched_across_a_pitchfork():
     """The synchronized branch ends, its mirror pair begins, and another branch continues unchanged."""
     before = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0), at(1.0, partner=1, mean_distance=0.14)]
     after = [*pair(0.0, -0.005, mean=0.01), at(1.001, partner=2, mean_distance=0.15)]

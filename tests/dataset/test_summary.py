@@ -1,4 +1,4 @@
-"""Summaries: what is described is what is written, read back and refused."""
+"""Summaries: their variables as described, as written and as read back, and refused files."""
 
 import subprocess
 import sys
@@ -25,7 +25,7 @@ def made(count=64, **attributes):
     return summary("A title", VARIABLES, values, coordinates, {"v": 0.1, **attributes}, module=module)
 
 
-def test_what_is_described_is_in_the_dataset():
+def test_the_dataset_has_the_described_variables():
     found = made()
     assert list(found.data_vars) == ["value", "verdict"]
     assert found["value"].dims == ("law", "a")
@@ -52,11 +52,11 @@ def test_what_is_described_is_in_the_dataset():
     assert {key: found.attrs[key] for key in head} == head
     assert found.attrs["source_module"] == "burridge_knopoff.summaries.lyapunov"
     assert made(history="by hand").attrs["history"] == "by hand"
-    # What was read from a part does not pass for the title of the whole.
+    # The title of a part is not taken for that of the whole.
     assert made(title="A part", summary="A part.", source_module="other").attrs == found.attrs
 
 
-def test_what_is_written_is_read_back(tmp_path):
+def test_a_written_summary_is_read_back(tmp_path):
     for name, count in (("one.nc", 64), ("two.nc", 64), ("short.nc", 63)):
         write_summary(made(count), tmp_path / name)
         assert open_summary(tmp_path / name).drop_attrs().identical(made(count).drop_attrs())
@@ -78,7 +78,7 @@ print(*file["law"].values)
 
 
 def test_a_file_is_opened_again_while_it_is_open(tmp_path):
-    """As by a cell of a notebook that runs once more: HDF5 crashes where texts may have any length."""
+    """A cell of a notebook that runs again does this; HDF5 crashes if texts have variable length."""
     write_summary(made(), tmp_path / "one.nc")
     run = subprocess.run(
         [sys.executable, "-c", OPEN_AGAIN, tmp_path / "one.nc"], capture_output=True, text=True, check=False
@@ -86,7 +86,7 @@ def test_a_file_is_opened_again_while_it_is_open(tmp_path):
     assert (run.returncode, run.stdout) == (0, "linearized nonlinear\n"), run.stderr
 
 
-def test_what_is_no_summary_of_now_is_refused(tmp_path):
+def test_files_that_are_not_present_summaries_are_refused(tmp_path):
     other, bare = made(source_module="other"), made()
     other.attrs["source_fingerprint"] = "0" * 16
     write_summary(other, tmp_path / "other.nc")

@@ -77,7 +77,7 @@ def test_one_block_in_closed_form(v, a):
 
 @pytest.mark.parametrize("groups", [False, True])
 @pytest.mark.parametrize("law", ["nonlinear", "carlson_langer"])
-def test_balances(law, groups):
+def test_forces_and_displacements_balance(law, groups):
     """The slips of each block add up to its displacement."""
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of(law, 1.0), 0.02)
     start = at_rest(model)
@@ -93,7 +93,7 @@ def test_balances(law, groups):
 
 
 def test_energy_is_the_work_of_friction():
-    """By quadrature of friction times speed along the whole motion, between two moments of rest."""
+    """The work is computed by quadrature of friction times speed along the whole motion, between two times of rest."""
     model = Model(Chain(6, coupling=2.0, pulling=1.0), law_of("nonlinear", 0.5), 0.01)
     start = at_rest(model)
     end = last_rest(model, start, 400.0)
@@ -126,7 +126,7 @@ def test_a_catalogue_does_not_depend_on_where_runs_are_divided():
 
 
 def test_groups_and_the_chain_as_a_whole_have_the_same_events():
-    """Until chaos parts them."""
+    """They have the same events until chaos makes them diverge."""
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
     one, other = (recorded(model, at_rest(model), 60.0, groups)[0] for groups in (True, False))
     assert len(one["time"]) >= 8

@@ -67,7 +67,7 @@ def next_event(position, coupling, threshold=(1.0, 2.25), friction=0.8):
 
 
 def test_two_blocks_of_huang_and_turcotte():
-    """From different states, the same period of four events."""
+    """Different states lead to the same cycle of four events."""
     model = two_blocks()
     for position in ((-0.45, -1.02), (-0.55, -0.95)):
         found = record_events(
@@ -88,7 +88,7 @@ def test_two_blocks_of_huang_and_turcotte():
 
 @pytest.mark.parametrize("coupling", [1.0, 2.2, 3.25, 6.0])
 def test_events_of_two_blocks(coupling):
-    """One by one, as chaos takes them apart."""
+    """The events are compared one by one, since chaos makes the motions diverge."""
     model = two_blocks(coupling)
     found = record_events(model, resting(model, (-0.45, -1.02)), 900.0, profiles=True, loading="quasistatic")
     assert len(found.time) > 12
@@ -134,7 +134,7 @@ def test_mirror_images_start_together(groups):
 
 
 @pytest.mark.parametrize("groups", [False, True])
-def test_balances(groups):
+def test_forces_and_displacements_balance(groups):
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
     start = at_rest(model)
     table, runner, (_, block, slip) = recorded(model, start, 200.0, groups, loading="quasistatic")
@@ -144,7 +144,7 @@ def test_balances(groups):
 
 
 @pytest.mark.parametrize("groups", [False, True])
-def test_energy_released_is_what_the_springs_lose(groups):
+def test_the_released_energy_is_what_the_springs_lose(groups):
     """The driver stops, and does no work, while blocks slip."""
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
     start = resting(model, np.random.default_rng(1).uniform(-0.9, -0.6, 12))

@@ -23,7 +23,7 @@ MISSING = ("nonlinear", "plus", "0.0800")
 
 
 def make_study(folder):
-    """Make the points of a study but one, and its summaries of points."""
+    """Make all points of a study except one, and its summaries of points."""
     small = run_study(folder, {**CONFIG, "without": ["attractors"]}, ("points", "summary"))
     small.grid.path(*MISSING).unlink()
     study = small.study
@@ -37,9 +37,9 @@ def results(tmp_path_factory):
     return folder
 
 
-def test_nodes_are_the_files(results):
+def test_the_tree_has_the_files_as_nodes(results):
     files = [*results.rglob("*.nc")]
-    # What a job is writing, or has left half-written, is none.
+    # A file that a job is writing, or has left incomplete, is not a node.
     (results / "summary" / ".some.part-0123abcd.nc").touch()
     study = open_study(results)
     assert len(list(study["summary"])) == 7
@@ -65,7 +65,7 @@ def test_a_study_is_shown_on_one_screen(results):
     assert any(re.fullmatch("summary/lyapunov +Lyapunov exponents and kinds of motion", line) for line in lines)
 
 
-def test_files_are_opened_when_they_are_asked_for(results, tmp_path):
+def test_files_are_opened_on_request(results, tmp_path):
     """A damaged file does not matter to the others."""
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     (tmp_path / POINT).write_bytes(b"")
@@ -91,14 +91,14 @@ def test_groups_are_trees_of_their_files(results):
 @pytest.mark.parametrize(
     "path", ["summary/lyapunow", f"points/{MISSING[0]}/{MISSING[1]}/a{MISSING[2]}", "point", "summary/lyap"]
 )
-def test_what_is_not_there_is_named(results, path):
+def test_a_missing_file_is_named(results, path):
     study = open_study(results)
     assert path not in study
     with pytest.raises(KeyError, match=f"{path}: not among the results in {results}"):
         study[path]
 
 
-def test_parts_of_arrays_are_read_as_they_are_asked_for(results):
+def test_parts_of_arrays_are_read_on_request(results):
     path = results / "points" / "linearized" / "plus" / "a0.2200.nc"
     node = open_study(results)["points/linearized/plus/a0.2200"]
     with xarray.open_dataset(path) as point:
@@ -139,7 +139,7 @@ def test_numbers_over_the_grid(results):
     ],
 )
 def test_a_file_that_is_damaged_or_not_of_the_study_is_named(results, tmp_path, name, damage, reason):
-    """With the same line, and command that recreates the file, as `bk show`."""
+    """The message, with the command that recreates the file, is that of `bk show`."""
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     damage(tmp_path / name)
     messages = []

@@ -1,4 +1,4 @@
-"""Attractors of which only what is told is set."""
+"""Attractors with given features; all others have defaults."""
 
 from typing import Any
 
@@ -9,14 +9,14 @@ from burridge_knopoff.motion.section_returns import Returns
 
 CLOSED = (MotionKind.PERIODIC, MotionKind.SYNCHRONIZED)
 ASYMMETRIC, SYMMETRIC, SYNCHRONIZED = Symmetry.ASYMMETRIC, Symmetry.SYMMETRIC, Symmetry.SYNCHRONIZED
-#: Returns of no motion in particular.
+#: Returns of an arbitrary motion.
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
 
 
 def stand_in(
     symmetry: int = SYMMETRIC, mean_distance: float = 0.1, partner: int = 0, ahead: float = 1.0, **features: Any
 ) -> Attractor:
-    """Return an attractor whose last return has block 1 `ahead`; its further features may be told."""
+    """Return an attractor whose last return has block 1 `ahead`; further features may be given."""
     of_attractor = {
         key: features.pop(key) for key in ("slow", "close_returns", "patience", "radius") if key in features
     }
@@ -45,12 +45,12 @@ def shown(
     stop_count: tuple[int, ...] = (1, 2, 1),
     window: float = 100.0,
 ) -> Returns:
-    """Return what a window is told to have shown."""
+    """Return a window with these results."""
     return Returns(returns, mirror_returns, spacing, drift, np.array(stop_count), window)
 
 
 def at(*places: float, ahead: float = 0.0, **features: Any) -> Attractor:
-    """Return an attractor with every coordinate of its returns at these places, but for block 1, which is `ahead`.
+    """Return an attractor with all coordinates of its returns at these places, except block 1, which is `ahead`.
 
     In its mirror image block 3 is.
     """
@@ -60,5 +60,5 @@ def at(*places: float, ahead: float = 0.0, **features: Any) -> Attractor:
 
 
 def nearest(first: np.ndarray, second: np.ndarray, rank: int) -> np.ndarray:
-    """Return, by all differences, how far each row of a set is from its nearest, or next but one, of another."""
+    """Return the distance of each row of a set from its nearest row, or nearest but one, of another, by brute force."""
     return np.sort(np.abs(first[:, None] - second[None]).max(axis=2), axis=1)[:, rank]

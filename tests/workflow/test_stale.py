@@ -135,7 +135,7 @@ def changed(edited, changes):
 
 
 @pytest.mark.parametrize("changes", [{"v": 0.11}, {"basins.pixels": 9}, {"a": [0.05, 0.06, 0.08, 0.2, 0.22]}])
-def test_a_key_remakes_only_what_uses_it(edited, changes):
+def test_a_key_invalidates_only_what_uses_it(edited, changes):
     found = jobs(changed(edited, changes).ok("-n", "-p"))
     del found["all"]
     assert found == counts(jobs_of(changes))
