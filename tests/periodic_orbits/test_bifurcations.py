@@ -115,7 +115,7 @@ def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing():
     assert np.abs(found.upward.end.after.multipliers.whole[0]) > 1.3
 
 
-def test_what_branches_off_joins_only_where_it_is_near():
+def test_a_branch_joins_a_simpler_one_only_nearby():
     """At the root of the test function, an orbit far from any simpler one is at a fold."""
     (point, *_) = follow(settled(0.1), (0.09999, 0.10001), STEPS)
     assert bifurcations.kind_at(point, (BifurcationKind.FOLD, "symmetry_preserving")) == BifurcationKind.FOLD
@@ -169,7 +169,7 @@ def test_a_bifurcation_does_not_depend_on_the_direction_of_continuation(seven):
         assert (one.kind, one.is_turning_point) == (other.kind, other.is_turning_point)
 
 
-def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
+def test_a_doubled_orbit_ends_at_the_period_doubling_of_the_single_one():
     doubled = settled(0.135)
     assert sorted(doubled.stop_counts) == [12, 26, 26]
     found = segment(doubled, (0.13, 0.15), 4, ContinuationSettings(largest_step=1e-4))
@@ -187,7 +187,7 @@ def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
 
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
-def test_a_flip_may_break_the_mirror_symmetry(law):
+def test_a_period_doubling_may_break_the_mirror_symmetry(law):
     """Two synchronized blocks separate so that each does in one period what the other does in the next."""
     model = Model(Chain(2), law_of(law, 0.05))
     one = limit_cycle(model, model.begin(InitialState("one", (-0.9, -0.9), (0.1, 0.1))), 1000.0)

@@ -30,7 +30,9 @@ UNEQUAL = Chain(2, threshold=(1.0, 1.1))
         (0.0, 1.0, 1.0, (2, 4), False),
     ],
 )
-def test_twice_a_simpler_orbit_is_near_it_with_its_stops_in_its_time(monkeypatch, away, scale, time, stops, is_repeat):
+def test_a_repetition_of_a_simpler_orbit_is_recognized_by_place_stops_and_period(
+    monkeypatch, away, scale, time, stops, is_repeat
+):
     model = Model(UNEQUAL, law_of("linearized", 0.05), 0.1 * scale)
     reference, end = (ChainState(np.array([0.3, x]), np.full(2, 0.1), STILL) for x in (0.2, 0.2 + away))
 

@@ -31,7 +31,7 @@ def proved(family):
     return proved_at(family, 0.08)
 
 
-def test_enclosures_hold_the_orbit_of_50_digits(proved):
+def test_enclosures_contain_the_orbit_of_50_digits(proved):
     exact = exact_orbit([float(value) for value in proved.enclosure.inner], 0.08)
     for ball, number in zip(proved.enclosure.inner, exact.unknown, strict=True):
         assert holds(ball, number)
@@ -44,7 +44,7 @@ def test_enclosures_hold_the_orbit_of_50_digits(proved):
 
 # Below 0.0757 the end blocks start first.
 @pytest.mark.parametrize("a", [0.05, 0.07, 0.08, 0.0869, 0.15, 0.3])
-def test_enclosures_hold_the_orbit_of_the_double_code(family, a):
+def test_enclosures_contain_the_orbit_in_double_precision(family, a):
     proved, orbit = proved_at(family, a), family.at(a)
     assert float(proved.period) == pytest.approx(orbit.period, abs=1e-13)
     slipping = (LATERAL, CENTER)[proved.arcs[-1].event_block]
@@ -107,7 +107,7 @@ def test_a_shift_along_the_flow_returns(proved):
             assert width(shift) < 1e-45
 
 
-def test_bounds_of_speed_and_force_are_those_of_a_run(proved, family):
+def test_bounds_of_speed_and_force_agree_with_a_run(proved, family):
     state = InitialState("on", *slipping_state(family.at(0.08)))
     run = simulate("linearized", 0.08, state, transient=0.0, window=50.0, batches=2)
     for found, bound in (
@@ -140,7 +140,7 @@ def test_a_ball_of_a_that_is_too_wide_is_refused(family):
         (2, -0.01, "block 2, the arc until block 2 stop: .* no root at its end"),
         # Block 2 would have stopped, and slipped back, before the end of its arc.
         (2, 0.1, "block 2, the arc until block 2 stop: not proved to keep sticking or slipping"),
-        # Blocks 1 and 3 would have started before.
+        # Blocks 1 and 3 would have started earlier.
         (3, 0.1, "blocks 1 and 3, the arc until block 2 start: not proved to keep sticking or slipping"),
     ],
 )

@@ -34,7 +34,7 @@ PROGRAMS = {
 
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_ctrl_c_ends_a_long_chain_at_once(program):
-    """It took 151 s when a call of the kernel was bounded by a number of steps."""
+    """It took 151 s when a call of the kernel was limited only by its number of steps."""
     process = subprocess.Popen(
         [sys.executable, "-c", PROGRAMS[program]], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -57,8 +57,8 @@ def test_ctrl_c_ends_a_long_chain_at_once(program):
         ("window", 3, {"events": "none"}),
     ],
 )
-def test_a_run_that_keeps_too_much_ends_with_one_line(key, numbers, options, monkeypatch):
-    """Of nine numbers an event with states of three blocks, of three an event without them and a section crossing."""
+def test_a_run_that_stores_too_much_ends_with_one_line(key, numbers, options, monkeypatch):
+    """An event of three blocks has nine numbers with states, three without; a section crossing has three."""
     options = {"transient": 0.0, "window": 100.0, "event_window": 100.0, "lyapunov_exponents": 0, **options}
     run = simulate("linearized", 0.08, "plus", **options)
     kept = {9: len(run.event_time), 3: len(run.earlier_event_time) or len(run.crossing_time)}[numbers]
