@@ -47,7 +47,7 @@ def random_state(model: Model, random: np.random.Generator) -> ChainState:
     return ChainState(position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck)
 
 
-def go_on(model: Model, state: ChainState, random: np.random.Generator, loading: str) -> tuple[str, ChainState]:
+def resume(model: Model, state: ChainState, random: np.random.Generator, loading: str) -> tuple[str, ChainState]:
     """Run from a state in a random way; return the way and the state at the end, or the same one if the run failed."""
     solver = str(random.choice(["series", "series", "series", "map", *FIXED_STEP_SOLVERS]))
     blocks, begin = model.blocks, state.time
@@ -129,7 +129,7 @@ def main() -> None:
         state = random_state(model, random)
         for _ in range(random.integers(1, 6)):
             try:
-                way, state = go_on(model, state, random, loading)
+                way, state = resume(model, state, random, loading)
             except ValueError:
                 way = "refused"
             done[way] += 1

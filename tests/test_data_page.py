@@ -1,4 +1,4 @@
-"""docs/data.md describes every variable of every file in the words of the file itself."""
+"""docs/data.md describes every variable of every file as the file itself does."""
 
 import re
 import runpy

@@ -44,7 +44,7 @@ def function(name, call, module=""):
 SWEEP = function("sweep", "sweep('linearized', [0.1, 0.16, 0.2], window=1e7, cores=2)")
 RUNS = "with parallel_map(2) as each: each('runs', slow, [0.1, 0.16, 0.2])"
 PROCESSES = function("parallel_map", RUNS, ".running.processes")
-# Each goes on for minutes.
+# Each would run for minutes.
 PROGRAMS = {
     "run": function("simulate", "slow(0.16)"),
     "fixed steps": function("record_events", "record_events(model, rest, 1e6, solver='euler')"),
@@ -65,7 +65,7 @@ SEVERAL = {
 
 
 def interrupted(command, times, *, begins=True):
-    """Return the exit code of a program, what it said, and the seconds from the first Ctrl-C to its end."""
+    """Return the exit code of a program, its output, and the seconds from the first Ctrl-C to its end."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         if begins:
             assert process.stdout.readline() == "begun\n"
@@ -84,7 +84,7 @@ def interrupted(command, times, *, begins=True):
 
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_ctrl_c_ends_all_that_computes(program):
-    """It takes 0.2 s where a processor is free."""
+    """It takes 0.2 s on a free processor."""
     code, output, seconds = interrupted([sys.executable, "-c", HEAD + PROGRAMS[program]], 1)
     assert code == -signal.SIGINT
     assert output.splitlines()[-1] == "KeyboardInterrupt"
@@ -93,7 +93,7 @@ def test_ctrl_c_ends_all_that_computes(program):
 
 @pytest.mark.parametrize("program", SEVERAL)
 def test_a_second_ctrl_c_does_not_abort(program):
-    """The interpreter may be closing meanwhile, or wait for threads that it did not interrupt."""
+    """The interpreter may be shutting down, or waiting for threads that it did not interrupt."""
     code, output, seconds = interrupted([sys.executable, "-c", HEAD + SEVERAL[program]], 2)
     assert code in (1, -signal.SIGINT)
     assert "terminate called" not in output

@@ -1,4 +1,4 @@
-"""Pages of docs/ print what they say and draw what they show, in the sections that take seconds."""
+"""Pages of docs/: the outputs and pictures of the sections that take seconds are those that their code gives."""
 
 from collections import Counter
 

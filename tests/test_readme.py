@@ -1,4 +1,4 @@
-"""README: the numbers of its table are those of the ledger of the default study, and what it shows exists."""
+"""README: the numbers of its table are those of the default study's ledger, and linked files exist."""
 
 import json
 import re
@@ -58,7 +58,7 @@ def test_the_time_of_the_study_is_that_of_a_dry_run(repository, tmp_path):
         assert f"{minutes} minutes on two cores" in text
 
 
-def test_what_it_shows_and_links_exists(repository):
+def test_pictures_and_linked_files_exist(repository):
     text = (repository / "README.md").read_text(encoding="utf-8")
     for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
         assert (repository / target).exists(), target

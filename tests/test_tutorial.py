@@ -1,4 +1,4 @@
-"""docs/tutorial.md runs as it stands, prints what it says, and draws the pictures that it shows."""
+"""docs/tutorial.md: its code runs, and gives the outputs and pictures of the page."""
 
 import re
 
@@ -27,5 +27,5 @@ def test_the_tutorial_prints_what_it_says(repository, tmp_path, monkeypatch):
     for name in shown:
         mine, committed = (imread(folder / "docs" / name) for folder in (tmp_path, repository))
         assert mine.shape == committed.shape
-        # Another version of the drawing library may shade an edge differently; a curve that is missing makes 0.003.
+        # Another version of matplotlib may shade an edge differently; a missing curve gives 0.003.
         assert np.abs(mine - committed).mean() < 0.001, name

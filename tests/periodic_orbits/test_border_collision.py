@@ -227,7 +227,7 @@ def test_beyond_a_corner_the_orbit_has_other_stops(turn):
     [((3, 2, 3), True), ((2, 2, 2), True), ((3, 2, 2), False), ((2, 2, 3), False), ((0, 0, 0), False)],
 )
 def test_which_branches_continue_from_a_symmetric_corner(turn, beyond, continues):
-    """A branch with its own stops, or without stops, does not continue: less symmetric orbits begin at such a corner."""
+    """A branch with its own stops or none does not continue: less symmetric orbits begin at such a corner."""
     assert turn([beyond] * 24, here=(2, 2, 3))[0] == (beyond if continues else None)
 
 

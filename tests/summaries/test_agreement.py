@@ -47,7 +47,7 @@ def summarized(grid, *found, kind=None):
     return agreement.summarize(grid, kinds, *found, synchronization_threshold=1e-6, agreement=AGREEMENT)
 
 
-def test_without_attractors_nobody_knows_which_runs_settled(compare):
+def test_without_attractors_it_is_undetermined_which_runs_settled(compare):
     grid, known = compare()
     other = summarized(grid)
     assert (other["settled"] == -1).all()
@@ -89,7 +89,7 @@ def test_two_synchronized_laws_agree(compare, runs):
         assert dataset["section_distance"].values[0, 0, k] == float(f"{wasserstein_distance(*upward):.12g}")
         errors = [first.mean_distance_error, other.mean_distance_error]
         assert dataset["mean_distance_error"].values[:, 0, k].tolist() == errors
-        # Under the two laws events occur at different times, but at first in the same order.
+        # Under the two laws events occur at different times, but initially in the same order.
         count, until = dataset["event_order_count"].values[0, 0, k], dataset["event_order_time"].values[0, 0, k]
         assert 4 < count <= min(first.event_count, other.event_count)
         assert 0.0 < until <= 2400.0
@@ -139,9 +139,9 @@ def test_the_order_of_events_is_compared_until_the_first_run_ends(compare, law):
         (0.1981, 0.0, 4, 1),
         (0.1979, 0.0, 4, 0),
         (0.213, 0.005, 4, 1),
-        (0.23, 0.011, 4, -1),  # with errors as wide as that nobody knows
+        (0.23, 0.011, 4, -1),  # undetermined with such large errors
         (0.23, 0.009, 4, 0),
-        # The attractor that the state reaches is not known.
+        # The attractor that the state reaches is unknown.
         (0.2, 0.0, -1, -1),
     ],
 )
@@ -240,7 +240,7 @@ def test_each_law_is_compared_with_the_first(tmp_path):
     assert [row.count(",") for row in rows] == [head.count(",")] * 2
 
 
-def test_one_law_has_nothing_to_be_compared_with(tmp_path):
+def test_a_single_law_is_not_compared(tmp_path):
     dataset = of_laws(tmp_path, {"linearized": {}})
     assert dataset.sizes["other_law"] == 0
     assert agreement.digest(dataset).startswith("The linearized law is the only one: there is nothing to compare.\n")
@@ -255,7 +255,7 @@ def test_one_law_has_nothing_to_be_compared_with(tmp_path):
 @pytest.mark.parametrize(
     ("means", "errors", "kinds", "agrees"),
     [
-        ((1.0, 1.111), (0.0, 0.0), (2, 2), 1),  # a tenth of the larger one
+        ((1.0, 1.111), (0.0, 0.0), (2, 2), 1),  # a tenth of the larger value
         ((1.111, 1.0), (0.0, 0.0), (2, 2), 1),
         ((1.0, 1.112), (0.0, 0.0), (2, 2), 0),
         # Within three errors of the tolerance, here 0.15, the verdict is undetermined.
@@ -265,7 +265,7 @@ def test_one_law_has_nothing_to_be_compared_with(tmp_path):
         ((2.0, 2.07), (0.03, 0.04), (2, 2), -1),
         ((1.0, 1.0), (0.03, 0.04), (2, 2), -1),
         ((1.0, 1.0), (0.0, np.nan), (2, 2), -1),
-        ((0.0, 1e-6), (0.0, 0.0), (0, 0), 1),  # no more than the threshold of synchrony
+        ((0.0, 1e-6), (0.0, 0.0), (0, 0), 1),  # at most the threshold of synchrony
         ((0.0, 2e-6), (0.0, 0.0), (1, 1), 0),
         ((0.0, 3e-7), (3e-7, 0.0), (0, 0), 1),  # synchrony, however slowly it is approached
         ((0.0, 3e-7), (3e-7, 0.0), (1, 1), -1),

@@ -33,7 +33,7 @@ def test_a_sweep_ends_on_the_branch(families, law):
     assert sweep(families[law], np.array([orbit.a])) == pytest.approx([1e-2], abs=1e-9)
 
 
-def test_beyond_where_end_blocks_no_longer_stick_together_a_sweep_tells_nothing(families):
+def test_a_sweep_gives_nan_where_end_blocks_do_not_stick_together(families):
     found = sweep(families["linearized"], np.array([0.08, 0.25, 0.08]))
     assert np.isnan(found).tolist() == [False, True, True]
 

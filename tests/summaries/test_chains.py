@@ -49,7 +49,7 @@ def compared():
     return two_blocks.summarize(models(2, LAWS), STATES, GRID, SETTINGS, SEARCH, MOTION, AGREEMENT)
 
 
-def test_runs_for_the_order_of_events_sample_nothing_before_their_end():
+def test_runs_for_the_order_of_events_store_no_samples_before_their_end():
     assert SETTINGS.sampling == 1900.0
 
 
@@ -82,7 +82,7 @@ def test_fractions_count_outcomes(files):
     assert "blocks" not in point.attrs
 
 
-def test_files_of_other_settings_do_not_mix(files):
+def test_files_of_different_settings_are_not_merged(files):
     path = files[0].with_name("other.nc")
     write_summary(chain_file(3, 200.0), path)
     with pytest.raises(ValueError, match=r"other\.nc: made with settings that differ"):
@@ -104,7 +104,7 @@ def test_two_blocks_agree_where_both_synchronize(compared):
     assert len(np.unique(compared["agreeing_fraction"])) > 1
 
 
-def test_states_for_which_it_is_not_known_whether_laws_agree_count_either_way():
+def test_undetermined_agreement_widens_the_interval():
     fraction, low, high = two_blocks.agreeing_fraction(np.array([1, 1, 0, -1, -1, -1, 0, 1]))
     assert fraction == 3 / 8
     assert (low, high) == (fraction_interval(3, 8)[1], fraction_interval(6, 8)[2])
@@ -115,7 +115,7 @@ def train_model(model):
     return replace(model, chain=Chain(2, pulling=(1.0, 0.0)))
 
 
-def test_two_blocks_are_what_their_states_end_on(compared):
+def test_two_blocks_are_described_by_their_asymptotic_motion(compared):
     """Kind and ⟨J⟩ belong to the asymptotic motion, the order of events to the run from the start."""
     chains_of = [train_model, lambda law: law]
     for (c, chain), (j, state), (k, a) in product(enumerate(chains_of), enumerate(STATES), enumerate(GRID)):
@@ -141,7 +141,7 @@ def test_two_blocks_are_what_their_states_end_on(compared):
     assert compared["state"].values.tolist() == [1, 2]
 
 
-def test_one_law_has_nothing_to_be_compared_with():
+def test_a_single_law_is_not_compared():
     given = two_blocks.run_settings(transient=200.0, window=100.0), SEARCH, MOTION, AGREEMENT
     alone = two_blocks.summarize(models(2, ["exponential"]), STATES[:1], [0.03], *given)
     assert alone["agrees"].shape == (2, 0, 1, 1)

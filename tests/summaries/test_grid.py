@@ -33,7 +33,7 @@ def per_velocity(found):
     return (found["mean_distance"] / found["v"]).values
 
 
-def test_each_point_is_the_run_of_its_parameters(tmp_path):
+def test_each_point_has_the_run_of_its_parameters(tmp_path):
     found = summary(tmp_path, "nonlinear", coupling=[0.5, 2.0], a=[0.1, 0.4])
     assert found["lyapunov_exponent"].dims == ("coupling", "a", "exponent")
     for coupling in (0.5, 2.0):
@@ -45,7 +45,7 @@ def test_each_point_is_the_run_of_its_parameters(tmp_path):
 
 
 def test_only_end_blocks_of_one_mass_synchronize(tmp_path):
-    """A chain that is its own mirror image at one of the masses only, in either order."""
+    """The chain is its own mirror image only at one of the masses, in either order."""
     found = summary(tmp_path, "linearized", InitialState("same", (-0.9, -0.9), (0.1, 0.1)), a=[0.01], **MASSES)
     assert found["mean_distance"].dims == ("a", "mass_2")
     assert found["mass_2"].values.tolist() == [0.999999999, 1.0]

@@ -20,7 +20,7 @@ SHORT = {"transient": 50.0, "window": 50.0, "batches": 2}
     ("distance", "expected"),
     [
         ([1.0, 0.5, 0.05, 0.005], 15.0),
-        ([1.0, 0.005, 0.05, 0.005], 15.0),  # comes back once
+        ([1.0, 0.005, 0.05, 0.005], 15.0),  # rises above the level once
         ([1.0, 0.005, 0.001, 0.0], 5.0),
         ([0.001, 0.001, 0.001, 0.001], 0.0),
         ([0.001, 0.001, 0.001, 0.01], np.nan),  # at the level is not below it
@@ -82,7 +82,7 @@ def same_section(trajectory, **values):
 
 @pytest.mark.parametrize(("thresholds", "synchronized"), [([1.0, 1.1, 1.0], 1), ([1.0, 1.0, 1.1], 0)])
 def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresholds, synchronized):
-    """Whatever J is: here runs of the third block have been given that of synchrony."""
+    """This holds whatever J is: here the runs have been given the J of synchrony."""
     models = {"laws": {"linearized": {}}, "chain": {**PAPER_MODELS["chain"], "threshold": thresholds}}
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, models, **SHORT)
     given = {"mean_distance": 1e-9, "lyapunov_exponent": np.array([0.0, -0.1, -0.2])}
@@ -94,7 +94,7 @@ def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresh
     assert kind.item() == (MotionKind.SYNCHRONIZED if synchronized else MotionKind.PERIODIC)
 
 
-#: {a: exponents, upward section points, status of a run, and the kind, the zero exponents and the period they tell}.
+#: {a: exponents, upward section points, status of a run, and the resulting kind, zero exponents and period}.
 ORBIT = np.random.default_rng(1).random(150)
 GOLDEN = np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(1200))
 RUNS = {
@@ -109,7 +109,7 @@ RUNS = {
 
 @pytest.fixture
 def points(tmp_path):
-    """Points whose every second section point is a downward one, at −1, −2, …"""
+    """Points whose section points are alternately upward and downward, the latter at −1, −2, …"""
 
     def alter(trajectory):
         exponent, upward, status, *_ = RUNS[trajectory.model.a]
@@ -142,7 +142,7 @@ def test_section_points_are_kept_run_by_run(points):
     assert found["a"].values.tolist() == 4 * list(RUNS)
     assert found["law"].values.tolist() == ["linearized"] * 10 + ["nonlinear"] * 10
     assert found["initial"].values.tolist() == 2 * (["minus"] * 5 + ["plus"] * 5)
-    # Each run of the second state and law has velocities of its own.
+    # Each run of the second state and law has its own velocities.
     chosen = (found["law"].values == "nonlinear") & (found["initial"].values == "plus")
     chosen = np.repeat(chosen, found["crossing_count"].values)
     found["crossing_velocity"].values[chosen] *= 2.0

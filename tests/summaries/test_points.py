@@ -45,7 +45,7 @@ def test_a_grid_is_its_points_in_order(grid, tmp_path):
     assert Grid.from_points(tmp_path, given) == grid
 
 
-def test_points_are_read(grid):
+def test_points_are_read_back(grid):
     read = read_point(grid, POINT, ["mean_distance", "time", *EVENTS])
     whole = open_point(grid, *POINT)
     for name, values in read.items():

@@ -30,7 +30,7 @@ def linearized(found):
 
 
 @pytest.mark.parametrize("model", [PAPER, NONLINEAR], ids=["linearized", "nonlinear"])
-def test_every_interval_is_about_the_number_of_the_double_code(found, model):
+def test_every_interval_agrees_with_double_precision(found, model):
     family, of_law = synchronized_orbits(model), found.sel(law=model.law.name)
     a_c = critical_a(bifurcations_of(family))
     for name, a in (("given", 0.08), ("critical", a_c)):
@@ -49,7 +49,7 @@ def test_every_interval_is_about_the_number_of_the_double_code(found, model):
     assert of_law["critical_a"].values == pytest.approx([a_c] * 2, abs=2e-15)
 
 
-def test_intervals_are_narrow_and_open_to_the_right_sides(found):
+def test_intervals_are_narrow_and_rounded_outward(found):
     for name in ("critical_a", "a", "period", "event_time", "position", "multiplier", "multiplier_slope"):
         low, high = (found[name].sel(end=end).values for end in proof.END)
         assert (low <= high).all()
@@ -85,7 +85,7 @@ def test_the_text_has_the_numbers_and_the_assumptions(found):
     assert max(map(len, text.splitlines())) <= 120
 
 
-def test_the_same_bytes(linearized, tmp_path):
+def test_the_file_is_reproducible(linearized, tmp_path):
     for name in ("one", "other"):
         dataset = proof.summarize([PAPER])
         write_summary(dataset, tmp_path / f"{name}.nc")

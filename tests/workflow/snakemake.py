@@ -19,8 +19,8 @@ from pathlib import Path
 #: Of the package and of the display, in this checkout.
 SOURCES = Path(__file__).parents[2] / "src"
 
-#: Does each call that comes through a socket in a fork, and answers with the number of its process and its exit code.
-#: Several may run at a time: for each there is another fork that waits for it.
+#: Executes each call from a socket in a fork, and answers with the number of the process and its exit code.
+#: Several may run at a time; another fork waits for each of them.
 SERVE = """
 import gc, json, os, signal, socket, sys
 def become(call):
@@ -109,10 +109,9 @@ serve(calls, lambda call: runpy.run_path(sys.argv[0], run_name="__main__"))
 
 @cache
 def _servers(seed: str) -> tuple[socket.socket, socket.socket]:
-    """Return where calls of Snakemake are sent to, with the sources of another checkout and with those of this one.
+    """Return the sockets for calls of Snakemake with the sources of another checkout and with those of this one.
 
-    The processes end with this one, which alone has these ends.
-    seed : of the order in which sets are walked
+    The processes end with this one, which alone holds these sockets. seed : of the order of iteration over sets
     """
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": seed}
     pairs = (socket.socketpair(type=socket.SOCK_SEQPACKET) for _ in range(4))
@@ -136,7 +135,7 @@ class Fork:
 
         environment : of the run; PYTHONPATH leads to the package
         written : files of standard output and error
-        own_group : whether it begins a group of processes, to which its jobs will belong
+        own_group : whether it starts a process group, to which its jobs will belong
         """
         call = {"command": command, "folder": str(folder), "environment": dict(environment), "own_group": own_group}
         call |= {"written": [*map(str, written)], "group": os.getpgrp()}
@@ -171,7 +170,7 @@ class Fork:
 def run_snakemake(
     command: Sequence[str], folder: Path, environment: Mapping[str, str]
 ) -> subprocess.CompletedProcess[str]:
-    """Do what the command line does, in a folder, to its end; standard output and error are captured.
+    """Execute a command line in a folder; standard output and error are captured.
 
     environment : of the run; PYTHONPATH leads to the package
     """

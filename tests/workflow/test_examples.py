@@ -1,7 +1,6 @@
 """The example studies of docs/studies.md and docs/published.md through the real Snakefile.
 
-What they print, and the physics that they show. Only what the pages read is made; figures of studies are tested
-elsewhere.
+The tests check their outputs and the physics. Only results that the pages read are made; figures are tested elsewhere.
 """
 
 import numpy as np
@@ -49,7 +48,7 @@ def test_every_example_is_tested():
     assert names == set(TARGETS)
 
 
-def test_velocity_is_a_scale_of_the_linearized_law_only(tmp_path, monkeypatch):
+def test_velocity_is_a_scale_only_under_the_linearized_law(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("velocity", tmp_path))
     check_page("studies.md", "Another velocity of the driver")
     mean = opened(tmp_path, "mean_distance")["mean_distance"]
@@ -66,7 +65,7 @@ def test_velocity_is_a_scale_of_the_linearized_law_only(tmp_path, monkeypatch):
     assert synchronized.values.tolist() == [False, True]
 
 
-def test_history_is_more_than_a_distance(tmp_path, monkeypatch):
+def test_outcomes_alternate_along_a_line_of_initial_states(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("history", tmp_path))
     check_page("studies.md", "Other initial states")
     check_page("tutorial.md", FROM_FILES)

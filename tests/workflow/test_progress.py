@@ -13,7 +13,7 @@ POINTS = [f"results/tiny/points/{law}/plus/a0.0{a}00.nc" for law in ("linearized
 
 
 def on_a_terminal(command, folder, until=None):
-    """Run a command on a pseudo terminal; return its exit code and what it wrote, after Ctrl-C once `until` matches."""
+    """Run a command on a pseudo terminal, with Ctrl-C once `until` matches; return its exit code and output."""
     main, side = pty.openpty()
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "NO_COLOR"))}
     process = subprocess.Popen(
@@ -37,7 +37,7 @@ def on_a_terminal(command, folder, until=None):
         written += chunk
         if until and re.search(until, written):
             until = None
-            # As the terminal does it: to all of its foreground processes.
+            # Like a terminal, send it to all foreground processes.
             os.killpg(process.pid, signal.SIGINT)
     os.close(main)
     return process.wait(), written.decode()
@@ -61,13 +61,13 @@ def test_a_terminal_shows_stages_and_time_left(study):
     assert re.search(r"^16 jobs: points 16; (about .*|a few seconds) on 2 cores$", text, re.MULTILINE)
     assert "files made in results/tiny: points 16" in text
     assert "Select jobs to execute" not in text
-    # The cursor is given back.
+    # The cursor is restored.
     assert written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l") > 0
 
 
 @pytest.mark.slow
 def test_interrupted_on_a_terminal(study):
-    # Points that take minutes, and the time in which two of them have started: it is their runs that are interrupted.
+    # Points that take minutes, and time for two of them to start, so that their runs are interrupted.
     command = study.command("points", "--config", "window=1e7")
     code, written = on_a_terminal(command, study.folder, until=rb" ([6-9]|\d\d) s so far")
     text = plain(written)
@@ -94,7 +94,7 @@ def test_without_a_terminal(finished):
     closing = [line.split(":")[0] for line in lines[begin + 1 : end]]
     closing.remove("the figures of the paper are in results/tiny/figures")
     assert closing == [*progress, "Complete log(s)"]
-    # Of which there is none in the first ten seconds.
+    # There is no estimate in the first ten seconds.
     minutes, seconds = re.search(r"done in (?:(\d+) min )?(\d+) s", lines[end]).groups(default="0")
     if 60 * int(minutes) + int(seconds) > 20:
         assert progress
@@ -152,7 +152,7 @@ def test_failed_jobs_are_named_with_their_logs(copy):
     assert "Error in rule" not in run.stderr
 
 
-def test_no_defect_of_the_last_lines_fails_a_run(copy):
+def test_an_error_in_the_closing_lines_does_not_fail_a_run(copy):
     summary = copy.folder / "results" / "tiny" / "summary" / "mean_distance.nc"
     times = summary.stat()
     summary.write_text("damaged")
@@ -178,12 +178,17 @@ def test_a_dry_run_ends_with_a_table_of_its_stages(study):
 
 
 def test_values_that_change_results_in_place_are_announced(study):
-    """Until the results are theirs; not if they are of a study of their own."""
+    """They are announced until the results have these values, but not for a study of another name."""
     line = "--config window: results/tiny will hold the results of the changed config in place of those of "
     target = "results/tiny/figures/sketch.png"
     changed = target, "--config", "window=300"
-    for run, is_said in ((["-n", *changed], True), (changed, True), (["-n", *changed], False), (["-n", target], False)):
-        assert (line in study.ok(*run)) is is_said, run
+    for run, is_announced in (
+        (["-n", *changed], True),
+        (changed, True),
+        (["-n", *changed], False),
+        (["-n", target], False),
+    ):
+        assert (line in study.ok(*run)) is is_announced, run
     assert line not in study.ok("-n", "results/other/figures/sketch.png", "--config", "window=300", "study=other")
 
 

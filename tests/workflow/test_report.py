@@ -69,14 +69,14 @@ def test_every_figure_and_text_has_its_category_and_caption(report, finished, re
     assert unused == {"figure", "workflow", "edges_txt"}
 
 
-def test_every_caption_is_sound(repository):
-    """Also those of optional stages."""
+def test_every_caption_is_valid(repository):
+    """This includes captions of optional stages."""
     texts = [path.read_text() for path in (repository / "workflow" / "report").glob("*.rst")]
     for text in (*texts, *(figure.caption_of({"initial": "minus"}) for figure in figure_descriptions())):
         assert publish_doctree(text, settings_overrides={"halt_level": 2}).astext()
 
 
-def test_the_zip_holds_the_same_files(finished, tmp_path):
+def test_the_zip_contains_the_same_files(finished, tmp_path):
     finished.ok("--report", str(tmp_path / "report.zip"))
     with zipfile.ZipFile(tmp_path / "report.zip") as archive:
         names = [name.rsplit("/", 1)[1] for name in archive.namelist()]

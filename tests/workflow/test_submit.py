@@ -1,4 +1,4 @@
-"""The programs that submit jobs, with prepared answers of Slurm: none, a lost one, or a refusal."""
+"""The programs that submit jobs, with scripted answers of Slurm: none, a lost one, or a refusal."""
 
 import importlib
 import json
@@ -32,7 +32,7 @@ def slurm(monkeypatch, tmp_path):
     monkeypatch.setattr(modules["jobs"], "PAUSE", 0.0)
 
     def script_answers(**answers):
-        """Let each program of Slurm give its answers in turn; return the commands that come."""
+        """Let each program of Slurm give its answers in turn; return the list of commands."""
         left, asked = {name: iter(each) for name, each in answers.items()}, []
 
         def ask(*command, **_):
@@ -90,7 +90,7 @@ def test_a_job_whose_answer_was_lost_is_not_submitted_twice(slurm, monkeypatch, 
     ],
     ids=["refused", "silent for good"],
 )
-def test_what_is_refused_or_never_answered_ends_with_one_line(slurm, monkeypatch, capsys, answer, patience, words):
+def test_a_refused_or_unanswered_submission_ends_with_one_line(slurm, monkeypatch, capsys, answer, patience, words):
     modules, script_answers = slurm
     monkeypatch.setattr(modules["jobs"], "PATIENCE", patience)
     asked = script_answers(squeue=[(0, "", "")], sbatch=[answer])
@@ -106,13 +106,13 @@ def test_what_is_refused_or_never_answered_ends_with_one_line(slurm, monkeypatch
     [
         (SILENT, None, 60.0, "running"),
         ((0, "JobName=wait-1 JobState=PENDING\n", ""), None, 60.0, "running"),
-        # Its files may not be seen yet.
+        # Its files may not be visible yet.
         ((1, "", "slurm_load_jobs error: Invalid job id specified\n"), None, 60.0, "running"),
         ((1, "", "slurm_load_jobs error: Invalid job id specified\n"), None, 0.0, "failed"),
         ((0, "JobName=wait-1 JobState=TIMEOUT\n", ""), None, 60.0, "failed"),
         ((0, "JobName=wait-1 JobState=COMPLETED\n", ""), "3", 60.0, "failed"),
         ((0, "JobName=wait-1 JobState=COMPLETED\n", ""), "0", 60.0, "success"),
-        # Slurm counts from 1 again: the number is that of another job.
+        # Slurm has restarted its numbering: the number is that of another job.
         ((0, "JobName=other JobState=RUNNING\n", ""), "0", 60.0, "success"),
     ],
 )
