@@ -1,4 +1,4 @@
-"""Random runs of random chains, each from where the last one ended: `make sanitize` lets sanitizers watch the kernel.
+"""Random runs of random chains, each continuing the previous one, for the sanitizers of `make sanitize`.
 
     python benchmarks/random_runs.py [SECONDS] [FIRST_SEED]
 
@@ -118,7 +118,7 @@ def move_together(model: Model, random: np.random.Generator) -> str:
 
 
 def main() -> None:
-    """Make random runs for some seconds and tell how many there were."""
+    """Make random runs for some seconds and print their number."""
     seconds, seed = (int(word) for word in [*sys.argv[1:], "120", "0"][:2])
     done: Counter[str] = Counter()
     stop = time.monotonic() + seconds
