@@ -64,7 +64,7 @@ SEVERAL = {
 }
 
 
-def interrupted(command, times, *, begins=True):
+def run_interrupted(command, times, *, begins=True):
     """Return the exit code of a program, its output, and the seconds from the first Ctrl-C to its end."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         if begins:
@@ -85,7 +85,7 @@ def interrupted(command, times, *, begins=True):
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_ctrl_c_ends_all_that_computes(program):
     """It takes 0.2 s on a free processor."""
-    code, output, seconds = interrupted([sys.executable, "-c", HEAD + PROGRAMS[program]], 1)
+    code, output, seconds = run_interrupted([sys.executable, "-c", HEAD + PROGRAMS[program]], 1)
     assert code == -signal.SIGINT
     assert output.splitlines()[-1] == "KeyboardInterrupt"
     assert seconds < 10
@@ -94,7 +94,7 @@ def test_ctrl_c_ends_all_that_computes(program):
 @pytest.mark.parametrize("program", SEVERAL)
 def test_a_second_ctrl_c_does_not_abort(program):
     """The interpreter may be shutting down, or waiting for threads that it did not interrupt."""
-    code, output, seconds = interrupted([sys.executable, "-c", HEAD + SEVERAL[program]], 2)
+    code, output, seconds = run_interrupted([sys.executable, "-c", HEAD + SEVERAL[program]], 2)
     assert code in (1, -signal.SIGINT)
     assert "terminate called" not in output
     assert seconds < 10
@@ -104,7 +104,7 @@ def test_a_second_ctrl_c_does_not_abort(program):
 def test_ctrl_c_ends_a_command(times, tmp_path):
     options = "--law linearized --a 0.08 --pixels 1500 --threads 2 --samples 2 --transient 500 --window 500"
     command = [BK, "basins", *options.split(), "--out", tmp_path / "basins.nc"]
-    code, output, seconds = interrupted(command, times, begins=False)
+    code, output, seconds = run_interrupted(command, times, begins=False)
     assert code in (130, -signal.SIGINT) if times == 1 else code != -signal.SIGABRT
     assert output.splitlines()[-1] in ("bk basins: interrupted, nothing was written", "KeyboardInterrupt")
     assert seconds < 10

@@ -32,7 +32,7 @@ def bomb(depth):
     return value
 
 
-def nested(depth):
+def nested_list(depth):
     value = []
     for _ in range(depth):
         value = [value]
@@ -79,7 +79,7 @@ def test_a_key_is_one_line(key, name):
         lambda: b"x" * 10_000_000,
         lambda: bomb(60),
         lambda: {"a": bomb(60), "b": bomb(60)},
-        lambda: nested(100_000),
+        lambda: nested_list(100_000),
         endless,
         lambda: list(range(10**6)),
         lambda: set(range(10**6)),

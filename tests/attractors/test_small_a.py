@@ -116,7 +116,7 @@ def test_energy_has_a_maximum_at_three_vertices() -> None:
     np.testing.assert_allclose(energies, [0, 3 - root, 2, 9 - 4 * root, 9 - 4 * root, 6 - 2 * root], atol=1e-12)
 
 
-def averaged(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
+def averaged_amplitudes(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
     """Return amplitudes of the averaged equations at some times, by steps that are projected back."""
     found, clock, steps = [], 0.0, 2000
     for time in times:
@@ -134,7 +134,7 @@ def averaged(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-def simulated(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
+def simulated_amplitudes(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
     """Return amplitudes of a simulation, means over the 40 time units before each time."""
     phase = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, 3)
     position, velocity = SHAPE @ (V * amplitude / FREQUENCY * np.sin(phase)), SHAPE @ (V * amplitude * np.cos(phase))
@@ -166,7 +166,7 @@ def simulated(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
 )
 def test_amplitudes_follow_the_averaged_equations(start: tuple[float, ...], end: np.ndarray) -> None:
     times = np.array([500.0, 1000.0, 2000.0, 4000.0, 8000.0])
-    expected, found = (of(np.array(start), 0.001, times) for of in (averaged, simulated))
+    expected, found = (of(np.array(start), 0.001, times) for of in (averaged_amplitudes, simulated_amplitudes))
     np.testing.assert_allclose(expected[-1], end, atol=2e-3)
     np.testing.assert_allclose(found[-1], end, atol=0.02)
     assert np.abs(found - expected).max() < 0.1

@@ -4,13 +4,13 @@ import numpy as np
 
 from burridge_knopoff.catalogue.distribution import covered_blocks, fit_range, recurrence
 from burridge_knopoff.catalogue.slope import fit_slope
-from tests.catalogue.test_slope import drawn
+from tests.catalogue.test_slope import draw_magnitudes
 
 
 def parts():
     """Return magnitudes and blocks of events of one block, of a power law, and of large events beyond a gap."""
     single = np.random.default_rng(1).normal(-6.2, 0.05, 5000)
-    several = drawn(0.7, -5.0, 1.0, 3000, 2)
+    several = draw_magnitudes(0.7, -5.0, 1.0, 3000, 2)
     large = np.random.default_rng(3).normal(4.2, 0.3, 200)
     blocks = np.concatenate([np.ones(5000, dtype=int), np.full(3000, 4), np.full(200, 50)])
     return np.concatenate([single, several, large]), blocks
@@ -42,7 +42,7 @@ def test_the_range_begins_where_the_rate_no_longer_bends():
     """Small events are missing, by a normal distribution around −1: a range from the mode gives too low a slope."""
     slopes = []
     for seed in range(40):
-        everything = drawn(0.8, -6.0, 6.0, 40_000, seed)
+        everything = draw_magnitudes(0.8, -6.0, 6.0, 40_000, seed)
         chance = np.random.default_rng(100 + seed).normal(-1.0, 0.25, len(everything))
         magnitude = everything[chance < everything]
         fit = fit_slope(magnitude, *fit_range(magnitude, np.ones(len(magnitude)), np.full(len(magnitude), 2), high=4.0))

@@ -7,7 +7,7 @@ from burridge_knopoff import Chain, ChainState, Model, event_exponents, event_mu
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
-from tests.kernel.test_catalogue import recorded
+from tests.kernel.test_catalogue import record_catalogue
 from tests.kernel.test_quasistatic import next_event
 
 
@@ -42,7 +42,7 @@ def test_exponents_under_quasistatic_loading_are_those_of_the_maps_from_event_to
     start, begin, end = rough(model), 2.0, 2.0 + 60.0 / blocks
     found = event_exponents(model, start, end, begin=begin, count=blocks, loading="quasistatic")
     # The run is computed as a whole, like the perturbations; in chaos a run in groups would diverge from it.
-    time = recorded(model, start, end, False, loading="quasistatic")[0]["time"]
+    time = record_catalogue(model, start, end, False, loading="quasistatic")[0]["time"]
     before, seen = time[time < begin], time[time >= begin]
     assert found.events == len(seen) > 20
     # Moments of rest before and after each event; the perturbations align until the window begins.

@@ -16,7 +16,7 @@ def pair(place, ahead, mean=0.1):
     return [first, replace(first, motion=first.motion.mirrored(), partner=0)]
 
 
-def followed(found, memory):
+def follow_branches(found, memory):
     """Return the branches, and sides, of attractors at a = 0.1, 0.2, …"""
     numbers = branches([(k + 1) / 10 for k in range(len(found))], found, range(len(found)), memory, Matcher(1.0))
     return tuple([row.tolist() for row in values] for values in numbers)
@@ -88,7 +88,7 @@ def test_branches_are_matched_across_a_pitchfork():
     before = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0), at(1.0, partner=1, mean_distance=0.14)]
     after = [*pair(0.0, -0.005, mean=0.01), at(1.001, partner=2, mean_distance=0.15)]
     later = [*pair(0.0, 0.006, mean=0.01), at(1.002, partner=2, mean_distance=0.15)]
-    branch, side = followed([before, after, later], 0.2)
+    branch, side = follow_branches([before, after, later], 0.2)
     assert branch == [[0, 1], [2, 2, 1], [2, 2, 1]]
     # The one that is closer to the first of the previous pair has its side.
     assert side == [[0, 0], [-1, 1, 0], [1, -1, 0]]
@@ -99,18 +99,18 @@ def test_the_side_is_that_of_the_end_block_ahead_in_position():
     faster = np.array([0.0, 0.0, 0.0, 0.3, 0.0, 0.0])
     own, mirrored = first.motion.returns + faster, first.motion.mirror_returns + faster[[2, 1, 0, 5, 4, 3]]
     first = replace(first, motion=replace(first.motion, returns=own, mirror_returns=mirrored))
-    assert followed([[first, replace(first, motion=first.motion.mirrored(), partner=0)]], 0.2)[1] == [[1, -1]]
+    assert follow_branches([[first, replace(first, motion=first.motion.mirrored(), partner=0)]], 0.2)[1] == [[1, -1]]
 
 
 def test_an_attractor_that_has_vanished_is_remembered_for_a_while():
     there, else_where = at(0.0), at(1.0)
     found = [[there], [else_where], [there], [else_where], [else_where]]
-    assert followed(found, 0.2)[0] == [[1], [2], [1], [2], [2]]
-    assert followed(found, 0.1)[0] == [[1], [2], [3], [4], [4]]
+    assert follow_branches(found, 0.2)[0] == [[1], [2], [1], [2], [2]]
+    assert follow_branches(found, 0.1)[0] == [[1], [2], [3], [4], [4]]
     # Branches at the previous value are matched first.
-    assert followed([[there], [at(0.015)], [at(0.012)]], 0.2)[0] == [[1], [1], [1]]
+    assert follow_branches([[there], [at(0.015)], [at(0.012)]], 0.2)[0] == [[1], [1], [1]]
     # A value without attractors does not end a branch.
-    assert followed([[there], [], [there]], 0.2)[0] == [[1], [], [1]]
+    assert follow_branches([[there], [], [there]], 0.2)[0] == [[1], [], [1]]
 
 
 def test_an_unchanged_branch_keeps_its_number_across_inserted_values():
@@ -131,10 +131,10 @@ def test_an_unchanged_branch_keeps_its_number_across_inserted_values():
 def test_branches_are_numbered_by_their_mean_distance():
     """At one a in the order of ⟨J⟩; the motion that replaces synchrony is another branch."""
     first = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.3, 0.1, 0.2))]
-    assert followed([first], 1.0) == ([[3, 1, 2]], [[0, 0, 0]])
+    assert follow_branches([first], 1.0) == ([[3, 1, 2]], [[0, 0, 0]])
     # If ⟨J⟩ differs by rounding only, attractors keep the order in which they were found.
     for apart, numbers in ((1e-9, [1, 2, 3]), (2e-6, [2, 1, 3])):
         alike = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.1 + apart, 0.1, 0.2))]
-        assert followed([alike], 1.0)[0] == [numbers]
+        assert follow_branches([alike], 1.0)[0] == [numbers]
     still = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0)]
-    assert followed([still, first[:1], still], 0.1)[0] == [[0], [1], [0]]
+    assert follow_branches([still, first[:1], still], 0.1)[0] == [[0], [1], [0]]

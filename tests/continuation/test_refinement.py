@@ -34,13 +34,13 @@ def values():
     return insert_values
 
 
-def after(change, before, later):
+def changing_at(change, before, later):
     """Return attractors that change at one a."""
     return lambda a: list(before if a < change else later)
 
 
 def test_bisection_ends_at_the_resolution(values):
-    change = after(0.3, [at(STILL)], [at(STILL, section_period=2)])
+    change = changing_at(0.3, [at(STILL)], [at(STILL, section_period=2)])
     found, asked = values(change)
     assert found == BISECTED
     assert {call[2:] for call in asked} == {(1, False)}
@@ -53,7 +53,7 @@ def test_bisection_ends_at_the_resolution(values):
 def test_no_value_is_inserted_where_nothing_changes(values):
     """Nor is one inserted next to a value without attractors, such as a = 0."""
     for before, later in (([at(STILL)], [at(STILL)]), ([], [at(STILL)]), ([at(STILL)], [])):
-        assert values(after(0.5, before, later)) == ([], [])
+        assert values(changing_at(0.5, before, later)) == ([], [])
 
 
 def test_windows_between_values_are_refined_on_both_sides(values):
@@ -68,7 +68,7 @@ def test_windows_between_values_are_refined_on_both_sides(values):
 
 def test_only_changing_attractors_are_followed(values):
     """Unchanged attractors are not followed, and a seed that has reached one does not count as a change."""
-    found, asked = values(after(0.3, [at(STILL), at(OTHER, partner=1)], [at(STILL)]))
+    found, asked = values(changing_at(0.3, [at(STILL), at(OTHER, partner=1)], [at(STILL)]))
     assert found == BISECTED
     for _, seeds, *_ in asked:
         assert seeds == pytest.approx([OTHER], abs=1e-3)
@@ -86,4 +86,4 @@ def test_only_changing_attractors_are_followed(values):
     ],
 )
 def test_every_difference_of_attractors_counts(values, later, found):
-    assert values(after(0.3, [at(STILL)], [later]))[0] == found
+    assert values(changing_at(0.3, [at(STILL)], [later]))[0] == found

@@ -18,7 +18,7 @@ VARIABLES = {
 }
 
 
-def made(count=64, **attributes):
+def make_summary(count=64, **attributes):
     values = {"value": np.arange(2.0 * count).reshape(2, count), "verdict": [2.0] * count, "other": 1}
     coordinates = axes(law=["linearized", "nonlinear"], a=np.arange(count) / 8)
     module = "burridge_knopoff.summaries.lyapunov"
@@ -26,7 +26,7 @@ def made(count=64, **attributes):
 
 
 def test_the_dataset_has_the_described_variables():
-    found = made()
+    found = make_summary()
     assert list(found.data_vars) == ["value", "verdict"]
     assert found["value"].dims == ("law", "a")
     assert found["value"].values[1].tolist() == list(range(64, 128))
@@ -51,15 +51,15 @@ def test_the_dataset_has_the_described_variables():
     assert list(found.attrs)[:4] == list(head)[:4]
     assert {key: found.attrs[key] for key in head} == head
     assert found.attrs["source_module"] == "burridge_knopoff.summaries.lyapunov"
-    assert made(history="by hand").attrs["history"] == "by hand"
+    assert make_summary(history="by hand").attrs["history"] == "by hand"
     # The title of a part is not taken for that of the whole.
-    assert made(title="A part", summary="A part.", source_module="other").attrs == found.attrs
+    assert make_summary(title="A part", summary="A part.", source_module="other").attrs == found.attrs
 
 
 def test_a_written_summary_is_read_back(tmp_path):
     for name, count in (("one.nc", 64), ("two.nc", 64), ("short.nc", 63)):
-        write_summary(made(count), tmp_path / name)
-        assert open_summary(tmp_path / name).drop_attrs().identical(made(count).drop_attrs())
+        write_summary(make_summary(count), tmp_path / name)
+        assert open_summary(tmp_path / name).drop_attrs().identical(make_summary(count).drop_attrs())
         with netCDF4.Dataset(tmp_path / name) as file:
             # Short arrays are not worth compressing.
             assert file["verdict"].filters()["zlib"] == (count >= 64)
@@ -79,7 +79,7 @@ print(*file["law"].values)
 
 def test_a_file_is_opened_again_while_it_is_open(tmp_path):
     """A cell of a notebook that runs again does this; HDF5 crashes if texts have variable length."""
-    write_summary(made(), tmp_path / "one.nc")
+    write_summary(make_summary(), tmp_path / "one.nc")
     run = subprocess.run(
         [sys.executable, "-c", OPEN_AGAIN, tmp_path / "one.nc"], capture_output=True, text=True, check=False
     )
@@ -87,7 +87,7 @@ def test_a_file_is_opened_again_while_it_is_open(tmp_path):
 
 
 def test_files_that_are_not_present_summaries_are_refused(tmp_path):
-    other, bare = made(source_module="other"), made()
+    other, bare = make_summary(source_module="other"), make_summary()
     other.attrs["source_fingerprint"] = "0" * 16
     write_summary(other, tmp_path / "other.nc")
     with pytest.raises(BadFile, match=r"other.nc: was made by other sources \(burridge_knopoff.*lyapunov 0{16}, now"):
@@ -96,7 +96,7 @@ def test_files_that_are_not_present_summaries_are_refused(tmp_path):
     for name, reason in (("bare.nc", "is truncated, or was not written by this program"), ("missing.nc", "is missing")):
         with pytest.raises(BadFile, match=reason):
             open_summary(tmp_path / name)
-    write_summary(made(), tmp_path / "cut.nc")
+    write_summary(make_summary(), tmp_path / "cut.nc")
     (tmp_path / "cut.nc").write_bytes((tmp_path / "cut.nc").read_bytes()[:-100])
     with pytest.raises(BadFile, match=r"cut\.nc"):
         open_summary(tmp_path / "cut.nc")

@@ -45,9 +45,9 @@ class Chance(random.Random):
 
     def position(self):
         whole = [0.0, -0.0, 1.0, -1.0, 0.5, -0.989, -0.993, -0.991, 1e6, -1e6, 5e-324, 1e-12]
-        beside = math.nextafter(self.choice([-1.0, 1.0, 0.5]), self.choice([-2.0, 2.0]))
+        neighbour = math.nextafter(self.choice([-1.0, 1.0, 0.5]), self.choice([-2.0, 2.0]))
         power = self.choice([1.0, -1.0]) * self.power(-12.0, 6.0)
-        return self.choice([self.uniform(-1.5, 1.5), self.choice(whole), power, beside])
+        return self.choice([self.uniform(-1.5, 1.5), self.choice(whole), power, neighbour])
 
     def velocity(self, contact):
         value = self.choice([self.uniform(0.0, 0.2), 0.0, self.power(-12.0, 6.0)])

@@ -49,7 +49,7 @@ def counts(jobs):
     return {rule: found.count(rule) for rule in found}
 
 
-def after(*roots):
+def jobs_after(*roots):
     """Return {rule: number of its jobs} of some rules and of all that need their output."""
     found, more = {}, {*roots}
     while more:
@@ -138,7 +138,7 @@ def test_every_key_has_a_case():
 
 @pytest.mark.parametrize(("changes", "roots"), KEYS, ids=["+".join(keys) for keys, _ in KEYS])
 def test_a_key_invalidates_only_what_uses_it(changes, roots):
-    assert counts(jobs_of(changes)) == after(*roots, "report")
+    assert counts(jobs_of(changes)) == jobs_after(*roots, "report")
 
 
 @pytest.mark.parametrize(("key", "value", "expected", "spared"), RESHAPED, ids=[key for key, *_ in RESHAPED])

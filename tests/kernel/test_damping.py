@@ -17,7 +17,7 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.equilibrium import eigenvalues
 from tests.flows import carry, check_events, directions
-from tests.kernel.test_catalogue import at_rest, last_rest, recorded
+from tests.kernel.test_catalogue import at_rest, last_rest, record_catalogue
 from tests.scipy_flow import scipy_events
 
 LAWS = {"linearized": 0.1, "nonlinear": 0.3, "carlson_langer": 2.0, "exponential": 0.5, "stribeck": 1.0}
@@ -148,7 +148,7 @@ def test_balance_of_work_friction_and_dashpots(groups):
     model = Model(chain, law_of("nonlinear", 1.5), 0.02)
     start = at_rest(model)
     end = last_rest(model, start, 120.0)
-    table, runner, _ = recorded(model, start, end, groups)
+    table, runner, _ = record_catalogue(model, start, end, groups)
     assert len(table["time"]) > 4
     friction = damped = towed = 0.0
     node, weight = np.polynomial.legendre.leggauss(24)
@@ -191,7 +191,7 @@ def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
         model = Model(chain, law_of("carlson_langer", 1.0), v)
         position = start.position + Model(chain, model.law, 0.01).sliding_offset - model.sliding_offset
         again = ChainState(position, start.velocity, start.stuck)
-        found = recorded(model, again, 0.5 / v, groups, loading=loading)[0]
+        found = record_catalogue(model, again, 0.5 / v, groups, loading=loading)[0]
         names = ("duration", "moment", "peak_velocity", "stress_drop", "energy_released", "energy_damped")
         columns.append(np.array([found["time"] * v, *(found[name] for name in names)])[:, :6])
     assert columns[0].shape == (7, 6)
@@ -203,14 +203,14 @@ def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
 def test_an_overdamped_slip_ends_where_friction_balances_the_springs(groups):
     """Behind a stationary driver the slip decays and comes to rest within rounding: the force falls to θ Φ(0)."""
     one = Model(Chain(1, pulling=2.0, threshold=3.0, pulling_damping=10.0), law_of("carlson_langer", 1.0), 0.01)
-    table, _, _ = recorded(one, at_rest(one), 90.0, groups, loading="quasistatic")
+    table, _, _ = record_catalogue(one, at_rest(one), 90.0, groups, loading="quasistatic")
     assert len(table["time"]) > 10
     assert np.allclose(table["stress_drop"], 3.0 * 0.01, rtol=1e-11)
     assert np.allclose(table["moment"], 3.0 * 0.01 / 2.0, rtol=1e-11)
     # The speed falls like exp(−τ/3.5), with (c − θ a)/D = 3.5.
     assert (table["duration"] > 20 * 3.5).all()
     many = Model(Chain(8, coupling=9.0, pulling=1.0, damping=6.0), law_of("carlson_langer", 1.0), 0.01)
-    table, runner, _ = recorded(many, at_rest(many), 60.0, groups, loading="quasistatic")
+    table, runner, _ = record_catalogue(many, at_rest(many), 60.0, groups, loading="quasistatic")
     assert len(table["time"]) > 10
     assert runner.kernel.steps < 1000 * len(table["time"])
 

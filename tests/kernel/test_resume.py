@@ -45,7 +45,7 @@ def symmetric_cases(draw, loadings=("steady", "quasistatic")):
     return model, start, image, loading, end
 
 
-def followed(model, start, end, groups, loading):
+def follow_run(model, start, end, groups, loading):
     """Return the runner at a time, the events and, under steady loading, the section crossings until then."""
     observer = new_observer(model, [start.time, end]) if loading == "steady" else None
     runner = Runner(model, keep_events=True, groups=groups, loading=loading, observer=observer)
@@ -59,7 +59,7 @@ def followed(model, start, end, groups, loading):
 @given(symmetric_cases(), st.sampled_from([None, True, False]))
 def test_a_state_that_is_its_own_mirror_image_stays_so(case, groups):
     model, start, image, loading, end = case
-    state = followed(model, start, end, groups, loading)[0].state()
+    state = follow_run(model, start, end, groups, loading)[0].state()
     assert np.array_equal(state.position, state.position[image])
     assert np.array_equal(state.velocity, state.velocity[image])
 
@@ -80,13 +80,13 @@ def test_24_blocks_synchronize_exactly():
 @given(symmetric_cases(), st.sampled_from([None, True, False]), st.lists(st.floats(0.02, 0.98), min_size=1, max_size=3))
 def test_a_run_in_parts_equals_the_whole_run_to_the_bit(case, groups, cuts):
     model, start, _, loading, end = case
-    runner, whole = followed(model, start, end, groups, loading)
+    runner, whole = follow_run(model, start, end, groups, loading)
     state, found = start, []
     for time in sorted(end * cut for cut in cuts):
-        part, rows = followed(model, state, time, groups, loading)
+        part, rows = follow_run(model, state, time, groups, loading)
         state = part.final()
         found.append(rows)
-    part, rows = followed(model, state, end, groups, loading)
+    part, rows = follow_run(model, state, end, groups, loading)
     found.append(rows)
     assert np.array_equal(part.state().vector(), runner.state().vector())
     for expected, parts in zip(whole, zip(*found, strict=True), strict=True):
@@ -101,10 +101,10 @@ def test_runs_of_length_zero_change_nothing(groups):
     for seed in range(40):
         position = np.random.default_rng(seed).uniform(-1.2, -0.9, 3) - model.sliding_offset
         start = ChainState(position, np.zeros(3), np.ones(3, dtype=bool))
-        whole = followed(model, start, 30.0, groups, "steady")[1]
+        whole = follow_run(model, start, 30.0, groups, "steady")[1]
         state, found = start, []
         for time in (1.6, 1.6, 1.6, 30.0):
-            part, rows = followed(model, state, time, groups, "steady")
+            part, rows = follow_run(model, state, time, groups, "steady")
             state = part.final()
             found.append(rows)
         for axis, (expected, parts) in zip((1, 0), zip(whole, zip(*found, strict=True), strict=True), strict=True):
@@ -118,9 +118,9 @@ def test_a_run_may_be_divided_within_its_first_piece():
         ends, middle = np.random.default_rng(seed).uniform(-1.2, -0.9, 2)
         position = np.array([ends, middle, ends]) - model.sliding_offset
         start = ChainState(position, np.zeros(3), np.ones(3, dtype=bool))
-        crossings = followed(model, start, 5.0, None, "steady")[1][1]
-        first, before = followed(model, start, 0.484, None, "steady")
-        after = followed(model, first.final(), 5.0, None, "steady")[1][1]
+        crossings = follow_run(model, start, 5.0, None, "steady")[1][1]
+        first, before = follow_run(model, start, 0.484, None, "steady")
+        after = follow_run(model, first.final(), 5.0, None, "steady")[1][1]
         assert np.array_equal(np.concatenate([before[1], after]), crossings)
 
 

@@ -38,13 +38,13 @@ def networks(draw):
     edges = draw(st.dictionaries(pairs, strength, min_size=1, max_size=15))
     edges = {pair: value for pair, value in edges.items() if pair[::-1] not in edges or pair[0] < pair[1]}
     pulling = draw(st.lists(st.one_of(st.just(0.0), strength), min_size=blocks, max_size=blocks))
-    for part in connected(blocks, edges):
+    for part in connected_blocks(blocks, edges):
         if not any(pulling[block] for block in part):
             pulling[min(part)] = 1.0
     return blocks, edges, pulling
 
 
-def connected(blocks, edges):
+def connected_blocks(blocks, edges):
     """Return the sets of connected blocks (0 …)."""
     part = list(range(blocks))
     for _ in range(blocks):
@@ -146,7 +146,7 @@ def test_the_previous_block_comes_first_in_a_row_or_ring(chain, start, index, sp
     check_algebra(chain)
 
 
-def solved(matrix, load):
+def solve_exactly(matrix, load):
     """Return the solution in rational arithmetic, rounded."""
     rows = [[Fraction(value) for value in row] for row in np.column_stack([matrix, load]).tolist()]
     for i, row in enumerate(rows):
@@ -162,7 +162,7 @@ def test_the_sliding_position_of_a_network_is_the_rounded_exact_solution(columns
     blocks = columns * rows
     drawn = {"random": "uniform", "low": 0.5, "high": 2.0, "seed": seed}
     chain = Chain(grid=(columns, rows), coupling=coupling, pulling=[1e-6, *(blocks - 1) * [0.0]], threshold=drawn)
-    assert (-chain.sliding_offset(1.0) == solved(chain.stiffness, chain.thresholds)).all()
+    assert (-chain.sliding_offset(1.0) == solve_exactly(chain.stiffness, chain.thresholds)).all()
 
 
 def test_long_rows_and_rings_slide_like_short_ones():

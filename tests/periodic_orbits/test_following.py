@@ -57,7 +57,7 @@ def test_repetitions_of_another_orbit_do_not_continue_a_branch():
     )
 
 
-def doubled(a):
+def doubled_orbit(a):
     """Return the orbit with (12, 26, 26) stops, which branches off the one with (6, 13, 13) at a = 0.136416."""
     model = Model(Chain(3), law_of("linearized", a))
     position = np.array([-0.01583146, -0.00898694, -0.04390718])
@@ -68,7 +68,7 @@ def doubled(a):
 @pytest.mark.parametrize("a", [0.135, 0.1355, 0.136])
 def test_no_step_jumps_to_a_simpler_orbit(a):
     """A long step past the grazing must not jump to the simple orbit, which is not nearby."""
-    orbit = doubled(a)
+    orbit = doubled_orbit(a)
     assert orbit.stop_counts == (12, 26, 26)
     branch = follow(orbit, (0.1345, 0.137), upward=False)
     corner = next(point for point in branch if point.is_grazing)

@@ -39,7 +39,7 @@ def test_the_zero_of_a_cubic_is_found_from_its_ends(coefficients):
     assert cubic(found) == pytest.approx(0.0, abs=1e-12)
 
 
-def sampled(orbit, count=200_000):
+def sample_orbit(orbit, count=200_000):
     """Return position, velocity and whether blocks stick, at equidistant times in a period, from an independent run."""
     runner = Runner(orbit.model)
     runner.begin(orbit.reference)
@@ -62,7 +62,7 @@ def six():
 
 def test_grazing_distances_agree_with_dense_samples(six):
     found = grazing_distances(six)
-    position, velocity, stuck = sampled(six, 40_000)
+    position, velocity, stuck = sample_orbit(six, 40_000)
     step, model = six.period / 40_000, six.model
     for block in range(3):
         change = np.flatnonzero(np.diff(stuck[:, block].astype(int)))
@@ -230,7 +230,7 @@ def test_motion_with_backward_slip_or_pull_has_grazing_distances(threshold, posi
     chain = Chain(len(threshold), threshold=threshold)
     model = Model(chain, law_of("linearized", 0.2), contact="symmetric")
     motion = orbit_of(model, ChainState(*map(np.array, (position, velocity, stuck))), 6.0, Symmetry.ASYMMETRIC)
-    at, rate, still = sampled(motion, 3000)
+    at, rate, still = sample_orbit(motion, 3000)
     force = chain.thresholds * float(model.law(model.v)) - at @ chain.stiffness.T
     found = grazing_distances(motion)
     for k in range(chain.blocks):

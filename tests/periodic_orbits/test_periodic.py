@@ -40,7 +40,7 @@ def orbits():
     return found
 
 
-def moved(orbit, direction, size):
+def displaced_return(orbit, direction, size):
     """Return the return of a state next to the reference of an orbit."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + size * direction
@@ -61,7 +61,7 @@ def test_the_orbit_of_a_settled_motion_returns_and_attracts(orbits, name):
     assert len(found.whole) == 2 * orbit.model.blocks - 1
     # The monodromy agrees with finite differences.
     basis = allowed_directions(orbit.reference.stuck, ASYMMETRIC)
-    difference = [(moved(orbit, d, 1e-6) - moved(orbit, d, -1e-6)) / 2e-6 for d in basis.T]
+    difference = [(displaced_return(orbit, d, 1e-6) - displaced_return(orbit, d, -1e-6)) / 2e-6 for d in basis.T]
     assert orbit.monodromy @ basis == pytest.approx(np.stack(difference, axis=1), rel=1e-5, abs=1e-6)
 
 

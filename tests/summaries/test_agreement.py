@@ -34,12 +34,12 @@ def compare(runs, tmp_path):
         for _, (law, initial, a) in grid:
             here = law, grid.a[a]
             write_point(dataclasses.replace(runs[here], **dict(altered).get(here, {})), grid.path(law, initial, a))
-        return grid, summarized(grid, attractors_of(grid, **reached))
+        return grid, summarize_kinds(grid, attractors_of(grid, **reached))
 
     return compared
 
 
-def summarized(grid, *found, kind=None):
+def summarize_kinds(grid, *found, kind=None):
     """Return the comparison, of runs of a given kind if there is one."""
     kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
     if kind is not None:
@@ -49,7 +49,7 @@ def summarized(grid, *found, kind=None):
 
 def test_without_attractors_it_is_undetermined_which_runs_settled(compare):
     grid, known = compare()
-    other = summarized(grid)
+    other = summarize_kinds(grid)
     assert (other["settled"] == -1).all()
     xarray.testing.assert_identical(other.drop_vars("settled"), known.drop_vars("settled"))
 
@@ -177,7 +177,7 @@ def test_a_run_may_not_reach_the_attractor_of_its_state(runs, compare, mean, err
 )
 def test_the_kind_of_a_run_is_that_of_its_attractor(runs, compare, own, of_attractor, mean, kind):
     grid, _ = compare({key: {"mean_distance": mean, "mean_distance_error": 0.0} for key in runs})
-    found = summarized(grid, attractors_of(grid, **of_attractor), kind=own)
+    found = summarize_kinds(grid, attractors_of(grid, **of_attractor), kind=own)
     assert (found["kind"] == kind).all()
     of_attractor_taken = kind != own or (own, kind) == (2, 2)
     assert of_attractor_taken or np.isnan(found["period"]).any() or (found["period"] != 40.0).any()
@@ -188,7 +188,7 @@ def test_the_kind_of_a_run_is_that_of_its_attractor(runs, compare, own, of_attra
 )
 def test_a_run_of_another_kind_is_not_on_the_attractor(runs, compare, own, of_attractor, settled):
     grid, _ = compare({key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs})
-    found = summarized(grid, attractors_of(grid, kind=of_attractor, branch=4, mean=0.2), kind=own)
+    found = summarize_kinds(grid, attractors_of(grid, kind=of_attractor, branch=4, mean=0.2), kind=own)
     assert (found["settled"] == settled).all()
 
 
@@ -216,7 +216,7 @@ def test_a_run_without_result_agrees_with_nothing(compare):
 def of_laws(folder, laws):
     settings = {"transient": 100.0, "window": 100.0, "batches": 2}
     grid = grid_of(folder, ["minus"], {"0.05": 0.05, "0.2": 0.2}, {"laws": laws}, **settings)
-    return summarized(write_points(grid), attractors_of(grid))
+    return summarize_kinds(write_points(grid), attractors_of(grid))
 
 
 def test_each_law_is_compared_with_the_first(tmp_path):

@@ -147,14 +147,14 @@ def test_a_branch_at_inserted_values_has_its_own_number():
     assert numbers == [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
 
 
-def named(names):
+def named_branches(names):
     names_variable = np.array(list(names.values()), dtype=object), {"long_name": "what it is called"}
     return xr.Dataset({"branch_number": ("number", list(names)), "branch_name": ("number", *names_variable)})
 
 
 def test_names_are_determined_at_the_values_of_the_grid():
     found = common_branch_names(
-        named({0: "synchronized", 3: "alternating (3)", 7: "mirror pair (7)"}), named({3: "pair (3)"})
+        named_branches({0: "synchronized", 3: "alternating (3)", 7: "mirror pair (7)"}), named_branches({3: "pair (3)"})
     )
     assert found["branch_name"].values.tolist() == ["synchronized", "pair (3)", "mirror pair (7)"]
     assert found["branch_name"].attrs == {"long_name": "what it is called"}

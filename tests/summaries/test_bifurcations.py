@@ -189,8 +189,8 @@ def test_an_unstable_orbit_is_not_one_on_which_a_motion_has_settled():
 def test_the_values_next_to_a_bifurcation_are_those_of_the_attractors(found, grid):
     """They agree to the last bit, so that they can be looked up."""
     for name in ("grid_low", "grid_high"):
-        beside = found[name].values
-        assert np.isin(beside[np.isfinite(beside)], A).all()
+        values = found[name].values
+        assert np.isin(values[np.isfinite(values)], A).all()
     shifted = at_all_values(grid)
     shifted["a"] = shifted["a"] * (1.0 + 1e-15)
     assert np.isin(shifted["a"].values[2], one_law(MODEL, grid, shifted)["grid_high"].values)

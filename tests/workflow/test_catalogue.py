@@ -42,7 +42,7 @@ def study(tmp_path_factory):
     return study
 
 
-def opened(study, name):
+def open_result(study, name):
     return xr.load_dataset(study.folder / "results/quakes" / name)
 
 
@@ -60,7 +60,7 @@ def test_the_sum_of_moments_is_supplied_by_the_driver(study):
     """All blocks are at rest at both times, so the difference between supply and slip is strain of the springs."""
     known = load_study(read_yaml(study.config), "study.yaml")
     for a in (2.0, 3.0):
-        events = opened(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
+        events = open_result(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
         model = known.model("carlson_langer", a)
         start = model.begin(known.state("rough"), "tested")
         assert start.stuck.all()
@@ -83,7 +83,7 @@ def test_the_sum_of_moments_is_supplied_by_the_driver(study):
 
 
 def test_the_columns_are_consistent(study):
-    events = opened(study, "catalogues/carlson_langer/a3.0000.nc")
+    events = open_result(study, "catalogues/carlson_langer/a3.0000.nc")
     assert all(variable.attrs["long_name"] for variable in events.variables.values())
     assert events["blocks"].attrs["sample_dimension"] == "slip"
     ends = np.cumsum(events["blocks"].values)
@@ -99,9 +99,9 @@ def test_the_columns_are_consistent(study):
 
 
 def test_the_statistics_are_those_of_the_events(study):
-    found = opened(study, "summary/catalogue.nc").sel(law="carlson_langer")
+    found = open_result(study, "summary/catalogue.nc").sel(law="carlson_langer")
     for a in (2.0, 3.0):
-        one, events = found.sel(a=a), opened(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
+        one, events = found.sel(a=a), open_result(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
         magnitude = events["magnitude"].values
         assert one["event_count"] == len(magnitude) == one["magnitude_count"].sum()
         assert one["event_rate"] == len(magnitude) / 800.0

@@ -48,11 +48,11 @@ def noise_inside(content: bytes) -> bytes:
 
 def other_version(content: bytes) -> bytes:
     """Return the content with a seal as an earlier version wrote it."""
-    sealed = unsealed(content) + b"\n#seal 0123456789abcdef completed "
+    sealed = remove_seal(content) + b"\n#seal 0123456789abcdef completed "
     return sealed + hashlib.sha256(sealed).hexdigest().encode() + b"\n"
 
 
-def unsealed(content: bytes) -> bytes:
+def remove_seal(content: bytes) -> bytes:
     """Return the bare netCDF file, as a version without seals, or another program, writes it."""
     return content[: content.rindex(b"\n#seal ")]
 
@@ -76,7 +76,7 @@ DAMAGES = {
     "noise": (lambda path: path.write_bytes(noise(5000)), "not written by this program"),
     "noise inside": (lambda path: rewrite(path, noise_inside), "was changed"),
     "appended": (lambda path: rewrite(path, lambda content: content + b"\0"), "not written by this program"),
-    "unsealed": (lambda path: rewrite(path, unsealed), "not written by this program"),
+    "unsealed": (lambda path: rewrite(path, remove_seal), "not written by this program"),
     "a text": (lambda path: path.write_text("no netCDF file\n"), "not written by this program"),
     "another a": (lambda path: shutil.copy(path.with_name("a0.2200.nc"), path), "another run"),
     "another initial state": (lambda path: shutil.copy(path.parents[1] / "plus" / path.name, path), "another run"),

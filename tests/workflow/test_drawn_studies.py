@@ -82,14 +82,14 @@ KNOWN = [
 ]
 
 
-def drawn(number):
+def draw_study(number):
     """Return a study in which four keys and the omitted stages are drawn at random."""
     generator = random.Random(number)
     keys = generator.sample(sorted(ENDS), 4)
     return {key: generator.choice(ENDS[key]) for key in keys}
 
 
-STUDIES = [*KNOWN, *map(drawn, range(2 * TIMES))]
+STUDIES = [*KNOWN, *map(draw_study, range(2 * TIMES))]
 
 
 @pytest.mark.parametrize(("number", "changes"), list(enumerate(STUDIES)))

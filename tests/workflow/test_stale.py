@@ -17,7 +17,7 @@ CODE, COMMENT, DOCSTRING = "\n_MORE = 1\n", "\n# More words.\n", '"""More words.
 _PLANS = {}
 
 
-def planned(study, *roots):
+def planned_jobs(study, *roots):
     """Return the jobs of a run in which these rules are forced."""
     key = (study.folder, study.repository, roots)
     if key not in _PLANS:
@@ -89,7 +89,7 @@ def test_code_invalidates_what_depends_on_it(studied, name, roots):
     with Edit(studied.repository / PACKAGE / name, CODE):
         found = jobs(studied.ok("-n", "-p"))
     assert set(roots) <= set(found)
-    assert found == planned(studied, *roots)
+    assert found == planned_jobs(studied, *roots)
 
 
 def test_an_edited_kernel_is_refused_until_it_is_built(studied):
@@ -128,7 +128,7 @@ def edited(finished, tmp_path_factory):
     return copied(finished.folder, tmp_path_factory.mktemp("edited") / "study")
 
 
-def changed(edited, changes):
+def change_config(edited, changes):
     """Return the study with some keys of its config changed."""
     edited.config.write_text(yaml.safe_dump(changed_config(changes)))
     return edited
@@ -136,14 +136,14 @@ def changed(edited, changes):
 
 @pytest.mark.parametrize("changes", [{"v": 0.11}, {"basins.pixels": 9}, {"a": [0.05, 0.06, 0.08, 0.2, 0.22]}])
 def test_a_key_invalidates_only_what_uses_it(edited, changes):
-    found = jobs(changed(edited, changes).ok("-n", "-p"))
+    found = jobs(change_config(edited, changes).ok("-n", "-p"))
     del found["all"]
     assert found == counts(jobs_of(changes))
 
 
 def test_maps_of_basins_do_not_invalidate_the_verdicts(edited):
     """No statement of the paper depends on them."""
-    found = jobs(changed(edited, {"basins.pixels": 9, "basins.pairs": 21}).ok("-n", "-p"))
+    found = jobs(change_config(edited, {"basins.pixels": 9, "basins.pairs": 21}).ok("-n", "-p"))
     assert {"basins", "figure_basins", "report"} <= found.keys()
     assert "claims" not in found
 

@@ -49,7 +49,7 @@ def slurm(monkeypatch, tmp_path):
         del sys.modules[name]
 
 
-def submitted(modules, monkeypatch, capsys):
+def submit_script(modules, monkeypatch, capsys):
     """Submit the script; return the exit code, and what was written."""
     monkeypatch.setattr(sys, "argv", ["submit.py", "script.sh"])
     code = modules["submit"].main()
@@ -60,7 +60,7 @@ def test_a_silent_controller_is_asked_again(slurm, monkeypatch, capsys):
     modules, script_answers = slurm
     none = (0, "", "")
     asked = script_answers(squeue=[SILENT, none, none], sbatch=[SILENT, (0, "17;cluster\n", "")])
-    code, output, _ = submitted(modules, monkeypatch, capsys)
+    code, output, _ = submit_script(modules, monkeypatch, capsys)
     number, _, name = output.strip().partition(":")
     assert (code, number) == (0, "17")
     assert [command[0] for command in asked] == ["squeue", "squeue", "sbatch", "squeue", "sbatch"]
@@ -77,7 +77,7 @@ def test_a_job_whose_answer_was_lost_is_not_submitted_twice(slurm, monkeypatch, 
         return 1, "", "sbatch: error: Socket timed out on send/recv operation\n"
 
     asked = script_answers(squeue=[(0, "3|other\n", ""), lambda _: (0, f"3|other\n18|{names[0]}\n", "")], sbatch=[lost])
-    code, output, _ = submitted(modules, monkeypatch, capsys)
+    code, output, _ = submit_script(modules, monkeypatch, capsys)
     assert (code, output) == (0, f"18:{names[0]}\n")
     assert [command[0] for command in asked] == ["squeue", "sbatch", "squeue"]
 
@@ -94,7 +94,7 @@ def test_a_refused_or_unanswered_submission_ends_with_one_line(slurm, monkeypatc
     modules, script_answers = slurm
     monkeypatch.setattr(modules["jobs"], "PATIENCE", patience)
     asked = script_answers(squeue=[(0, "", "")], sbatch=[answer])
-    code, output, error = submitted(modules, monkeypatch, capsys)
+    code, output, error = submit_script(modules, monkeypatch, capsys)
     assert (code, output, len(error.splitlines())) == (1, "", 1)
     assert error.startswith("submit.py: sbatch: error: ")
     assert words in error
