@@ -40,7 +40,7 @@ def check_events(found, expected, tolerance):
 
 
 def carry(model, start, end, perturbations=None, solver="series"):
-    """Return the solver at time `end`, and the events on the way."""
+    """Return the solver at time `end`, and the events until then."""
     runner = Runner(model, solver, keep_events=True, perturbations=perturbations)
     runner.begin(start)
     assert runner.run(end) == Status.COMPLETED

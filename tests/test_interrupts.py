@@ -1,4 +1,4 @@
-"""Ctrl-C ends whatever computes, in any thread or process; pressed twice, it aborts nothing."""
+"""Ctrl-C ends any computation, in any thread or process; pressed twice, it does not abort the interpreter."""
 
 import signal
 import subprocess

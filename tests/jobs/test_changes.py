@@ -50,7 +50,7 @@ def counts(jobs):
 
 
 def jobs_after(*roots):
-    """Return {rule: number of its jobs} of some rules and of all that need their output."""
+    """Return {rule: number of its jobs} for some rules and all rules that need their output."""
     found, more = {}, {*roots}
     while more:
         found |= {name: len(BEFORE.existing[name].each) for name in more}
@@ -130,7 +130,7 @@ RESHAPED = [
 
 
 def test_every_key_has_a_case():
-    """A key that is added to the config needs a row here, or a test of its own."""
+    """A new key of the config needs a row here, or its own test."""
     known = {key.split(".")[0] for key in (*(key for keys, _ in KEYS for key in keys), *(key for key, *_ in RESHAPED))}
     elsewhere = {"study", "initial", "solver", "without", "grid", "catalogue", "edges"}
     assert known | elsewhere == set(CONFIG.fields)

@@ -1,4 +1,4 @@
-"""Long chains, in which blocks that slip together move in groups of their own: the events of the chain as a whole."""
+"""Long chains, in which blocks that slip together move in separate groups, have the events of the chain as a whole."""
 
 import numpy as np
 import pytest

@@ -178,7 +178,7 @@ def test_a_study_that_snakemake_has_made(finished):
 
 @pytest.mark.slow
 def test_threads_may_open_files(results):
-    """In a process of its own, which HDF5 may crash."""
+    """This runs in a separate process, since HDF5 may crash it."""
     script = (
         "from concurrent.futures import ThreadPoolExecutor; from burridge_knopoff import open_study\n"
         f"study = open_study({str(results)!r})\n"

@@ -46,7 +46,7 @@ def test_a_model_and_the_number_of_cores():
 def test_a_grid_over_several_parameters_has_the_numbers_of_single_runs(law, axes):
     model = Model(Chain(3), law_of(law, 0.08))
     runs = sweep(model, initial="plus", **axes, **SHORT)
-    # a is first, since it is an argument of its own; the others are in the order given.
+    # a is first, since it is a separate argument; the others are in the given order.
     assert runs["mean_distance"].dims == tuple(sorted(axes, key=lambda name: name != "a"))
     for values in product(*axes.values()):
         point = dict(zip(axes, values, strict=True))

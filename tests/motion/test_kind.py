@@ -59,7 +59,7 @@ def test_returning_as_the_mirror_image_is_not_a_return():
     run = run_of(velocity, np.tile(turn, (60, 1)))
     for name in ("event_position", "event_velocity"):
         assert section_period({**run, name: states}, MOTION) == 6
-    # Downward crossings are no section points.
+    # Downward crossings are not section points.
     assert section_period(run_of(velocity, states, falling=True), MOTION) == 0
     # States that drift although W' repeats, states that are stored only from late on, and no states at all.
     drifting = states + 1e-4 * np.arange(180.0)[:, None]

@@ -1,4 +1,4 @@
-"""The summary of the proofs: its numbers, its text, its bytes, and where it does not apply."""
+"""The summary of the proofs: its numbers, text and bytes, and studies to which it does not apply."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ def processes(study: Study) -> dict[int, str]:
 
 
 def begin(study: Study, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.Popen[bytes]:
-    """Start Snakemake as a process group of its own; what it writes goes to the file `screen`."""
+    """Start Snakemake in its own process group, with its output in the file `screen`."""
     (study.folder / BEGUN).touch()
     with (study.folder / "screen").open("wb") as screen:
         return subprocess.Popen(

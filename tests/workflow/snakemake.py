@@ -55,7 +55,7 @@ calls, *others = (socket.socket(fileno=int(number)) for number in sys.argv[1:])
 """
 
 #: Lets each script be run by the other process. A fork that has imported the project serves the runs of this checkout;
-#: what is run with the sources of another one finds nothing imported.
+#: runs with the sources of another one start without imports.
 SNAKEMAKE = f"""{SERVE}
 import subprocess
 import snakemake.cli, snakemake.dag, snakemake.report.html_reporter, snakemake.script
@@ -89,7 +89,7 @@ if not os.fork():
 serve(calls, run)
 """
 
-#: Likewise: scripts of this checkout find the project imported, those of another one only what it needs.
+#: Likewise, scripts of this checkout start with the project imported, those of another one only with its requirements.
 SCRIPTS = f"""{SERVE}
 import importlib, pkgutil, runpy
 import matplotlib.backends.backend_agg, matplotlib.backends.backend_pdf, matplotlib.patches, matplotlib.ticker

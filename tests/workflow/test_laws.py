@@ -1,4 +1,4 @@
-"""Studies with laws and springs of their own through the real Snakefile: their points are what Python simulates."""
+"""Studies with other laws and springs through the real Snakefile: their points equal those simulated in Python."""
 
 import json
 import shlex
