@@ -1,9 +1,9 @@
-"""The kernel of this tree against that of another checkout: single runs, runs in groups, labels of many states, laws.
+"""Speed of this tree's kernel compared with that of another checkout: single runs, groups, labels of many states, laws.
 
     python benchmarks/before.py ../before           # a checkout in which `make kernel` has been run
 
-Both are measured in turn, each in a process of its own; ratios are those of the smallest CPU times. For each width of
-vectors compile both with `BURRIDGE_KNOPOFF_LANES=2`, 4 or 8.
+Both are measured alternately, each in its own process; ratios are those of the smallest CPU times. To compare other
+vector widths compile both with `BURRIDGE_KNOPOFF_LANES=2`, 4 or 8.
 """
 
 import argparse
@@ -29,14 +29,14 @@ BLOCKS, SLOW, LONG = 100, 0.01, 2000.0
 
 
 def starts(blocks: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the states that are labelled, relative to uniform sliding, and that of a cloud that some come close to."""
+    """Return the states to be labelled, relative to uniform sliding, and that of a cloud that some of them approach."""
     generator = np.random.default_rng(1)
     position = generator.uniform(-0.6, 1.5, (STATES, blocks))
     return position, generator.uniform(0.0, 0.2, (STATES, blocks)), generator.uniform(-0.4, 0.4, (300, 2 * blocks))
 
 
 def measured() -> dict[str, float]:
-    """Return the smallest CPU times in ms, by what was run."""
+    """Return {run: smallest CPU time in ms}."""
     from burridge_knopoff import Chain, ChainState, FormulaLaw, Model, Settings, law_of, simulate
     from burridge_knopoff.kernel._core import Clouds
     from burridge_knopoff.laws import LAWS as BUILT_IN

@@ -1,13 +1,13 @@
 """CPU time of chains of many blocks: of the solvers, and of groups of blocks against the chain as a whole.
 
 First, chains that start near uniform sliding, which is unstable, with all events and observables: process CPU time of
-`simulate`, median of runs in alternation. It includes what `map` solves once in a run, the normal modes of every row of
-moving blocks that it meets; from N = 64 on that is a large part of these short runs.
+`simulate`, median of runs in alternation. It includes the normal modes of every row of moving blocks, which `map`
+computes once in a run; from N = 64 on these take a large part of such short runs.
 
 Then chains of the earthquake literature (Carlson and Langer): stiff springs, friction that drops at the start of a slip
-and weakens with speed. They start at rest, nearly in line. After the first slips, both continue from the same state,
-in turn and without observables; a figure is the CPU time of a run divided by its number of events. So do a run that
-records the catalogue of its slip events, and one under quasi-static loading.
+and weakens with speed. They start at rest with nearly equal positions. After the first slips, runs in groups, as a
+whole, with a catalogue of slip events and under quasi-static loading continue alternately from the same state without
+observables; the table has the CPU time of each run divided by its number of events.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ def by_solver(rounds: int) -> None:
 
 
 COUPLING, LARGE_A, SIGMA = 100.0, 5.0, 0.01
-# Blocks, driver, and how many events are wanted: in groups, and as a whole, which takes far longer.
+# Blocks, driver velocity, and numbers of events to be measured: in groups, and as a whole, which takes far longer.
 CASES = (
     (10, 0.001, 2000, 2000),
     (20, 0.001, 4000, 2000),

@@ -1,9 +1,9 @@
-"""Make the durations that the tree ships, from benchmark files of a large and a small study that ran in this folder.
+"""Make the durations that come with the sources, from benchmark files of a large and a small study run in this folder.
 
     python benchmarks/durations.py config/paper.yaml config/smoke.yaml
 
 For each rule: the mean CPU time and size of a job, at the smallest and at the largest work in these studies. Rules that
-did not run keep what they have.
+did not run keep their durations.
 """
 
 import json
@@ -32,7 +32,7 @@ def main():
     rules = dict(SHIPPED)
     for rule, by_work in jobs.items():
         rows = [[least, *np.mean(by_work[least], axis=0)] for least in sorted({min(by_work), max(by_work)})]
-        # More work never takes less.
+        # More work never takes less time.
         rows[-1] = list(np.max(rows, axis=0))
         rules[rule] = [[float(f"{value:.4g}") for value in row] for row in rows]
         print(rule, rules[rule])

@@ -1,7 +1,7 @@
-"""What a study survives: every kind of fault, and whether the next run ends with the bytes of an undisturbed one.
+"""Provokes every kind of fault, and checks that the next run ends with the bytes of an undisturbed study.
 
-It runs the tiny study of the tests, kills it again and again at random moments, interrupts it, fills its disks, damages
-its files, and runs it in a second clone with a kernel of its own. Exit code 1 if any byte differs.
+It runs the tiny study of the tests, kills it repeatedly at random moments, interrupts it, fills its disks, damages its
+files, and runs it in a second clone with its own kernel. Exit code 1 if any byte differs.
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ HEADER = ["fault", "moment", "stages hit", "files whole", "temporary", "next com
 
 
 class Trials:
-    """A table of faults, each in a folder of its own, against a study that ran undisturbed."""
+    """A table of faults, each in its own folder, compared with an undisturbed study."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -93,7 +93,7 @@ class Trials:
         print(" | ".join(self.rows[-1]), file=sys.stderr, flush=True)
 
     def stopped(self, fault: str, good: bool) -> None:
-        """Add a row for a fault whose run must stop, and did or did not, as it should."""
+        """Add a row for a fault whose run must stop, saying whether it did."""
         if not good:
             self.rows.append([fault, "", "", "", "", "did not stop with its reason", "NO"])
 
@@ -131,7 +131,7 @@ def interruptions(trials: Trials) -> None:
             began = time.monotonic()
             (os.killpg if group else os.kill)(process.pid, number)
             process.wait()
-            # Jobs of a killed Snakemake run on: they must come to an end by themselves.
+            # Jobs of a killed Snakemake continue and must end by themselves.
             wait_for(lambda study=study: not processes(study))
             moment = f"all ended after {time.monotonic() - began:.1f} s"
             hit = ", ".join(sorted(stages_running(study)))
@@ -186,7 +186,7 @@ def disks(trials: Trials) -> None:
 
 
 def damages(trials: Trials) -> None:
-    """Spoil a point, newer than what was made of it; the message names the command that mends it."""
+    """Damage a point that is newer than the results made from it; the message names the command that recreates it."""
     for name, (spoil, _) in DAMAGES.items():
         study = trials.copy()
         target = study.folder / "results" / "tiny" / POINT

@@ -1,13 +1,13 @@
-"""The kernel against the floor: a program in C++ for the paper's three blocks alone, tuned by hand (floor.cpp).
+"""Speed of the kernel compared with a hand-tuned C++ program for the paper's three blocks alone (floor.cpp).
 
     python benchmarks/floor.py
 
-The floor is compiled into a temporary folder. It runs in this process, in turn with the kernel; a ratio is that of the
-smallest CPU times. Both record all events, <J> and the section crossings of a run to τ = 10⁴ at a = 0.08; without
+The floor is compiled into a temporary folder. It runs in this process, alternately with the kernel; ratios are those of
+the smallest CPU times. Both record all events, <J> and the section crossings of a run to τ = 10⁴ at a = 0.08; without
 observables (bare) the kernel only moves the blocks from event to event. The floor has no exponents: its time is the
 same in every row of a run. A member of an ensemble is compared with one run of the floor.
 
-The results have to agree before times are compared.
+Times are compared only if the results agree.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Floor:
 def agreement(floor: FloorRun, ours: Trajectory) -> float:
     """Return the largest difference of event times while the motion is regular; raises RuntimeError if runs differ.
 
-    Compared block by block: events that are simultaneous up to rounding may come in either order.
+    Events are compared block by block, since events that are simultaneous to rounding may come in either order.
     """
     for what, theirs, own in (
         ("crossings", len(floor.crossing), len(ours.crossing_time)),

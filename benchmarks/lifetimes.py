@@ -1,10 +1,10 @@
-"""How long chaos lasts: that of a study followed for ten times as long as the search follows it, from other states.
+"""Lifetimes of the chaos of a study, followed for ten times as long as in the search and from other states.
 
     python benchmarks/lifetimes.py results/paper
 
 Printed for each chaotic set of attractors.nc that trajectories leave in that time, one of each mirror pair: its mean
-lifetime with the 95 % interval, in the file and now, and whether it lasts. Of all others how many there are, and the
-lifetime that they exceed.
+lifetime with the 95 % interval, in the file and now, and whether it lasts. For all others their number, and a lower
+bound of their lifetimes.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ CHAOTIC = (MotionKind.CHAOTIC, MotionKind.TRANSIENT_CHAOS)
 def followed(
     results: Path, study: Study, attractors: xarray.Dataset, law: str
 ) -> Iterator[tuple[xarray.Dataset, Lifetime]]:
-    """Yield each chaotic set of a law as it stands in the file, and its lifetime now."""
+    """Yield each chaotic set of a law as in the file, and its lifetime now."""
     search = SearchSettings(**study.config["attractors"])
     returns = xarray.load_dataset(results / f"returns/{law}.nc")
     here = attractors.sel(law=law)
@@ -40,7 +40,7 @@ def followed(
         one = here.sel(a=a)
         slots = one.isel(attractor=np.flatnonzero(one["branch"].values >= 0))
         known = known_attractors(attractors, returns, study.model(law, a)).attractors
-        # Also what is not known to last is chaos.
+        # Sets not shown to last are chaos too.
         sets = [
             replace(item, motion=replace(item.motion, kind=MotionKind.CHAOTIC)) if item.motion.kind in CHAOTIC else item
             for item in known

@@ -1,7 +1,7 @@
-"""Runs in lockstep, a lane of vectors each, against the same runs one by one.
+"""Runs in lockstep, each in a lane of vectors, compared with the same runs one by one.
 
-CPU times of a run to τ = 10⁴ with its observables: the smallest of alternated calls, and their ratio. For each
-width of vectors compile with `BURRIDGE_KNOPOFF_LANES=2`, 4 or 8: single runs use four lanes at most.
+CPU times of a run to τ = 10⁴ with its observables: the smallest of alternated calls, and their ratio. To compare other
+vector widths compile with `BURRIDGE_KNOPOFF_LANES=2`, 4 or 8; single runs use at most four lanes.
 """
 
 from __future__ import annotations

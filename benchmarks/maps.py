@@ -1,4 +1,4 @@
-"""Maps: of basins, with the cost of a pixel against that of a full-length run, and of exponents over two parameters.
+"""Cost of maps of basins, per pixel and relative to a full-length run, and of exponents over two parameters.
 
 The map of basins is the plane of U_1(0) and U_3(0) at a = 0.08 under the linearized law. A pixel is followed until its
 attractor is certain; the full-length runs take 10 000 time units, one with all observables and one (bare) without any.

@@ -1,4 +1,4 @@
-"""What the benchmarks share: CPU times of a call and of contestants in alternation, and tables in Markdown."""
+"""Functions shared by the benchmarks: CPU times of a call and of contestants in alternation, and Markdown tables."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from collections.abc import Callable, Mapping, Sequence
 def cpu_times(contestants: Mapping[str, Callable[[], object]], rounds: int) -> dict[str, float]:
     """Return the median CPU time in seconds of each contestant.
 
-    They run in turn, `rounds` times, so that a change of clock frequency or of the load meets all of them alike. Each
-    should have run once before: imports, compilation just in time and cold caches are not what is compared.
+    They run alternately, `rounds` times, so that changes of the clock frequency or of the load affect all of them. Each
+    should have run once before, to exclude imports, just-in-time compilation and cold caches.
     """
     times: dict[str, list[float]] = {name: [] for name in contestants}
     for _ in range(rounds):

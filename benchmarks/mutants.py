@@ -1,12 +1,12 @@
-"""Do the tests notice? Random single changes of the sources, each met by the tests of its room.
+"""Makes random single changes to the sources and checks that the tests of their subpackages notice them.
 
     make mutants                                         # 300 changes: up to two hours on two idle cores
     .venv-mutants/bin/python benchmarks/mutants.py --count 40 --rooms kernel --seed 7
 
 Cosmic Ray makes the changes (an operator, a comparison, a constant, a condition), and mutants_cpp.py those of C++;
-mutmut 3 calls its mutants through wrappers of Python functions, which a compiled kernel does not have. Each runs in a
-copy of the tree, where a changed kernel is compiled. Printed are the changes that no test noticed, and the share that
-was. A change that changes no result is listed in mutants.toml, with why.
+mutmut 3 calls its mutants through wrappers of Python functions, which a compiled kernel does not have. Each is tried in
+a copy of the tree, where a changed kernel is compiled. The output lists the changes that no test noticed, and the share
+of those that were noticed. Changes that change no result are listed in mutants.toml with the reason.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ ROOMS = (
     "kernel",
 )
 
-#: What else meets a change in a room, quick tests first. Whether builds agree is no question to a changed source.
+#: Further tests of a change in a subpackage, quick ones first. Comparisons of builds do not test a changed source.
 TESTS = {
     "model": ("study", "running", "periodic_orbits", "attractors"),
     "periodic_orbits": ("motion", "continuation", "summaries/test_bifurcations.py"),
@@ -117,10 +117,10 @@ def spots(path: Path) -> list[tuple[Path, object]]:
     return [(path, position) for position in changes(path)]
 
 
-#: Wall time that is waited for a second of CPU time: also what sleeps has to end.
+#: Wall time allowed per second of CPU time, so that sleeping processes end too.
 PATIENCE = 30
 
-#: Address space of a process in KB, several times what the tests take: a change may make a list grow for ever.
+#: Address space of a process in KB, several times what the tests need: a change may let a list grow without limit.
 MEMORY = 8_000_000
 
 #: {file: {place: functions that return the file with a change there}}.
@@ -156,7 +156,7 @@ def is_used(name: str) -> bool:
 
 
 def change(path: Path, make: Callable[[], str]) -> Mutant | None:
-    """Return a changed file, or None if it is no Python any more or changed in annotations only."""
+    """Return a changed file, or None if it is no longer valid Python or changed in annotations only."""
     original, text = path.read_text(encoding="utf-8"), make()
     try:
         if path.suffix == ".py" and bare(text) == bare(original):
@@ -180,7 +180,7 @@ def bare(text: str) -> str:
 
 
 def tests_of(file: str) -> list[str]:
-    """Return the tests that meet a change of a file, those of the file itself first."""
+    """Return the tests of a changed file, those of the file itself first."""
     room, name = file.split("/")
     wanted = [f"{room}/test_{Path(name).stem}.py", room, *TESTS.get(room, ())]
     return [f"tests/{test}" for test in wanted if (ROOT / "tests" / test).exists()]
@@ -200,7 +200,7 @@ class Copy:
         }
 
     def run(self, command: list[str], limit: float) -> bool:
-        """Return whether a command ends well within so much CPU time: a busy machine turns no verdict."""
+        """Return whether a command succeeds within a CPU time, which does not depend on the load of the machine."""
         process = subprocess.Popen(
             ["sh", "-c", f'ulimit -v {MEMORY} && ulimit -t "$0" && exec "$@"', f"{limit:.0f}", str(PYTHON), *command],
             cwd=self.folder,
@@ -261,7 +261,7 @@ def cpu_of_children() -> float:
 
 
 def main() -> int:
-    """Try the changes and print what came out; return 1 if the tests fail on the sources as they are."""
+    """Try the changes and print the outcome; return 1 if the tests fail on the unchanged sources."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--count", type=int, default=300)
     parser.add_argument("--seed", type=int, default=1)

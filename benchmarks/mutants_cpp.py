@@ -11,7 +11,7 @@ from functools import partial
 FAMILIES = (("+", "-", "*", "/"), ("<", "<=", ">", ">=", "==", "!="), ("&&", "||"), ("+=", "-=", "*=", "/="))
 OTHERS = {one: [other for other in family if other != one] for family in FAMILIES for one in family}
 
-# In a number a ' is no quotation mark.
+# In a number a ' is not a quotation mark.
 _WORD = re.compile(
     r"""R"(\w*)\((?s:.*?)\)\1"|"(?:[^"\\\n]|\\.)*"|'(?:[^'\\\n]|\\.)*'|\b\d[\w'.]*|//.*|/\*(?s:.*?)\*/"""
 )
@@ -56,7 +56,7 @@ def _masked(text: str) -> str:
 
 
 def _closing(code: str, begin: int) -> int:
-    """Return where what the bracket at `begin` opens has ended."""
+    """Return the end of the text in the bracket that opens at `begin`."""
     depth = 0
     for end in range(begin, len(code)):
         depth += {"(": 1, ")": -1}.get(code[end], 0)

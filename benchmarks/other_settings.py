@@ -1,4 +1,4 @@
-"""What the pages of docs/ say of other settings than those of the default study, from its attractors.
+"""Numbers in docs/ for settings other than those of the default study, from its attractors.
 
     python benchmarks/other_settings.py results/paper
 

@@ -1,4 +1,4 @@
-"""What a peer leaves of a run, and how far it agrees with this package."""
+"""The results of a peer's run, and how far they agree with those of this package."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class PeerRun:
 def event_time_difference(run: PeerRun, ours) -> str:
     """Return the largest difference of event times up to the horizon, or what is wrong with the events.
 
-    Compared block by block: events that are simultaneous up to rounding may come in either order.
+    Events are compared block by block, since events that are simultaneous to rounding may come in either order.
     """
     difference = 0.0
     for block in (1, 2, 3):

@@ -1,12 +1,13 @@
-"""CPU time of one trajectory, and of many at once: this package against heyoka.py, SciPy, and the paper's own method.
+"""CPU time of one trajectory, and of many at once: this package compared with heyoka.py, SciPy and the paper's method.
 
 The run is that of a grid point of the study, with all its observables: the event sequence with states, <J> over the
 window, J every 5 time units, section crossings with their velocity and direction, and the last 30 time units. One
 thread, process CPU time, start-up and compilation excluded, median of runs in alternation. SciPy and rk4 are too slow
-for that: they run to an earlier end, and their time is scaled. SciPy looks for sign changes from step to step, and so
-loses sticks and slips shorter than a step: then it lacks events.
+for that: they run to an earlier end, and their time is scaled. SciPy searches for sign changes from step to step, and
+so misses sticks and slips shorter than a step.
 
-The ensemble is of random states, their events counted and nothing else measured, against heyoka's batch mode.
+The ensemble consists of random states whose events are counted, without observables, and is compared with heyoka's
+batch mode.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What studies of many points take of Snakemake, Slurm and the disk: the planning figures of docs/cluster.md.
+"""Cost of planning studies of many points, and the disk space that they need: the numbers of docs/cluster.md.
 
 For each number of points a config is written and planned (`snakemake -n`), and one of its points is planned alone, as
 every submitted job does before it begins. Numbers of points above `--largest` are not planned but extrapolated: a
@@ -37,7 +37,7 @@ FILES_OF_A_POINT = 4
 def planned(folder: Path, target: str) -> tuple[float, float]:
     """Return CPU time in seconds and peak memory in MB of a dry run."""
     command = [*SNAKEMAKE, "-n", "-d", str(folder), target]
-    # A plan of many jobs is a long text.
+    # The plan of many jobs is a long text.
     silent = ["sh", "-c", 'exec "$@" >/dev/null 2>&1', "sh"]
     used = run([*silent, *command, "--configfile", str(folder / "study.yaml")])
     return used.cpu, used.memory

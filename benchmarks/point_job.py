@@ -1,8 +1,8 @@
-"""CPU time and memory of one point job of the study against a Python process that only imports what it needs.
+"""CPU time and memory of one point job, compared with a Python process that only imports what it needs.
 
-`bk simulate` computes a whole grid point and writes its file. User and system time of the process, the contestants in
-alternation; the ratio is the median over the rounds. The import is measured as typed at a prompt, where NumPy starts
-threads of the linear-algebra library that nobody uses, and without them, as `bk` runs itself.
+`bk simulate` computes a whole grid point and writes its file. Times are user and system time, measured alternately; the
+ratio is the median over the rounds. The import is measured as at a prompt, where NumPy starts linear-algebra threads
+that are never used, and without them, as in `bk`.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Programs of this checkout, and what processes have used."""
+"""Programs of this checkout, and the CPU time and memory of processes."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parent.parent
-#: Beside the interpreter as it was called: a virtual environment's interpreter is a link out of it.
+#: Next to the interpreter as it was called, since the interpreter of a virtual environment is a link.
 BIN = Path(sys.executable).parent
 SNAKEFILE = REPOSITORY / "Snakefile"
 SNAKEMAKE = [str(BIN / "snakemake"), "-s", str(SNAKEFILE)]
 
-#: As typed at a prompt: importing NumPy starts a thread of the linear-algebra library for every core.
+#: As at a prompt, where importing NumPy starts a linear-algebra thread for every core.
 AS_TYPED = {key: value for key, value in os.environ.items() if key != "OPENBLAS_NUM_THREADS"}
-#: Without those threads, as `bk` runs itself.
+#: Without those threads, as in `bk`.
 ONE_THREAD = AS_TYPED | {"OPENBLAS_NUM_THREADS": "1"}
 
 #: The minimum that a Python job that writes netCDF has to do.

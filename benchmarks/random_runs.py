@@ -1,4 +1,4 @@
-"""Random runs of random chains, each from where the last one ended: `make sanitize` lets sanitizers watch the kernel.
+"""Random runs of random chains, each continuing the previous one, for the sanitizers of `make sanitize`.
 
     python benchmarks/random_runs.py [SECONDS] [FIRST_SEED]
 
@@ -47,7 +47,7 @@ def random_state(model: Model, random: np.random.Generator) -> ChainState:
     return ChainState(position - model.sliding_offset, np.where(stuck, 0.0, velocity), stuck)
 
 
-def go_on(model: Model, state: ChainState, random: np.random.Generator, loading: str) -> tuple[str, ChainState]:
+def resume(model: Model, state: ChainState, random: np.random.Generator, loading: str) -> tuple[str, ChainState]:
     """Run from a state in a random way; return the way and the state at the end, or the same one if the run failed."""
     solver = str(random.choice(["series", "series", "series", "map", *FIXED_STEP_SOLVERS]))
     blocks, begin = model.blocks, state.time
@@ -118,7 +118,7 @@ def move_together(model: Model, random: np.random.Generator) -> str:
 
 
 def main() -> None:
-    """Make random runs for some seconds and tell how many there were."""
+    """Make random runs for some seconds and print their number."""
     seconds, seed = (int(word) for word in [*sys.argv[1:], "120", "0"][:2])
     done: Counter[str] = Counter()
     stop = time.monotonic() + seconds
@@ -129,7 +129,7 @@ def main() -> None:
         state = random_state(model, random)
         for _ in range(random.integers(1, 6)):
             try:
-                way, state = go_on(model, state, random, loading)
+                way, state = resume(model, state, random, loading)
             except ValueError:
                 way = "refused"
             done[way] += 1

@@ -2,13 +2,13 @@
 
     python benchmarks/replay.py config/paper.yaml config/smoke.yaml [--cores 1]
 
-It is replayed from its benchmark files as if it had never run, each job with its CPU time: what other programs took
-does not count. Printed: the estimate at the beginning, and the largest ratio between estimated and true time left, from
-a minute on (or a tenth of a shorter run); both count as 10 s at least, as the display tells no less.
+It is replayed from its benchmark files as if it had never run, each job with its CPU time, so that other programs do
+not count. The output is the estimate at the beginning, and the largest ratio between estimated and true time left after
+a minute (or a tenth of a shorter run); both count as at least 10 s, the smallest time that the display shows.
 
-Then what it would take on 1, 2, 4 … 256 cores, and the longest chain of jobs that need each other. The long jobs of a
-law share their parts out among processes, the cores divided by the laws; what each part took stands in their logs.
-What Snakemake itself takes, and what jobs on one machine take from each other, is not in it.
+Then the time on 1, 2, 4 … 256 cores, and the critical path of jobs. The long jobs of a law divide their parts among
+processes (the number of cores divided by that of the laws); their logs contain the time of each part. The time of
+Snakemake itself, and the slowing of jobs by each other, is not included.
 """
 
 import argparse
@@ -37,14 +37,14 @@ PART = re.compile(r"^(.+): \d+, ([\d.]+) s, the longest ([\d.]+) s(; \d+ from th
 def planned(config, *targets, cores=2):
     """Return the plan of all jobs of a study, as `snakemake -n --forceall` makes it."""
     arguments = [*targets, "-n", "--forceall", "-c", str(cores), "--configfile", config]
-    said = io.StringIO()
-    with contextlib.redirect_stdout(said), contextlib.redirect_stderr(said):
+    output = io.StringIO()
+    with contextlib.redirect_stdout(output), contextlib.redirect_stderr(output):
         try:
             snakemake(arguments)
         except SystemExit as end:
             code = end.code
     if code:
-        sys.exit(said.getvalue())
+        sys.exit(output.getvalue())
     return PLAN
 
 
@@ -58,8 +58,8 @@ def recorded(config, cores=2):
     return run, {number: costs[:2] for number, costs in took.items()}
 
 
-def told(run, took):
-    """Return (moment, told, truth) of a run, in seconds, from its begin to its end."""
+def estimates(run, took):
+    """Return (moment, estimate, truth) of a run, in seconds, from its beginning to its end."""
     run.durations = Durations(work_of(PLAN.jobs))
     # Snakemake measures no CPU time of jobs that are too short.
     seconds = {number: (cpu or wall) / run.jobs[number].threads for number, (wall, cpu) in took.items()}
@@ -80,7 +80,7 @@ def ratio(first, second):
 
 
 def parts_of(results, job):
-    """Return (sum, longest) in seconds of what the processes of a job share, from its log."""
+    """Return (sum, longest) in seconds of the parts that the processes of a job share, from its log."""
     long = LONG.fullmatch(job.name)
     log = Path(results, "logs", *([long[1], f"{long[2]}.log"] if long else [f"{job.rule}.log"]))
     text = log.read_text(encoding="utf-8") if log.is_file() else ""
@@ -137,10 +137,10 @@ def main():
     parser.add_argument("--cores", type=int, default=2)
     given = parser.parse_args()
     for config in given.configs:
-        moments = list(told(*recorded(config, given.cores)))
+        moments = list(estimates(*recorded(config, given.cores)))
         _, begin, took = moments[0]
         largest = max(ratio(*pair) for moment, *pair in moments if moment >= min(60.0, took / 10))
-        print(f"{config}: {took:.0f} s on {given.cores} cores, told {begin:.0f} s, then at most {largest:.2f} off")
+        print(f"{config}: {took:.0f} s on {given.cores} cores, estimated {begin:.0f} s, then at most {largest:.2f} off")
         on_other_cores(config)
 
 

@@ -1,4 +1,4 @@
-"""Large studies: what a run of many points costs, point by point, and how much memory it takes.
+"""Large studies: the cost of a run of many points, per point, and its memory.
 
 Studies of several numbers of points, identical except for their grid of a, are run from nothing to their reports on two
 cores, each in an empty folder. The cost of a point is the CPU time of Snakemake and all jobs over the number of points:
@@ -58,10 +58,10 @@ def config_of(points: int) -> str:
 
 
 def run(command: list[str], folder: Path) -> Run:
-    """Run a command to its end, looking at the memory of its process now and then."""
+    """Run a command to its end, sampling the memory of its process."""
     cpu, begin, peak = -children_cpu(), time.perf_counter(), 0.0
-    with tempfile.TemporaryFile() as said:
-        process = subprocess.Popen(command, cwd=folder, env=ONE_THREAD, stdout=said, stderr=said)
+    with tempfile.TemporaryFile() as output:
+        process = subprocess.Popen(command, cwd=folder, env=ONE_THREAD, stdout=output, stderr=output)
         while process.poll() is None:
             try:
                 status = Path(f"/proc/{process.pid}/status").read_text()
@@ -71,8 +71,8 @@ def run(command: list[str], folder: Path) -> Run:
             time.sleep(0.05)
         wall = time.perf_counter() - begin
         if process.returncode:
-            said.seek(0)
-            sys.exit(f"{' '.join(command)} failed:\n{said.read().decode()[-4000:]}")
+            output.seek(0)
+            sys.exit(f"{' '.join(command)} failed:\n{output.read().decode()[-4000:]}")
     return Run(wall, cpu + children_cpu(), peak * 1024 / 1e6)
 
 

@@ -2,8 +2,8 @@
 
 It needs a cluster (`tests/slurm/cluster.sh start FOLDER`, `export SLURM_CONF=FOLDER/slurm.conf`) and both plugins in
 the environment: snakemake-executor-plugin-cluster-generic, which `workflow/profiles/slurm` uses, and
-snakemake-executor-plugin-slurm. The latter takes SLURM_CONF away from its jobs, so that /etc/slurm/slurm.conf has to
-lead to the same cluster; else it is left out.
+snakemake-executor-plugin-slurm. The latter removes SLURM_CONF from its jobs, so that /etc/slurm/slurm.conf must lead to
+the same cluster; otherwise it is left out.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
-"""What the jobs of a study have taken, rule by rule: wall and CPU time, and the peak memory of the largest job.
+"""Cost of the jobs of a study by rule: wall and CPU time, and the peak memory of the largest job.
 
     python benchmarks/stages.py results/paper
 
-It reads the benchmark files of the jobs. The minutes are those from the begin of the first job to the end of the last
-one, if all of them ran in one run.
+It reads the benchmark files of the jobs. The minutes are those from the beginning of the first job to the end of the
+last one, if all belong to one run.
 """
 
 from __future__ import annotations
@@ -17,12 +17,12 @@ from burridge_knopoff.report.stages import Stage, job_costs, read_stages
 
 
 def rules_of(results: Path) -> list[Stage]:
-    """Return what the jobs of each rule of a study have taken; the one with the largest CPU time first."""
+    """Return the cost of the jobs of each rule of a study, the one with the largest CPU time first."""
     return sorted(read_stages(results / "benchmarks", joined={}, skipped=()), key=lambda rule: -rule.cpu)
 
 
 def minutes_of(results: Path) -> float:
-    """Return the minutes from the begin of the first job of a study to the end of the last one."""
+    """Return the minutes from the beginning of the first job of a study to the end of the last one."""
     paths = (results / "benchmarks").rglob("*.tsv")
     ends = [(path.stat().st_mtime, wall) for path in paths for wall, *_ in job_costs(path)]
     return (max(end for end, _ in ends) - min(end - wall for end, wall in ends)) / 60.0

@@ -1,4 +1,4 @@
-"""Wall time of the points and their summaries against the same workflow with point jobs that only import.
+"""Wall time of the points and their summaries, compared with the same workflow with point jobs that only import.
 
 The baseline is a copy of the workflow with one line changed: instead of `bk simulate`, a point job imports NumPy and
 netCDF4 and links to the point file made by the first run of the study. Jobs, dependencies, scheduler and all other
@@ -22,7 +22,7 @@ from pathlib import Path
 from measure import print_table
 from process import AS_TYPED, BIN, IMPORTS, ONE_THREAD, REPOSITORY, SNAKEFILE, children_cpu
 
-#: All that the default study makes from its point files, but figures.
+#: All results of the default study that are made from its point files, except figures.
 TARGETS = [
     f"results/paper/summary/{name}.nc" for name in ("mean_distance", "bifurcation_diagram", "lyapunov", "agreement")
 ]
@@ -44,7 +44,7 @@ def make_baseline(folder: Path, made: Path) -> Path:
     text = rule.read_text(encoding="utf-8")
     if text.count(POINT_COMMAND) != 1:
         raise RuntimeError(f"{POINT_RULE} has changed: the line {POINT_COMMAND} is not in it")
-    # A link costs next to nothing in the process that has imported already; `cp` would be one more process.
+    # A link costs almost nothing in the process that has already imported; `cp` would be one more process.
     script = f"{IMPORTS}, os; os.link('{made}/{{output}}', '{{output}}')"
     rule.write_text(text.replace(POINT_COMMAND, f'"python -c \\"{script}\\" 2> {{log}}"'), encoding="utf-8")
     return folder / "Snakefile"

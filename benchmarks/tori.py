@@ -1,9 +1,9 @@
-"""Tests how well torus and chaos are distinguished: again in windows of 2.4 million time units, fifty times as long.
+"""Tests how well tori and chaos are distinguished, by windows of 2.4 million time units, fifty times as long.
 
     python benchmarks/tori.py results/paper
 
-A torus that proves to be chaos there, or a periodic orbit that attracts slowly, and chaos that proves to be regular,
-would have another kind in the study's files if the search looked so long. All tori and chaotic attractors of the grid
+A torus that proves to be chaos or a slowly attracting periodic orbit, and chaos that proves to be regular, would have
+another kind in the study's files if the search used such windows. All tori and chaotic attractors of the grid
 are tested, and every eighth at the values of a between: the thresholds of the search were chosen without these.
 """
 
@@ -38,9 +38,9 @@ OPTIONS = Settings(
 
 
 def resolved(study: Study, law: str, places: list[xarray.Dataset]) -> list[object]:
-    """Return how many attractors there are, and what they prove to be in the longer window.
+    """Return the number of attractors, and their kinds in the longer window.
 
-    That is how many are chaos, how many are not, and how many are periodic orbits, with their values of a.
+    These are the numbers of chaotic attractors, of others, and of periodic orbits, with their values of a.
     """
     chaotic, closed = 0, []
     for one in places:
@@ -55,7 +55,7 @@ def resolved(study: Study, law: str, places: list[xarray.Dataset]) -> list[objec
 
 
 def places(dataset: xarray.Dataset, kinds: tuple[MotionKind, ...], every: int) -> list[xarray.Dataset]:
-    """Return every so many-th attractor of these kinds, one of each mirror pair."""
+    """Return every n-th attractor of these kinds, n being `every`, one of each mirror pair."""
     wanted = np.isin(dataset["kind"].values, kinds) & (dataset["side"].values >= 0)
     return [dataset.isel({dataset["kind"].dims[0]: a, "attractor": slot}) for a, slot in np.argwhere(wanted)[::every]]
 

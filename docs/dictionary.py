@@ -1,6 +1,8 @@
 """Write the tables of docs/data.md from the files of small studies that have every stage: python docs/dictionary.py.
 
-Each table lists the variables of a file in the order of `ncdump`, with the descriptions in the file itself.
+Each table lists the variables of a file in the order of `ncdump`, with the descriptions in the file itself. The first
+line of a table has the dimensions of most of its variables. A variable that an earlier table describes in the same
+words is not described again.
 """
 
 from __future__ import annotations
@@ -9,6 +11,7 @@ import re
 import sys
 import tempfile
 import textwrap
+from collections import Counter
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,10 +26,13 @@ PAGE = ROOT / "docs" / "data.md"
 TABLE = re.compile(r"(?P<begin><!-- variables of (?P<file>\S+) -->\n).*?(?P<end><!-- end -->)", re.DOTALL)
 
 # Coordinates that the page explains once.
-COMMON = ("law", "initial", "a", "block")
+COMMON = ("law", "initial", "a", "block", "part")
 
 # Meanings of variables that are named in the row of the variable to which they belong.
 UNCERTAINTY = re.compile(r"((its|their) )?standard error|error of|(lower|upper) end")
+
+# The page says once which values stand for unknown numbers.
+UNKNOWN = re.compile(r"[,;] ((NaN|-1) (if|for|where|beyond) [^,;]*|otherwise NaN)$")
 
 # Meanings of a flag that answers a question.
 ANSWERS = {"undetermined", "unknown", "none", "no", "yes"}
@@ -63,7 +69,7 @@ class Row:
     """A variable, with its errors and the ends of its intervals: names, dimensions, meaning."""
 
     names: tuple[str, ...]
-    dimensions: str
+    dimensions: tuple[str, ...]
     meaning: str
 
     @property
@@ -71,8 +77,13 @@ class Row:
         """The names as text."""
         return ", ".join(f"`{name}`" for name in self.names)
 
-    def __str__(self) -> str:
-        return f"| {self.listed} | {self.dimensions} | {self.meaning} |"
+    def line(self, usual: tuple[str, ...]) -> str:
+        """Return the row of a table; its dimensions are given unless they are the usual ones of the table."""
+        shown = ""
+        if self.dimensions != usual:
+            further = self.dimensions[len(usual) :] if usual == self.dimensions[: len(usual)] else ()
+            shown = f" ({', '.join(('…', *further) if usual and further else self.dimensions) or 'scalar'})"
+        return f"| {self.listed}{shown} | {self.meaning} |"
 
 
 def rows(path: Path) -> list[Row]:
@@ -86,13 +97,13 @@ def rows(path: Path) -> list[Row]:
             owners = [k for k in owners if not UNCERTAINTY.match(found[k].meaning)]
             if base != variable.name and owners and UNCERTAINTY.match(row.meaning):
                 found[owners[0]] = replace(found[owners[0]], names=found[owners[0]].names + row.names)
-            elif row.names != (row.dimensions,) or row.dimensions not in COMMON:
+            elif row.names != row.dimensions or row.names[0] not in COMMON:
                 found.append(row)
     return found
 
 
 def _row(variable: netCDF4.Variable) -> Row:
-    text = variable.long_name
+    text = UNKNOWN.sub("", variable.long_name)
     if "flag_meanings" in variable.ncattrs():
         meanings = dict(zip(np.atleast_1d(variable.flag_values).tolist(), variable.flag_meanings.split(), strict=True))
         # The page explains answers and kinds of motion once.
@@ -101,22 +112,27 @@ def _row(variable: netCDF4.Variable) -> Row:
     for ascii_text, symbol in SYMBOLS.items():
         text = re.sub(ascii_text, symbol, text)
     # The letters of a text are a dimension that readers do not see.
-    dimensions = [name for name in variable.dimensions if not re.fullmatch(r"string\d+", name)]
-    return Row((variable.name,), ", ".join(dimensions), text)
+    dimensions = tuple(name for name in variable.dimensions if not re.fullmatch(r"string\d+", name))
+    return Row((variable.name,), dimensions, text)
 
 
 def page(text: str, folder: Path) -> str:
     """Return the text of docs/data.md with its tables made from the files in the folder of a study."""
-    seen: set[tuple[tuple[str, ...], str]] = set()
+    seen: set[tuple[str, str]] = set()
+
+    def is_described(row: Row) -> bool:
+        return any(name == row.names[0] and meaning.startswith(row.meaning) for name, meaning in seen)
 
     def table(match: re.Match[str]) -> str:
         found = rows(sorted(folder.glob(match["file"]))[0])
-        new = [row for row in found if (row.names, row.meaning) not in seen]
+        new = [row for row in found if not is_described(row)]
         again = ", ".join(row.listed for row in found if row not in new)
-        seen.update((row.names, row.meaning) for row in found)
-        lines = ["| variable | dimensions | meaning |", "| --- | --- | --- |", *map(str, new)]
+        seen.update((row.names[0], row.meaning) for row in found)
+        [(usual, _)] = Counter(row.dimensions for row in new).most_common(1)
+        lines = [f"| variable ({', '.join(usual) or 'scalar'}) | meaning |", "| --- | --- |"]
+        lines += [row.line(usual) for row in new]
         if again:
-            lines += ["", textwrap.fill(f"As in tables above: {again}.", 120)]
+            lines += ["", textwrap.fill(f"Described above: {again}.", 120)]
         return match["begin"] + "\n".join(lines) + "\n" + match["end"]
 
     return TABLE.sub(table, text)

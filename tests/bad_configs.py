@@ -1,6 +1,6 @@
-"""Bad configs, as they would stand in a file, and what the one line says: `key: got X, expected Y`.
+"""Contents of bad config files, with words of the error message `key: got X, expected Y`.
 
-tests/study/bad_changes.py has more of them, as changes to a good one.
+tests/study/bad_changes.py has more, as changes to a good config.
 """
 
 from burridge_knopoff.laws import LAWS
@@ -10,7 +10,7 @@ STATES = "initial: {minus: {}}\n"
 GOOD = f"study: x\n{GRID}{STATES}"
 BLOCKS = "[{}]".format(", ".join(["0.1"] * 1025))
 
-# name of the case: (content of the file, words of the line)
+# name of the case: (content of the file, words of the message)
 BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     # The file.
     "empty": ("", ["got nothing, expected keys with values"]),
@@ -33,7 +33,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "colon": (f"{GOOD}v 0.1\n", ["not YAML (line 5)", "':'"]),
     "json": ('{"study": "x", "a": [0.1', ["not YAML (line 1)"]),
     "directive": (f"%YAML 9.9\n---\n{GOOD}", ["not YAML (line 1)", "incompatible"]),
-    # What YAML can do beyond keys, lists and values.
+    # Features of YAML beyond keys, lists and values.
     "object": (f"{GOOD}v: !!python/object/apply:os.system ['touch made']\n", ["not YAML (line 4)", "python/object"]),
     "tag": (f"{GOOD}v: !speed 0.1\n", ["not YAML (line 4)", "!speed"]),
     "alias": (f"{GOOD}v: *speed\n", ["not YAML (line 4)", "alias"]),
@@ -210,7 +210,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "map_of_no_law": (f"{GOOD}basins: {{a: {{stribeck: [0.1]}}}}\n", ["basins.a.stribeck: unknown key", "linearized"]),
     "figure_law": (f"{GOOD}figures: {{law: stribeck}}\n", ["figures.law: 'stribeck'", "linearized | nonlinear"]),
     "solver_law": (f"{GOOD}solver: {{stribeck: series}}\n", ["solver.stribeck: unknown key", "linearized, nonlinear"]),
-    # States, and what does not fit together.
+    # States, and keys that are incompatible.
     "unknown_state": (
         f"study: x\n{GRID}initial: {{middle: {{}}}}\n",
         ["initial.middle: got no position and velocity", "minus | plus"],
@@ -245,7 +245,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     ),
     "outside": (f"{GOOD}basins: {{a: {{linearized: [0.2]}}}}\n", ["basins.a.linearized: 0.2", "a value of the grid"]),
     "box": (f"{GOOD}chains: {{position: [1, -1]}}\n", ["chains.position: [1, -1]", "low < high"]),
-    # More than a job can do.
+    # More than a job can compute.
     "steps": (f"{GOOD}solver: {{linearized: rk4}}\nstep: 1.0e-9\n", ["step: 1e-09", "3.33e+09 steps"]),
     "samples": (f"{GOOD}sampling: 1.0e-5\n", ["sampling: 1e-05", "1e7 samples"]),
     "trajectory": (
@@ -256,5 +256,5 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "pairs_of_states": (f"{GOOD}basins: {{pairs: 10000000}}\n", ["basins.pairs: 10000000", "numbers"]),
 }
 
-#: The first case in which the file is in order and a key is not.
+#: The first case of a valid file with an invalid key.
 FIRST_OF_KEYS = list(BAD_FILES).index("twice")

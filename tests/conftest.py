@@ -3,11 +3,11 @@
 import os
 import signal
 
-# Begun in the background of a shell, the tests would hand on to the programs they interrupt that Ctrl-C is ignored.
+# In tests run in the background of a shell, the interrupted programs would inherit that Ctrl-C is ignored.
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
-# As in a point job: the tests use both cores already.
+# One thread, as in a point job, since the tests already use both cores.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import fcntl
@@ -26,10 +26,10 @@ settings.load_profile("study")
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Let one of two workers begin with Slurm, the other with all else that is long, and both end with what is short.
+    """Let one of two workers begin with Slurm, the other with the other long tests, and both end with short ones.
 
-    Each has one half to begin with; whoever is done first takes over from the end of the other's. So no worker is left
-    alone with a long test. It comes last, when what is not to be run has been left out.
+    Each has one half; the one that finishes first takes tests from the end of the other's half, so that none is left
+    alone with a long test.
     """
     slurm, slow, workflow, short = groups = [], [], [], []
     for item in items:
@@ -57,7 +57,7 @@ def law(request: pytest.FixtureRequest) -> str:
 
 
 def made_once(tmp_path_factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
-    """Return a folder that `make` has filled, once for all workers: whichever comes first, while the others wait."""
+    """Return a folder that `make` fills once for all workers: the first one fills it while the others wait."""
     base = tmp_path_factory.getbasetemp()
     folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / f"shared_{name}"
     with folder.with_suffix(".lock").open("w") as lock:
@@ -99,17 +99,17 @@ def small_studies(tmp_path_factory: pytest.TempPathFactory):
 
 @pytest.fixture(scope="session")
 def installed(repository: Path, tmp_path_factory: pytest.TempPathFactory):
-    """The package installed from its source distribution, in an environment with what it declares and nothing else."""
+    """The package installed from its source distribution, in an environment with only the declared requirements."""
     from tests.installation import Installation, install
 
     return Installation(made_once(tmp_path_factory, "installed", lambda folder: install(repository, folder)))
 
 
 @pytest.fixture
-def tell(monkeypatch):
-    """Return how a function of a module is told its answers, in turn, which returns the list of what it is asked."""
+def script_answers(monkeypatch):
+    """Return a function that replaces a function of a module by scripted answers, and returns the list of its calls."""
 
-    def told(module, name, answers):
+    def script(module, name, answers):
         asked, left = [], iter(answers)
 
         def answer(*arguments, **named):
@@ -119,7 +119,7 @@ def tell(monkeypatch):
         monkeypatch.setattr(module, name, answer)
         return asked
 
-    return told
+    return script
 
 
 @pytest.fixture

@@ -33,14 +33,14 @@ def listed(run):
 
 
 def check_events(found, expected, tolerance):
-    """Require the same stops and starts in the same order, and at the same times but for less than the tolerance."""
+    """Require the same stops and starts in the same order, at the same times within the tolerance."""
     assert [event[1:] for event in found] == [event[1:] for event in expected]
     error = max((abs(event[0] - other[0]) for event, other in zip(found, expected, strict=True)), default=0.0)
     assert error <= tolerance, float(error)
 
 
 def carry(model, start, end, perturbations=None, solver="series"):
-    """Return the solver at time `end`, and the events on the way."""
+    """Return the solver at time `end`, and the events until then."""
     runner = Runner(model, solver, keep_events=True, perturbations=perturbations)
     runner.begin(start)
     assert runner.run(end) == Status.COMPLETED
@@ -56,7 +56,7 @@ def later(model, start, end):
 
 
 def directions(start):
-    """Return all perturbations that the state allows as columns: a stuck block has no velocity to perturb."""
+    """Return all perturbations that the state allows, as columns: the velocity of a stuck block cannot be perturbed."""
     return np.diag(np.concatenate([np.ones(len(start.stuck)), ~start.stuck]))
 
 
@@ -92,7 +92,7 @@ def differences(model, start, end, step):
 
 
 def growth_from(model, start, end, vectors):
-    """Return the exponents' kernel after a run from `start` to `end`, all of it in one batch from τ = 0."""
+    """Return the kernel's exponents after a run from `start` to `end`, in a single batch from τ = 0."""
     exponents = Exponents(model.blocks, vectors, 0.0, np.array([0.0, end]))
     runner = Runner(model, exponents=exponents)
     runner.begin(start)

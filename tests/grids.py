@@ -1,4 +1,4 @@
-"""Grids of point files as tests need them."""
+"""Grids of point files for tests."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.points import Grid
 
-#: What decides the models of a study that says nothing of them.
+#: The defaults that determine the models of a study.
 PAPER_MODELS: dict[str, Any] = {
     "laws": {law: {} for law in PAPER_LAWS},
     "chain": {"coupling": 1.0, "pulling": "neighbours", "threshold": 1.0, "ends": "open"},
@@ -29,7 +29,7 @@ def grid_of(
 ) -> Grid:
     """Return the grid of points that `simulate` makes with these settings, from these states.
 
-    models : a config's laws, chain, v and contact, as far as they are not the paper's
+    models : laws, chain, v and contact of a config where they differ from the paper's
     """
     states = [PAPER_STATES[state] if isinstance(state, str) else state for state in initial]
     models = {**PAPER_MODELS, **(models or {})}

@@ -1,4 +1,4 @@
-"""The package as others get it: a source distribution, the wheel made from it, and that wheel in an environment."""
+"""The package as users install it: a source distribution, its wheel, and an environment with that wheel."""
 
 from __future__ import annotations
 
@@ -48,8 +48,8 @@ class Installation:
 def install(repository: Path, folder: Path) -> None:
     """Build both distributions and install the wheel, without a network.
 
-    The kernel is compiled for all vectors and without optimisation: that is quicker, and tests/kernel/test_builds.py
-    holds its numbers against those of the checkout's.
+    The kernel is compiled for all vector widths and without optimization, which is quicker; tests/kernel/test_builds.py
+    compares its numbers with those of the checkout.
     """
     tree = folder / "tree"
     compiled = shutil.ignore_patterns("*.so", "build.json", "*.egg-info", "__pycache__")
@@ -62,13 +62,13 @@ def install(repository: Path, folder: Path) -> None:
     shutil.rmtree(tree)
 
     made = Installation(folder)
-    # As a command, which takes no filter: Python 3.11.2, that of Debian 12, knows none.
+    # A command, since the `tarfile` of Python 3.11.2 (Debian 12) has no filters.
     subprocess.run([sys.executable, "-m", "tarfile", "-e", str(made.source), str(folder / "unpacked")], check=True)
     (unpacked,) = (folder / "unpacked").iterdir()
     flags = unpacked / "src" / "burridge_knopoff" / "provenance" / "compilation.py"
     assert '"-O3"' in flags.read_text()
     flags.write_text(flags.read_text().replace('"-O3"', '"-O0"'))
-    # As in a checkout that has a kernel of its own, which may be at work.
+    # As in a checkout whose own kernel may be in use.
     for name in ("build.json", f"_core{EXTENSION_SUFFIXES[0]}"):
         (unpacked / "src" / "burridge_knopoff" / "kernel" / name).write_text("of the tree\n")
     before = content_of(unpacked)
@@ -103,7 +103,7 @@ def content_of(tree: Path) -> dict[str, tuple[int, bytes]]:
 
 
 def _needs(package: Distribution) -> dict[str, Distribution]:
-    """Return all that a distribution needs without extras, and all that this needs, as it is installed here."""
+    """Return all requirements of a distribution without extras, and theirs, as installed here."""
     found: dict[str, Distribution] = {}
     waiting = [package]
     while waiting:

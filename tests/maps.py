@@ -1,4 +1,4 @@
-"""Maps of the line with known attractors, in place of a chain: one iteration is one stop, one unit of time."""
+"""One-dimensional maps with known attractors in place of a chain: one iteration is one stop and one unit of time."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -18,7 +18,7 @@ BATCHES = 6
 
 @dataclass(frozen=True)
 class MapModel:
-    """A map x → f(x, a) and its derivative, each of arrays; a chain of one block whose velocity does not matter."""
+    """A map x → f(x, a) and its derivative, of arrays, as a chain of one block whose velocity is irrelevant."""
 
     map: Callable[[np.ndarray, float], np.ndarray]
     slope: Callable[[np.ndarray, float], np.ndarray]
@@ -60,7 +60,7 @@ def visit(model, start, transient, window):
 
 
 def observe(model, start, transient, window, settings, mean_distance=None, exponents=2):
-    """Measure a motion of the flow that a map is the section of: of its exponents one is 0."""
+    """Measure the motion of a flow whose section is the map; one of its exponents is 0."""
     x = model.orbit(start.position[0], transient + window)[int(transient) :]
     growth = np.log(np.abs(model.slope(x, model.a)) + 1e-300)
     batches = [part.mean() for part in np.array_split(growth, BATCHES)]
@@ -68,7 +68,7 @@ def observe(model, start, transient, window, settings, mean_distance=None, expon
     error = np.where(exponent == 0.0, 0.0, np.std(batches) / np.sqrt(BATCHES))
     found = returns_of(model, window, np.ones(len(x)), rows_of(x).__getitem__)
     points = repetition_length(x, settings.period_tolerance, int(min(settings.longest_period, len(x) // 3)))
-    told = motion_from_period(points, float(points) if points else np.nan, np.inf, exponent, error, settings)
+    motion = motion_from_period(points, float(points) if points else np.nan, np.inf, exponent, error, settings)
     return SteadyMotion(
         found.returns,
         found.mirror_returns,
@@ -76,10 +76,10 @@ def observe(model, start, transient, window, settings, mean_distance=None, expon
         float(x.mean()),
         float(x.std() / np.sqrt(len(x))),
         np.ones(1),
-        told.kind,
-        told.section_period,
+        motion.kind,
+        motion.section_period,
         exponent,
-        period=told.period,
+        period=motion.period,
     )
 
 
@@ -120,5 +120,5 @@ class Ensemble:
 LOGISTIC = MapModel(lambda x, r: r * x * (1.0 - x), lambda x, r: r * (1.0 - 2.0 * x), 3.2)
 #: The wells of x → x + (μ + x − x³)/2, a = 1 + μ, are −1 and 1 for μ = 0; both are there for |μ| < 2/√27.
 TWO_WELLS = MapModel(lambda x, a: x + 0.5 * (a - 1.0 + x - x**3), lambda x, a: 1.5 - 1.5 * x**2, 1.0)
-#: The circle, turned by a golden share a: no point returns.
+#: The rotation of the circle by the golden ratio: no point returns.
 CIRCLE = MapModel(lambda x, a: (x + a) % 1.0, lambda x, a: np.ones_like(x), 0.5 * (np.sqrt(5.0) - 1.0))

@@ -1,7 +1,7 @@
-"""Programs that some tests use and that nobody has to have.
+"""Optional programs that some tests use.
 
-A test never looks for one: the setting names it, an environment variable. Without the setting the test is skipped, and
-the last lines of the run name test and setting; a setting that leads nowhere lets the test fail.
+No test searches for a program: an environment variable names it. If the variable is not set, the test is skipped, and
+the last lines of the run name both; if it names no program, the test fails.
 """
 
 from __future__ import annotations
@@ -23,17 +23,17 @@ SETTINGS = {
 
 
 def setting(name: str) -> str:
-    """Return what the setting says, empty if it is not set."""
+    """Return the value of the variable, empty if it is not set."""
     return os.environ.get(name, "")
 
 
 def needs(name: str) -> pytest.MarkDecorator:
-    """Return the mark of a test that is skipped without the setting."""
+    """Return the mark of a test that is skipped unless the variable is set."""
     return pytest.mark.skipif(not setting(name), reason=f"{name} is not set: {SETTINGS[name]}")
 
 
 def launch_chromium(playwright: Playwright) -> Browser:
-    """Start the Chromium of the setting; Debian's is a script, which calls other programs of its folder."""
+    """Start the Chromium that the variable names; Debian's is a script, which calls other programs in its folder."""
     program = setting("BK_CHROMIUM")
     path = os.pathsep.join((os.environ["PATH"], str(Path(program).parent)))
     arguments = ["--no-sandbox", "--disable-gpu"]

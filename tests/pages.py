@@ -1,7 +1,7 @@
-"""Pages of the documentation that are run: their Python blocks, and the output that follows each.
+"""Runs the Python blocks of documentation pages and compares the output that follows each block.
 
-`python -m tests.pages docs/tutorial.md`, in the root of the checkout, runs a page and writes the output and the
-pictures of its blocks anew; --skip leaves out the blocks below a heading, --only runs none but those.
+`python -m tests.pages docs/tutorial.md`, in the root of the checkout, runs a page and updates the output and pictures
+of its blocks; --skip leaves out the blocks below a heading, --only runs only those.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def blocks(page: str) -> list[Block]:
     """Return the fenced blocks of a page, in order."""
     found = []
     for match in FENCE.finditer(page):
-        # A comment in a block is no heading.
+        # A comment in a block is not a heading.
         before = FENCE.sub("", page[: match.start()])
         headings = re.findall(r"^#+ (.*)$", before, re.MULTILINE)
         found.append(Block(match["info"], match["text"], headings[-1] if headings else "", match.span("text")))
@@ -77,7 +77,7 @@ def run(code: str, namespace: dict[str, object], place: str) -> str:
 
 
 def outputs(page: str, name: str, headings: set[str] | None = None) -> list[tuple[Block, str, str]]:
-    """Run the Python blocks of a page, one after another, and return (output block, what it says, what was printed).
+    """Run the Python blocks of a page in order, and return (output block, its text, what was printed) for each.
 
     headings : run only the blocks below these
     """
@@ -97,7 +97,7 @@ def outputs(page: str, name: str, headings: set[str] | None = None) -> list[tupl
 
 
 def main() -> None:
-    """Write the outputs of a page anew."""
+    """Update the outputs of a page."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("page", type=Path)
     parser.add_argument("--skip", action="append", default=[], metavar="HEADING")

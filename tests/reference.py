@@ -11,7 +11,8 @@ ground, ``w_i = U_i'``, a chain of N blocks (D_i neighbours for block i) obeys
 Each step expands y, w and s in Taylor series in multiple-precision arithmetic. What decides about an event is then a
 polynomial on [0, 1]: the speed of a moving block, the distance of a stuck block's spring force from its threshold.
 Its first root is isolated by Descartes' rule of signs in the Bernstein basis. The rule never undercounts roots, so a
-grazing touch cannot hide between sample points, and two roots however close are told apart before one is refined.
+grazing touch cannot be missed between sample points, and any two roots, however close, are separated before one is
+refined.
 """
 
 from functools import cache
@@ -148,7 +149,7 @@ class _Chain:
             yield [1 - sign * force[block][0], *(-sign * value for value in force[block][1:])], sign
 
     def run(self, end):
-        """Step on to time `end`, event by event."""
+        """Integrate to time `end`, event by event."""
         stalled = 0
         while self.time < end:
             position, velocity, force = self.series()

@@ -12,7 +12,7 @@ from scipy.optimize import brentq
 
 SPACING = 0.00125
 LONGEST_STEP = 0.1
-#: A block that has just started leaves 0 like t², or at least slowly: for so long its noise there is no stop.
+#: The velocity of a block that has just started grows from 0 like t²: noise within this time is not a stop.
 FRESH = 2e-3
 ROUNDING = 1e-13
 
@@ -42,7 +42,7 @@ def scipy_events(
         return np.concatenate([y[blocks:] - v, acceleration_at(y)])
 
     def gaps(time, y):
-        """What is positive until the next event: the speed of a block that slips, (signs, blocks, times) else."""
+        """Return what is positive until the next event: the speed of a slipping block, or (signs, blocks, times)."""
         stuck = np.array([threshold[:, None] - sign * force_at(y) for sign in signs])
         speed = np.where(time - started[:, None] < FRESH, np.inf, slip[:, None] * y[blocks:])
         return np.where(slip[:, None] == 0, stuck, speed)
@@ -53,11 +53,11 @@ def scipy_events(
         found.append((clock, i + 1, int(kind != 0)))
 
     def starts(force, growth, i):
-        """Whether a stuck block starts: at its threshold only under a force that grows."""
+        """Return whether a stuck block starts: at its threshold only if the force grows."""
         return force > threshold[i] + ROUNDING or (force >= threshold[i] - ROUNDING and growth > 0.0)
 
     def settle():
-        """Let every block stop or start that does so at this instant."""
+        """Let all blocks that stop or start at this instant do so."""
         changed = True
         while changed:
             changed = False
@@ -65,7 +65,7 @@ def scipy_events(
             for i in range(blocks):
                 speed = slip[i] * state[blocks + i]
                 if slip[i] and started[i] != clock and speed <= ROUNDING:
-                    # One that accelerates forward from rest goes on.
+                    # A block that accelerates forward from rest continues.
                     if speed > -ROUNDING and slip[i] * force[i] > threshold[i] * friction(abs(speed)):
                         continue
                     change(i, 0)

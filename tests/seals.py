@@ -1,4 +1,4 @@
-"""Files that say something else of themselves than what has made them."""
+"""Files whose seals state another origin than the true one."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from burridge_knopoff.provenance.seal import read_sealed, write_sealed
 
 
 def resealed(path: Path, **changes: Any) -> None:
-    """Let a file be one that something else has made and sealed; None takes a key away."""
+    """Seal a file as if it had another origin; None removes a key."""
     content, about, status = read_sealed(path)
     about = {key: value for key, value in {**about, **changes}.items() if value is not None}
     write_sealed(path, lambda name: Path(name).write_bytes(content), about, status)

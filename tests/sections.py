@@ -1,4 +1,4 @@
-"""Sections of a config that many tests use."""
+"""Sections of a config, for many tests."""
 
 AGREEMENT = {"relative_tolerance": 0.1, "standard_errors": 3.0}
 MOTION = {

@@ -1,4 +1,4 @@
-"""Studies small enough to be run inside a test: in this process, job after job as they are declared."""
+"""Studies small enough to run inside a test, in this process, one job after another."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from burridge_knopoff.summaries.points import Grid
 
 ROOT = Path(__file__).parents[1]
 
-#: Runs that are long enough to have something in every panel.
+#: Runs that are just long enough for data in every panel.
 SMALL = {
     "study": "small",
     "a": [0.05, 0.2],
@@ -51,7 +51,7 @@ SMALL = {
 _EQUAL = [-0.95, -1.0, -0.97]
 _STATES = {"pushed": {"position": _EQUAL, "velocity": [0.1, 0.12, 0.09]}}
 
-#: What differs from it in the studies for which every figure and the report are drawn.
+#: Changes to it in the studies for which every figure and the report are drawn.
 STUDIES: dict[str, dict[str, Any]] = {
     "paper": {},
     "one_law": {"laws": {"linearized": {}}, "edges": {"a": [0.05], "duration": 800, "samples": 20}},
@@ -79,14 +79,14 @@ STUDIES: dict[str, dict[str, Any]] = {
     "two_blocks": {"initial": {"pair": {"position": [-0.9, -1.1], "velocity": [0.1, 0.1]}}},
 }
 
-#: Their names, as of fixtures. The finished study of the workflow is like that of the paper; the others are left to
-#: `make test-all`.
+#: Their names as parameters. The finished study of the workflow is like that of the paper; `make test-all` adds the
+#: others.
 SOME_STUDIES = [pytest.param(name, marks=() if name == "one_law" else pytest.mark.slow) for name in STUDIES]
 
 
 @dataclass(frozen=True)
 class SmallStudy:
-    """A study of which some jobs are done; folder : of its results."""
+    """A study with some finished jobs; folder : of its results."""
 
     study: Study
     folder: Path
@@ -108,14 +108,14 @@ class SmallStudy:
 
     @cached_property
     def found(self) -> dict[str, xarray.Dataset]:
-        """The summaries that are made, by name."""
+        """The finished summaries, by name."""
         return {path.stem: open_summary(path) for path in sorted(self.folder.glob("summary/*.nc"))}
 
     def do(self, names: Collection[str]) -> None:
         """Do the jobs of some stages or rules, after those that they wait for."""
         jobs = self.jobs
         for rule in jobs.existing.values():
-            # Chunks are of points that have been run one by one here.
+            # The points of chunks are run one by one here.
             for job in rule.each if {rule.stage, rule.name} & {*names} and rule.name != "chunk" else ():
                 if rule.make:
                     inputs = {
@@ -127,7 +127,7 @@ class SmallStudy:
                     write_point(run(*self.study.run_of(**job)), path)
 
 
-#: The stages that make summaries, besides proofs.
+#: The stages that make summaries, except proofs.
 SUMMARIES = (
     *("points", "attractors", "basins", "bifurcations", "edges", "phases"),
     *("solvers", "catalogue", "two_blocks", "summary"),

@@ -1,4 +1,4 @@
-"""The library: every public name is documented, with its parameters, and has examples that run."""
+"""The library: every public name is documented, with its parameters, and its examples run."""
 
 import doctest
 import inspect
@@ -19,7 +19,7 @@ NAMES = burridge_knopoff.__all__
 @pytest.mark.parametrize("name", NAMES)
 def test_every_name_is_documented(name):
     public = getattr(burridge_knopoff, name)
-    # Not that of a base class, nor what a dataclass makes of its fields.
+    # The docstring must not be that of a base class or the one that a dataclass generates.
     text = vars(public)["__doc__"] if inspect.isclass(public) else public.__doc__
     assert not text.startswith(f"{name}(")
     assert f"`{name}`" in burridge_knopoff.__doc__
@@ -31,7 +31,7 @@ def test_every_name_is_documented(name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_its_examples_run(name, tmp_path, monkeypatch):
+def test_the_examples_of_a_name_run(name, tmp_path, monkeypatch):
     if name == "open_study":
         make_study(tmp_path / "results" / "paper")
     monkeypatch.chdir(tmp_path)
@@ -43,7 +43,7 @@ def test_its_examples_run(name, tmp_path, monkeypatch):
     assert not failed, "".join(failed)
 
 
-def test_names_are_completed_before_they_are_used():
+def test_names_are_listed_for_completion_before_they_are_loaded():
     assert set(NAMES) <= set(dir(burridge_knopoff))
 
 

@@ -1,4 +1,4 @@
-"""docs/architecture.md: rooms import from rooms below them, and every file that the page names is there."""
+"""docs/architecture.md: subpackages import only from those below them, and every file that the page names exists."""
 
 import ast
 import re
@@ -13,8 +13,8 @@ PICTURE = PAGE.split("```text\n")[1].split("```")[0]
 NAMED = [name for name in re.findall(r"`([\w/]+(?:\.\w+)?/?)`", PAGE) if "/" in name]
 
 
-def floors():
-    """Return {room: its floor, counted from below} as the page draws them."""
+def levels():
+    """Return {subpackage: its level, counted from below} as on the page."""
     inside = PICTURE.split(" src/burridge_knopoff ")[1].split(" src/snakemake")[0].splitlines()[1:-1]
     rows = [re.split(r"\s{3,}", line.strip())[:-1] for line in inside]
     names = [[name for cell in row for name in re.split(r",\s*", cell)] for row in rows]
@@ -22,7 +22,7 @@ def floors():
 
 
 def imports(path):
-    """Return the rooms that a file imports from, for types too, or by a name in a text."""
+    """Return the subpackages that a file imports from, also for types, or by a name in a text."""
     rooms = set()
     for node in ast.walk(ast.parse(path.read_text())):
         names = []
@@ -35,40 +35,40 @@ def imports(path):
     return rooms & ROOMS
 
 
-def room_of(path):
+def subpackage_of(path):
     return path.relative_to(PACKAGE).parts[0].removesuffix(".py")
 
 
-ROOMS = {room_of(path) for path in PACKAGE.rglob("*.py")} - {"__init__"}
+ROOMS = {subpackage_of(path) for path in PACKAGE.rglob("*.py")} - {"__init__"}
 
 
 @pytest.mark.parametrize("room", sorted(ROOMS))
-def test_a_room_imports_from_below(room):
-    floor = floors()
-    for path in (path for path in PACKAGE.rglob("*.py") if room_of(path) == room):
+def test_a_subpackage_imports_only_from_below(room):
+    floor = levels()
+    for path in (path for path in PACKAGE.rglob("*.py") if subpackage_of(path) == room):
         for other in imports(path) - {room}:
             assert floor[other] < floor[room], f"{path}: {other}"
 
 
-def test_every_room_is_in_the_picture():
-    assert set(floors()) == ROOMS
+def test_every_subpackage_is_in_the_picture():
+    assert set(levels()) == ROOMS
 
 
 @pytest.mark.parametrize("name", sorted(set(NAMED)))
-def test_every_file_that_is_named_is_there(name):
+def test_every_named_file_exists(name):
     assert any((folder / name).exists() for folder in (ROOT, PACKAGE)), name
 
 
-def test_balls_do_not_leave_their_room():
-    """What is computed in double precision must not pass for proved: only the summary of the proofs holds balls."""
+def test_balls_are_used_only_in_proofs():
+    """Values in double precision must not be taken for proved ones: only the summary of the proofs uses balls."""
     flint = re.compile(r"^\s*(from|import) flint", re.MULTILINE)
     users = {path for path in PACKAGE.rglob("*.py") if flint.search(path.read_text())}
-    assert {room_of(path) for path in users} == {"proof", "summaries"}
-    assert [path.name for path in users if room_of(path) == "summaries"] == ["proof.py"]
+    assert {subpackage_of(path) for path in users} == {"proof", "summaries"}
+    assert [path.name for path in users if subpackage_of(path) == "summaries"] == ["proof.py"]
 
 
-def test_the_display_and_the_package():
-    """The package knows nothing of Snakemake."""
+def test_the_package_does_not_import_snakemake():
+    """The display imports the package, but the package does not depend on Snakemake."""
     for path in PACKAGE.rglob("*.py"):
         nodes = list(ast.walk(ast.parse(path.read_text())))
         names = {node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)}

@@ -1,4 +1,4 @@
-"""What `.ci/run` runs, and what it lets the tests use: every check, with what the README says that they need."""
+"""`.ci/run` runs every check, with the programs that the README names and no others."""
 
 import os
 import re
@@ -13,7 +13,7 @@ def test_the_tests_run_with_nothing_but_what_the_readme_names(repository, tmp_pa
     needed = re.search(r"\*\*Requirements\*\*: (.*?)\n\n", (repository / "README.md").read_text(), re.DOTALL)[1]
     names = {name for words in re.findall(r"`(.*?)`", needed) for name in words.split()}
     compiler = Path(sysconfig.get_config_var("CXX").split()[0]).name
-    # In place of `make`: it tells what it is given.
+    # A replacement for `make` that prints its arguments.
     make = tmp_path / "make"
     make.write_text('#!/usr/bin/env bash\necho "$@"\ncd "$PATH" && echo *\n')
     make.chmod(0o755)

@@ -1,4 +1,4 @@
-"""CITATION.cff is about the software as it is."""
+"""CITATION.cff describes the present version."""
 
 import yaml
 

@@ -24,7 +24,7 @@ OWN = ["simulate", "--a", "0.08", *SHORT, "--formula"]
 
 
 def without_doubles(arguments):
-    """Return arguments as rows are written: an option stands in the place of an earlier one of RUN."""
+    """Return the arguments of a row; an option replaces an earlier one of RUN."""
     kept = list(arguments)
     for name in ("--law", "--a", "--transient", "--window", "--batches"):
         if kept.count(name) > 1:
@@ -62,8 +62,8 @@ def test_all_options(tmp_path):
     )
     assert main(["simulate", *options.split(), "--out", str(out)]) == 0
     with netCDF4.Dataset(out) as dataset:
-        told = {"solver": "rk4", "step": 0.01, "initial": "pair", "contact": "symmetric", "start": "tested"}
-        assert {name: dataset.getncattr(name) for name in told} == told
+        expected = {"solver": "rk4", "step": 0.01, "initial": "pair", "contact": "symmetric", "start": "tested"}
+        assert {name: dataset.getncattr(name) for name in expected} == expected
         assert dataset["v"][...] == 0.2
         assert dataset["initial_position"][:].tolist() == [-0.9, -1.1]
         sizes = {"sample": 31, "trajectory_time": 11, "batch": 3, "exponent": 2}
@@ -71,8 +71,8 @@ def test_all_options(tmp_path):
         assert dataset["event_time"][0] < 29.0
 
 
-def test_a_law_of_ones_own_in_a_ring(tmp_path):
-    """No compiler and no file of its own: the formula, its numbers and the springs are in the point."""
+def test_a_custom_law_in_a_ring(tmp_path):
+    """It needs neither a compiler nor a file: the formula, its parameters and the springs are in the point."""
     out = tmp_path / "own.nc"
     options = ["--number", "c=0.1", "--law-name", "soft", "--ends", "ring", "--coupling", "1,2,3", "--pulling", "0.5"]
     assert main([*OWN, "1 - c*tanh(a*u/c)", *options, "--threshold", "1,1.5,1", "--out", str(out)]) == 0
@@ -91,7 +91,7 @@ def test_a_law_of_ones_own_in_a_ring(tmp_path):
     assert again.read_bytes() == out.read_bytes()
 
 
-def test_numbers_and_another_name_of_a_law_that_is_built_in(tmp_path):
+def test_parameters_and_another_name_of_a_built_in_law(tmp_path):
     assert main([*DROP, "--number", "sigma=0.02", "--law-name", "drop", "--out", str(tmp_path / "x.nc")]) == 0
     with netCDF4.Dataset(tmp_path / "x.nc") as dataset:
         assert (dataset.law, dataset.law_sigma) == ("drop", 0.02)
@@ -103,29 +103,29 @@ def test_numbers_and_another_name_of_a_law_that_is_built_in(tmp_path):
     ("given", "position"),
     [(["--position", "-0.9,-1,-1"], [-0.9, -1.0, -1.0]), (["--velocity", "0.1,0.1,0.1"], [-0.989, -0.993, -0.991])],
 )
-def test_numbers_without_a_name_are_not_those_of_the_paper(tmp_path, given, position):
+def test_a_state_without_a_name_is_not_one_of_the_paper(tmp_path, given, position):
     assert main([*RUN, *given, "--out", str(tmp_path / "x.nc")]) == 0
     with netCDF4.Dataset(tmp_path / "x.nc") as dataset:
         assert dataset.initial == "own"
         assert dataset["initial_position"][:].tolist() == position
 
 
-def test_what_is_longer_than_the_run_is_said(tmp_path, capsys):
+def test_times_longer_than_the_run_are_reported(tmp_path, capsys):
     assert main([*RUN, "--trajectory", "5000", "--event-window", "25", "--out", str(tmp_path / "x.nc")]) == 0
-    said = capsys.readouterr().err.splitlines()
-    assert said == [
+    output = capsys.readouterr().err.splitlines()
+    assert output == [
         "note: bk simulate: trajectory: 5000 is longer than the run; all 30 time units were recorded",
         "note: bk simulate: event_window: 25 is longer than the window; all 20 time units were recorded",
     ]
 
 
-def test_what_a_long_chain_costs_is_said_before_it_starts(tmp_path):
+def test_the_cost_of_a_long_chain_is_printed_before_the_run(tmp_path):
     options = "--law nonlinear --a 0.3 --blocks 100000 --position=-0.9 --velocity 0.1 --initial all --trajectory 1"
     command = [BK, "simulate", *options.split(), "--lyapunov-exponents", "0", "--out", tmp_path / "x.nc"]
     with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
-        said = process.stderr.readline()
+        output = process.stderr.readline()
         process.send_signal(signal.SIGINT)
-    assert said == (
+    assert output == (
         "note: bk simulate: 100000 blocks: about 5 min per time unit, 35 days for the run if they keep slipping; "
         "0.45 GB in addition to the recorded events\n"
     )
@@ -252,14 +252,14 @@ def test_bad_input(tmp_path, monkeypatch, capsys, arguments, words):
         code = main(without_doubles(arguments))
     except SystemExit as end:
         code = end.code
-    said = capsys.readouterr()
-    assert (code, said.out) == (2, "")
-    assert said.err.count("\n") == 1
-    assert words in said.err or words in said.err.replace(": got ", ": ")
+    output = capsys.readouterr()
+    assert (code, output.out) == (2, "")
+    assert output.err.count("\n") == 1
+    assert words in output.err or words in output.err.replace(": got ", ": ")
     assert list(tmp_path.iterdir()) == []
 
 
-def test_a_run_that_ends_early_says_so(tmp_path):
+def test_a_run_that_ends_early_is_reported(tmp_path):
     longer = ["--transient", "0", "--window", "1000"]
     run = bk(*RUN[:4], "1.9", "--contact", "symmetric", *longer, "--out", "x.nc", cwd=tmp_path)
     assert (run.returncode, run.stdout) == (3, "")
@@ -270,7 +270,7 @@ def test_a_run_that_ends_early_says_so(tmp_path):
         assert dataset["mean_distance"][...] != dataset["mean_distance"][...]
 
 
-def test_a_link_stays_and_its_target_is_written(tmp_path):
+def test_a_link_is_kept_and_its_target_is_written(tmp_path):
     (tmp_path / "target.nc").write_text("old")
     (tmp_path / "link.nc").symlink_to("target.nc")
     assert main([*RUN, "--out", str(tmp_path / "link.nc")]) == 0
@@ -304,12 +304,12 @@ def test_help_names_every_setting():
         ("> /dev/full", 2, "bk completion: standard output: cannot be written: No space left on device"),
     ],
 )
-def test_an_output_that_takes_nothing(output, code, error):
+def test_an_output_that_cannot_be_written(output, code, error):
     run = subprocess.run(f"{shlex.quote(BK)} completion bash {output}", shell=True, capture_output=True, text=True)
     assert (run.returncode, run.stderr.strip()) == (code, error)
 
 
-def test_a_terminal_without_umlauts(tmp_path):
+def test_a_terminal_without_unicode(tmp_path):
     words = [BK, *RUN, "--out", "Größe.nc"]
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
     run = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, env=environment)
@@ -318,7 +318,7 @@ def test_a_terminal_without_umlauts(tmp_path):
 
 
 def test_start_up_imports_no_heavy_library(tmp_path):
-    """A point job pays for the interpreter, numpy and netCDF4 only, and for no other command."""
+    """A point job loads only the interpreter, numpy and netCDF4, and no other command."""
     code = (
         "import sys; from burridge_knopoff.cli import main; "
         f"main({[*RUN, '--out', str(tmp_path / 'x.nc')]!r}); "

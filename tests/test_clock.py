@@ -1,4 +1,4 @@
-"""Nothing depends on τ: every public function that takes a state gives the same for it at any time of its clock."""
+"""No result depends on τ: every public function gives the same result for a state at any time of its clock."""
 
 from dataclasses import replace
 
@@ -99,12 +99,12 @@ CALLS = {
 
 
 @pytest.mark.parametrize("name", CALLS)
-def test_the_clock_moves_nothing(name):
+def test_results_do_not_depend_on_the_clock(name):
     make, call = CALLS[name]
     state = make()
     expected = call(replace(state, time=0.0))
     for clock in CLOCKS:
-        # Times are those of a clock that resolves no less than 1e-10.
+        # The clock resolves times to 1e-10 or better.
         _same(call(replace(state, time=clock)), expected)
 
 
@@ -120,7 +120,7 @@ def _same(found, expected):
 
 
 def test_a_cycle_is_found_from_the_end_of_a_long_run():
-    """It was not from τ = 8000 on, as the clock of the state was taken for time that had passed."""
+    """It was once not found from τ = 8000 on, since the clock of the state was taken for elapsed time."""
     run = simulate(PAPER, initial="plus", transient=0.0, window=9000.0, lyapunov_exponents=0)
     assert limit_cycle(PAPER, run.final).period == pytest.approx(157.2451476, abs=1e-6)
     with pytest.raises(OrbitError, match="no periodic orbit found within 1$"):
@@ -128,8 +128,8 @@ def test_a_cycle_is_found_from_the_end_of_a_long_run():
 
 
 @pytest.mark.parametrize("clock", [0.0, -1e6])
-def test_many_events_of_a_long_chain_accumulate_at_no_clock(clock):
-    """From a clock below 0 they all counted as those of one time unit once."""
+def test_events_of_a_long_chain_do_not_accumulate_at_any_clock(clock):
+    """From a clock below 0 all of them once counted as events of one time unit."""
     model = Model(Chain(3), law_of("linearized", 0.2))
     state = replace(model.begin(InitialState("own", (-0.9, -1.0, -0.95), (0.1, 0.1, 0.1))), time=clock)
     run = simulate(model, initial=state, transient=0.0, window=5000.0, lyapunov_exponents=0)
@@ -140,12 +140,12 @@ def test_many_events_of_a_long_chain_accumulate_at_no_clock(clock):
 @pytest.mark.parametrize("blocks", [3, 30])
 @pytest.mark.parametrize("time", [0.0, 100.0])
 def test_a_run_that_fails_ends_at_its_last_instant(blocks, time):
-    """Once the clock of its last state was 0."""
+    """The clock of its last state was once 0."""
     model = Model(Chain(blocks), law_of("linearized", 3.0), contact="symmetric")
     at = model.begin(InitialState("rough", tuple([5.0, -5.0, 5.0] * (blocks // 3)), 0.0), "tested")
     start = replace(at, time=time)
     ended = simulate(model, initial=start, transient=10.0, window=100.0)
     assert ended.status == "diverged"
     assert time < ended.final.time == ended.end_time < time + 100.0
-    # Groups diverge where one of them does.
+    # A run in groups diverges if one group does.
     assert time < record_events(model, start, time + 500.0).final.time < time + 100.0

@@ -1,4 +1,4 @@
-"""docs/extending.md: its edits, applied to a copy of the tree, give all that the page adds."""
+"""docs/extending.md: its edits, applied to a copy of the tree, work as the page says."""
 
 import os
 import re
@@ -20,7 +20,7 @@ pytestmark = pytest.mark.slow
 REPOSITORY = Path(__file__).parent.parent
 PAGE = (REPOSITORY / "docs" / "extending.md").read_text()
 
-#: Little of everything.
+#: Small settings of all stages.
 SMALL = """
 study: small
 a: [0.05, 0.2]
@@ -160,9 +160,9 @@ def test_the_law_meets_its_obligations(extended):
     assert int(re.search(r"(\d+) passed", ran)[1]) >= 20
 
 
-def test_the_page_prints_what_it_says(extended):
-    code, said = (next(block for block in blocks(PAGE) if block.info == info) for info in ("python", "text"))
-    assert run(extended, sys.executable, "-c", code.text) == said.text
+def test_the_page_shows_what_its_code_prints(extended):
+    code, expected = (next(block for block in blocks(PAGE) if block.info == info) for info in ("python", "text"))
+    assert run(extended, sys.executable, "-c", code.text) == expected.text
 
 
 def test_a_study_of_the_laws_ends_in_its_report(extended, tmp_path):
@@ -182,7 +182,7 @@ def test_a_study_of_the_laws_ends_in_its_report(extended, tmp_path):
 
 def test_a_study_of_the_chain_ends_in_its_report(extended, tmp_path):
     _, chain = (block.text for block in blocks(PAGE) if block.info == "yaml")
-    # tests/figures and tests/report have all of a chain like it.
+    # tests/figures and tests/report draw everything for such a chain.
     results = study(extended, tmp_path, chain + "laws: {linearized: {}}\nwithout: [proof, attractors, solvers]\n")
     assert (results / "figures" / "largest_velocity.png").is_file()
 

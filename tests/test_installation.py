@@ -1,4 +1,4 @@
-"""Installed from its distributions, away from the checkout: what a plain install brings is enough for the library."""
+"""The package installed without the checkout: a plain installation is sufficient for the library."""
 
 import json
 import os
@@ -14,7 +14,7 @@ from tests.pages import blocks
 
 pytestmark = pytest.mark.slow
 
-# Rooms of a study alone, which `snakemake` uses from a checkout: the extra `study`.
+# Subpackages for studies only, which `snakemake` uses from a checkout: the extra `study`.
 OF_STUDY = ("proof", "report", "summaries.proof")
 
 MODULES = """
@@ -74,11 +74,11 @@ def test_without_a_compiler_make_says_in_one_line_what_to_install(repository, tm
 
 
 def test_building_for_another_environment_touches_nothing_in_the_tree(installed):
-    """Nor its kernel, with which a study may be at work, nor the record of it."""
+    """This includes its kernel, which a running study may use, and the record of its build."""
     assert installed.touched == []
 
 
-def test_everything_but_the_rooms_of_a_study_can_be_imported(installed, tmp_path):
+def test_all_subpackages_except_those_of_a_study_can_be_imported(installed, tmp_path):
     where, missing = json.loads(run(installed, tmp_path, "-c", MODULES))
     assert where.startswith(str(installed.folder / "environment"))
     assert [name for name in missing if not name.startswith(OF_STUDY)] == []
@@ -109,7 +109,7 @@ def test_the_command_works(installed, tmp_path):
     "name",
     ["kernel/module.cpp", "kernel/_core.pyi", "report/templates/laws.jinja", "py.typed", "__init__.pyi"],
 )
-def test_both_distributions_hold(installed, name):
+def test_both_distributions_contain(installed, name):
     assert f"burridge_knopoff/{name}" in zipfile.ZipFile(installed.wheel).namelist()
     with tarfile.open(installed.source) as archive:
         names = archive.getnames()

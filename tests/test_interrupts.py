@@ -1,4 +1,4 @@
-"""Ctrl-C ends whatever computes, in any thread or process; pressed twice, it aborts nothing."""
+"""Ctrl-C ends any computation, in any thread or process; pressed twice, it does not abort the interpreter."""
 
 import signal
 import subprocess
@@ -44,7 +44,7 @@ def function(name, call, module=""):
 SWEEP = function("sweep", "sweep('linearized', [0.1, 0.16, 0.2], window=1e7, cores=2)")
 RUNS = "with parallel_map(2) as each: each('runs', slow, [0.1, 0.16, 0.2])"
 PROCESSES = function("parallel_map", RUNS, ".running.processes")
-# Each goes on for minutes.
+# Each would run for minutes.
 PROGRAMS = {
     "run": function("simulate", "slow(0.16)"),
     "fixed steps": function("record_events", "record_events(model, rest, 1e6, solver='euler')"),
@@ -64,8 +64,8 @@ SEVERAL = {
 }
 
 
-def interrupted(command, times, *, begins=True):
-    """Return the exit code of a program, what it said, and the seconds from the first Ctrl-C to its end."""
+def run_interrupted(command, times, *, begins=True):
+    """Return the exit code of a program, its output, and the seconds from the first Ctrl-C to its end."""
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         if begins:
             assert process.stdout.readline() == "begun\n"
@@ -76,27 +76,27 @@ def interrupted(command, times, *, begins=True):
             process.send_signal(signal.SIGINT)
             time.sleep(0.1)
         try:
-            _, said = process.communicate(timeout=60)
+            _, output = process.communicate(timeout=60)
         finally:
             process.kill()
-    return process.returncode, said, time.monotonic() - begin
+    return process.returncode, output, time.monotonic() - begin
 
 
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_ctrl_c_ends_all_that_computes(program):
-    """It takes 0.2 s where a processor is free."""
-    code, said, seconds = interrupted([sys.executable, "-c", HEAD + PROGRAMS[program]], 1)
+    """It takes 0.2 s on a free processor."""
+    code, output, seconds = run_interrupted([sys.executable, "-c", HEAD + PROGRAMS[program]], 1)
     assert code == -signal.SIGINT
-    assert said.splitlines()[-1] == "KeyboardInterrupt"
+    assert output.splitlines()[-1] == "KeyboardInterrupt"
     assert seconds < 10
 
 
 @pytest.mark.parametrize("program", SEVERAL)
 def test_a_second_ctrl_c_does_not_abort(program):
-    """The interpreter may be closing meanwhile, or wait for threads that it did not interrupt."""
-    code, said, seconds = interrupted([sys.executable, "-c", HEAD + SEVERAL[program]], 2)
+    """The interpreter may be shutting down, or waiting for threads that it did not interrupt."""
+    code, output, seconds = run_interrupted([sys.executable, "-c", HEAD + SEVERAL[program]], 2)
     assert code in (1, -signal.SIGINT)
-    assert "terminate called" not in said
+    assert "terminate called" not in output
     assert seconds < 10
 
 
@@ -104,8 +104,8 @@ def test_a_second_ctrl_c_does_not_abort(program):
 def test_ctrl_c_ends_a_command(times, tmp_path):
     options = "--law linearized --a 0.08 --pixels 1500 --threads 2 --samples 2 --transient 500 --window 500"
     command = [BK, "basins", *options.split(), "--out", tmp_path / "basins.nc"]
-    code, said, seconds = interrupted(command, times, begins=False)
+    code, output, seconds = run_interrupted(command, times, begins=False)
     assert code in (130, -signal.SIGINT) if times == 1 else code != -signal.SIGABRT
-    assert said.splitlines()[-1] in ("bk basins: interrupted, nothing was written", "KeyboardInterrupt")
+    assert output.splitlines()[-1] in ("bk basins: interrupted, nothing was written", "KeyboardInterrupt")
     assert seconds < 10
     assert not list(tmp_path.iterdir())

@@ -1,4 +1,4 @@
-"""docs/tutorial.ipynb is docs/tutorial.md as a notebook; tests/test_tutorial.py holds what it shows."""
+"""docs/tutorial.ipynb is docs/tutorial.md as a notebook; tests/test_tutorial.py checks its outputs."""
 
 import runpy
 

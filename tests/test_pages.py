@@ -1,4 +1,4 @@
-"""Pages of docs/ print what they say and draw what they show, in the sections that take seconds."""
+"""Pages of docs/: the outputs and pictures of the sections that take seconds are those that their code gives."""
 
 from collections import Counter
 
@@ -25,8 +25,8 @@ def test_short_sections(repository, tmp_path, monkeypatch, page):
     monkeypatch.chdir(tmp_path)
     results = outputs((repository / "docs" / page).read_text(), f"docs/{page}", set(SHORT[page]))
     assert Counter(block.heading for block, _, _ in results) == SHORT[page]
-    for _, said, printed in results:
-        assert printed == said
+    for _, expected, printed in results:
+        assert printed == expected
     made = list(tmp_path.glob("docs/figures/*"))
     assert len(made) == (page == "published.md")
     for path in made:

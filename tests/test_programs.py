@@ -1,4 +1,4 @@
-"""The programs beside the package, of benchmarks/ and docs/, can be started: what they import is there."""
+"""The programs of benchmarks/ and docs/ can be started: their imports exist."""
 
 import subprocess
 import sys

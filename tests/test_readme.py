@@ -1,4 +1,4 @@
-"""README: the numbers of its table are those of the ledger of the default study, and what it shows exists."""
+"""README: the numbers of its table are those of the default study's ledger, and linked files exist."""
 
 import json
 import re
@@ -51,14 +51,14 @@ def test_the_times_of_a_cycle_are_those_of_the_ledger(repository, claims):
 def test_the_time_of_the_study_is_that_of_a_dry_run(repository, tmp_path):
     command = [sys.executable, "-m", "snakemake", "-n", "--snakefile", "Snakefile", "-d", str(tmp_path / "new")]
     configured = [*command, "--configfile", str(repository / "config/paper.yaml")]
-    said = subprocess.run(configured, check=True, capture_output=True, text=True, cwd=repository)
-    [minutes] = re.findall(r"a run takes about (\d+) min on 2 cores", said.stdout + said.stderr)
+    process = subprocess.run(configured, check=True, capture_output=True, text=True, cwd=repository)
+    [minutes] = re.findall(r"a run takes about (\d+) min on 2 cores", process.stdout + process.stderr)
     for page in ("README.md", "docs/performance.md"):
         text = " ".join((repository / page).read_text(encoding="utf-8").split())
         assert f"{minutes} minutes on two cores" in text
 
 
-def test_what_it_shows_and_links_exists(repository):
+def test_pictures_and_linked_files_exist(repository):
     text = (repository / "README.md").read_text(encoding="utf-8")
     for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", text):
         assert (repository / target).exists(), target

@@ -25,5 +25,5 @@ def test_git_tracks_the_page_alone(repository):
         pytest.skip("not a git checkout")
     git = ["git", "-C", str(repository), "-c", "safe.directory=*"]
     ignored = ["results/paper/report.html", "results/paper/README.md", "results/x", "workflow/results/README.md"]
-    said = subprocess.run([*git, "check-ignore", "results/README.md", *ignored], capture_output=True, text=True)
-    assert said.stdout.split() == ignored
+    process = subprocess.run([*git, "check-ignore", "results/README.md", *ignored], capture_output=True, text=True)
+    assert process.stdout.split() == ignored

@@ -1,4 +1,4 @@
-"""The chart of docs/results.md: that of Snakemake's own graph of rules; and every summary has its question there."""
+"""docs/results.md: its chart is Snakemake's graph of rules, and it has a question for every summary."""
 
 import re
 import runpy
@@ -10,11 +10,11 @@ from burridge_knopoff.study.yaml_file import read_yaml
 
 def test_the_chart_is_that_of_the_rules(repository):
     rules = runpy.run_path(str(repository / "docs/rules.py"))
-    said = rules["rule_graph"]()
+    graph = rules["rule_graph"]()
     page = (repository / "docs/results.md").read_text(encoding="utf-8")
-    assert rules["chart"](said) in page
-    # What it must not lose: the points lead to figures, and the attractors to the basins.
-    assert {("simulate", "figures"), ("attractors", "basins"), ("claims", "report")} <= rules["arrows"](said)
+    assert rules["chart"](graph) in page
+    # Arrows that must be present: from points to figures, and from attractors to basins.
+    assert {("simulate", "figures"), ("attractors", "basins"), ("claims", "report")} <= rules["arrows"](graph)
 
 
 def test_the_page_names_every_summary_of_the_default_study(repository):

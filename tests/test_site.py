@@ -1,4 +1,4 @@
-"""The site of `make site`: built without a warning, no dead link, complete, and readable on a phone, offline."""
+"""The site of `make site`: built without warnings, complete, without dead links, readable offline and on a phone."""
 
 import re
 import subprocess
@@ -35,7 +35,7 @@ def site(tmp_path_factory):
 
 
 class Page(HTMLParser):
-    """What a page links to, what it loads, and the places in it that can be linked to."""
+    """The links of a page, the files that it loads, and its link targets."""
 
     def __init__(self, path):
         super().__init__()

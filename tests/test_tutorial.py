@@ -1,4 +1,4 @@
-"""docs/tutorial.md runs as it stands, prints what it says, and draws the pictures that it shows."""
+"""docs/tutorial.md: its code runs, and gives the outputs and pictures of the page."""
 
 import re
 
@@ -19,13 +19,13 @@ def test_the_tutorial_prints_what_it_says(repository, tmp_path, monkeypatch):
     headings = {block.heading for block in blocks(page)} - {FROM_FILES}
     results = outputs(page, "docs/tutorial.md", headings)
     assert len(results) >= 5
-    for _, said, printed in results:
-        assert printed == said
+    for _, expected, printed in results:
+        assert printed == expected
     shown = re.findall(r"!\[.*?\]\((figures/tutorial_\w+\.png)\)", page)
     made = sorted(str(path.relative_to(tmp_path / "docs")) for path in tmp_path.rglob("*.png"))
     assert made == sorted(shown)
     for name in shown:
         mine, committed = (imread(folder / "docs" / name) for folder in (tmp_path, repository))
         assert mine.shape == committed.shape
-        # Another version of the drawing library may shade an edge differently; a curve that is missing makes 0.003.
+        # Another version of matplotlib may shade an edge differently; a missing curve gives 0.003.
         assert np.abs(mine - committed).mean() < 0.001, name

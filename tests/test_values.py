@@ -1,4 +1,4 @@
-"""Any value in a message: one line, short, and made with bounded work."""
+"""Values in messages: one short line, made with bounded work."""
 
 import time
 import tracemalloc
@@ -32,7 +32,7 @@ def bomb(depth):
     return value
 
 
-def nested(depth):
+def nested_list(depth):
     value = []
     for _ in range(depth):
         value = [value]
@@ -53,7 +53,7 @@ def endless():
 
 @given(VALUES)
 @examples(500)
-def test_a_short_value_is_as_python_writes_it_and_a_long_one_begins_so(value):
+def test_values_are_shown_as_python_writes_them_long_ones_shortened(value):
     text, whole = format_value(value), " ".join(repr(value).split())
     assert text.isprintable()
     assert len(text) <= LONGEST
@@ -79,7 +79,7 @@ def test_a_key_is_one_line(key, name):
         lambda: b"x" * 10_000_000,
         lambda: bomb(60),
         lambda: {"a": bomb(60), "b": bomb(60)},
-        lambda: nested(100_000),
+        lambda: nested_list(100_000),
         endless,
         lambda: list(range(10**6)),
         lambda: set(range(10**6)),
@@ -92,7 +92,7 @@ def test_a_key_is_one_line(key, name):
         lambda: "two\nlines\x1b[31m\u2028",
     ],
 )
-def test_no_more_is_written_than_is_shown(make):
+def test_no_more_is_formatted_than_is_shown(make):
     value = make()
     tracemalloc.start()
     begin = time.process_time()
@@ -119,7 +119,7 @@ def test_an_odd_formula(formula):
 
 
 @pytest.mark.parametrize("form", ["[{}]", "{{<<: [{}]}}"])
-def test_aliases_that_fill_any_memory_when_they_are_written_out(tmp_path, form):
+def test_aliases_that_would_fill_the_memory_when_expanded(tmp_path, form):
     lines = ["x0: &x0 {lol: 1}"]
     lines += [f"x{n}: &x{n} {form.format(', '.join([f'*x{n - 1}'] * 9))}" for n in range(1, 30)]
     path = tmp_path / "bomb.yaml"

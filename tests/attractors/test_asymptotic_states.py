@@ -1,4 +1,4 @@
-"""Asymptotic states of initial states for which a run of ten thousand time units shows another motion."""
+"""Asymptotic states that differ from the motion seen in a run of ten thousand time units."""
 
 import math
 from dataclasses import replace
@@ -28,7 +28,7 @@ def pair(law, a):
 
 @pytest.mark.parametrize(("law", "a"), [("linearized", 0.05), ("linearized", 0.0501), ("nonlinear", 0.05)])
 def test_slow_synchrony_is_synchrony(law, a):
-    """Near its loss of stability, located with 40 digits, the blocks stay apart for far longer than any run."""
+    """Near the loss of stability, located with 40 digits, synchronization takes far longer than any run."""
     assert -1e-3 < two_block_exponent(law, a) < 0.0
     (found,) = asymptotic_states(pair(law, a), [APART])
     assert (found.kind, found.section_period) == (MotionKind.SYNCHRONIZED, 1)
@@ -62,7 +62,7 @@ def test_states_do_not_synchronize_where_synchrony_repels():
 
 @pytest.mark.parametrize(("law", "a", "state"), [("linearized", 0.115, 0), ("nonlinear", 0.155, 3)])
 def test_transient_chaos_ends_on_an_orbit(law, a, state):
-    """Newton's method finds the orbit from the state after 100 000 time units."""
+    """Newton's method, started from the state after 100 000 time units, finds the orbit."""
     model = pair(law, a)
     early = simulate(model, initial=STATES[state], transient=3000.0, window=7000.0)
     assert early.lyapunov_exponent[0] > 3.0 * early.lyapunov_error[0]
@@ -96,7 +96,7 @@ def test_weak_chaos_is_chaos_from_every_state_that_reaches_it():
 
 
 def test_states_are_followed_out_of_transient_chaos(monkeypatch):
-    """At a = 0.18 (linearized) chaos persists; declared transient, it leaves its states undetermined."""
+    """At a = 0.18 (linearized) chaos persists; if it is declared transient, its states remain undetermined."""
     model = pair("linearized", 0.18)
     chaotic = [k for k, found in enumerate(asymptotic_states(model, STATES)) if found.kind == MotionKind.CHAOTIC]
     assert chaotic == [0, 3, 7]
@@ -131,16 +131,16 @@ def test_the_average_over_chaos_that_ends_is_not_used(monkeypatch):
 
 
 @pytest.mark.parametrize(("at", "whole"), [(0, True), (1, True), (2, False), (UNDETERMINED, False)])
-def test_the_average_over_chaos_and_its_mirror_image_is_used(tell, at, whole):
-    """The average over chaos and another or an undetermined motion is not."""
+def test_the_average_over_chaos_and_its_mirror_image_is_used(script_answers, at, whole):
+    """The average over chaos and another, or undetermined, motion is not used."""
     chaos = [stand_in(kind=MotionKind.CHAOTIC, mean_distance=0.3, partner=partner) for partner in (1, 0)]
     states = np.zeros((1, 3))
     long = SimpleNamespace(
         **{"status": "completed", "event_time": np.ones(1), "event_position": states, "event_velocity": states},
         **{"mean_distance": 0.2, "mean_distance_error": 0.01},
     )
-    tell(module, "run", [long])
-    tell(module, "label", [(np.array([at]), None)])
+    script_answers(module, "run", [long])
+    script_answers(module, "label", [(np.array([at]), None)])
     model = Model(Chain(3), law_of("linearized", 0.08))
     found = module._state_on(model, [*chaos, stand_in(partner=2)], 0, SEARCH)
     assert found.kind == MotionKind.CHAOTIC
@@ -156,14 +156,14 @@ def test_mirror_images_have_the_same_numbers(monkeypatch):
 
 
 @pytest.mark.parametrize("start", ["moving", "tested"])
-def test_states_that_are_followed_further_begin_as_the_start_says(monkeypatch, tell, start):
+def test_states_that_are_followed_further_obey_the_start_convention(monkeypatch, script_answers, start):
     """With a tested start blocks stick if their spring force −(K U) is at most the threshold."""
     initial = Sample(samples=12).initial_states(2)
     position = np.array([state.position for state in initial])
     stuck = position @ np.array([[-2.0, 1.0], [1.0, -2.0]]) <= 1.0
     assert 0.2 < stuck.mean() < 0.9
     monkeypatch.setattr(module, "find_attractors", lambda *_, **__: ([], np.full(12, UNDETERMINED)))
-    followed = tell(module, "label", [(np.full(12, UNDETERMINED), None)])
+    followed = script_answers(module, "label", [(np.full(12, UNDETERMINED), None)])
     monkeypatch.setattr(module, "advance", lambda model, starts, time: starts)
     monkeypatch.setattr(module, "_slow_synchrony", lambda model, end, *_: end.stuck.tolist())
     assert asymptotic_states(pair("linearized", 0.1), initial, start=start) == (stuck & (start == "tested")).tolist()

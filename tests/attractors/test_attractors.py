@@ -68,7 +68,7 @@ def test_mirrored_states_reach_mirrored_attractors():
     assert len(set(labels)) >= 3
 
 
-def test_an_unstable_motion_is_no_attractor():
+def test_an_unstable_motion_is_not_an_attractor():
     """A symmetric state stays symmetric, although the synchronized motion is unstable at a = 0.1."""
     unstable, stable = (Search(model(a=a), SETTINGS) for a in (0.1, 0.08))
     symmetric = unstable.model.begin(InitialState("symmetric", (-0.9, -0.95, -0.9), (0.1, 0.1, 0.1)))
@@ -82,8 +82,8 @@ def test_an_unstable_motion_is_no_attractor():
     assert stable.attractors[index].symmetry == SYNCHRONIZED
 
 
-def test_pushes_from_within_the_radius_come_back(search):
-    """With other random numbers than those that determined the radius."""
+def test_perturbations_within_the_capture_radius_return(search):
+    """The random numbers differ from those that determined the radius."""
     generator = np.random.default_rng(99)
     for index, attractor in enumerate(search.attractors):
         narrow = [dataclasses.replace(item, radius=item.radius / 10) for item in search.attractors]
@@ -108,7 +108,7 @@ def test_a_motion_lies_on_its_own_attractor_only(search):
 
 
 def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
-    """Nonlinear law, a = 0.2075: `minus` ends on an orbit of period 11 returns, most neighbours in chaos around it."""
+    """Nonlinear law, a = 0.2075: `minus` ends on an orbit of 11 returns, most nearby states in the chaos around it."""
     found = Search(model("nonlinear", 0.2075), dataclasses.replace(SETTINGS, transient=3000.0, window=3000.0))
     starts = [found.model.begin(state) for state in (*states(5), PAPER_STATES["minus"], PAPER_STATES["plus"])]
     labels = found.labels(starts)
@@ -120,7 +120,7 @@ def test_an_orbit_embedded_in_chaos_is_distinguished_from_it():
 
 
 def test_chaos_of_high_dimension_is_an_attractor():
-    """Its returns are so far apart that hardly any state is near one of them; its lifetime is 1.8 million."""
+    """Its returns are so far apart that few states are close to one of them; its lifetime is 1.8 million."""
     chain = Chain(4, 1.657, [1.459, 0.817, 0.902, 0.501], [1.036, 1.205, 1.448, 1.439])
     found = Search(Model(chain, law_of("carlson_langer", 0.525, {"sigma": 0.1})), SearchSettings(samples=10))
     labels = found.labels(found.starts((), "moving"))
@@ -146,7 +146,7 @@ def test_the_linearized_law_is_the_same_at_any_driver_velocity(v):
     assert (first == second).mean() > 0.95
 
 
-def test_nothing_is_reached_where_nothing_ever_stops():
+def test_no_attractor_is_reached_if_no_block_ever_stops():
     """Without weakening of friction, near uniform sliding, no block ever stops."""
     found = Search(model(a=0.0), SETTINGS)
     sliding = InitialState("sliding", (-0.83, -0.66, -0.84), (0.1, 0.1, 0.1))
@@ -200,7 +200,7 @@ def test_a_weakly_attracting_orbit_is_distinguished_from_a_torus(law, a, closes)
     assert (later.spacing < 1e-9) == closes
 
 
-def test_orbits_that_pushes_soon_fall_back_to_are_no_slow_set():
+def test_orbits_to_which_perturbations_return_quickly_are_not_a_slow_set():
     """Linearized law, a = 0.2125: two mirror pairs, of periods 20 and 40, within 0.005 of each other."""
     chosen = model(a=0.2125)
     found, _ = find_attractors(chosen, dataclasses.replace(SEARCH, samples=60))
@@ -245,9 +245,9 @@ def test_runs_of_any_model_end_on_its_attractors(found_model):
 
 @pytest.mark.parametrize(("coupling", "section_period"), [pytest.param(1.5, 0, marks=pytest.mark.slow), (2.0, 104)])
 def test_synchrony_of_a_long_period_is_synchrony(coupling, section_period):
-    """Strong coupling: the end blocks move as one, and the middle block repeats after many of their periods only.
+    """Strong coupling: the end blocks move as one, and the middle block repeats only after many of their periods.
 
-    The longer period is beyond what section points tell, the other one shows in a longer window.
+    Section points do not show the longer period; a longer window shows the other one.
     """
     strong = Model(Chain(3, coupling=coupling), FormulaLaw(0.03, "1/(1 + a*u)**2"))
     reached, _ = find_attractors(strong, dataclasses.replace(SEARCH, samples=10))

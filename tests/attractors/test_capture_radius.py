@@ -33,7 +33,7 @@ def test_how_close_a_perturbed_trajectory_has_to_come_back():
         ({"spacing": 0.1}, 0.0, []),
     ],
 )
-def test_periodic_orbits_embedded_in_a_set(wide, place, expected):
+def test_which_periodic_orbits_are_embedded_in_a_set(wide, place, expected):
     found = [at(0.0, **wide), at(place, spacing=1e-6), at(place, spacing=1.1e-6)]
     assert embedded_orbits(found, 0, 1e-6) == expected
     assert embedded_orbits(found, 1, 1e-6) == []
@@ -48,9 +48,11 @@ def test_radii_are_bounded_by_the_distances_to_other_attractors():
     # Chaos with an embedded orbit keeps its radius and gets a patience; the orbit keeps its radius too.
     chaos, orbit = at(0.0, radius=1.0, **CHAOS), at(0.05, radius=1.0, spacing=1e-7, close_returns=20)
     for found in ([chaos, orbit], [orbit, chaos]):
-        told = {(item.radius, item.close_returns, item.patience) for item in Capture().bound_radii(MODEL, found, 1e-6)}
+        features = {
+            (item.radius, item.close_returns, item.patience) for item in Capture().bound_radii(MODEL, found, 1e-6)
+        }
         # The radius of chaos is the spacing of its returns, which are far apart.
-        assert told == {(0.1, 8, 10_000.0), (0.04, 20, 0.0)}
+        assert features == {(0.1, 8, 10_000.0), (0.04, 20, 0.0)}
 
 
 @pytest.fixture
@@ -60,12 +62,12 @@ def capture(monkeypatch):
     def captures(found, index, reached, least=1e-5):
         asked, left = [], iter(reached)
 
-        def told(_, attractors, starts, time_limit, *__):
+        def label(_, attractors, starts, time_limit, *__):
             assert time_limit == 900.0
             asked.append((len(starts), [item.radius for item in attractors], attractors[index].patience))
             return np.array((next(left) * 4)[: len(starts)]), None
 
-        monkeypatch.setattr(radius, "label", told)
+        monkeypatch.setattr(radius, "label", label)
         monkeypatch.setattr(radius, "perturb", lambda start, size, generator: (start, size))
         monkeypatch.setattr(radius, "advance", lambda model, starts, time: [*starts, time])
         size = Capture().radius(MODEL, found, index, least, 1e-6, SETTINGS)
@@ -127,13 +129,13 @@ def test_capture_requires_two_periods_of_an_orbit(length, spacing, expected):
     assert required_returns(shown(orbit, orbit, spacing, 0.0), 1e-6) == expected
 
 
-def test_a_slow_set_is_sampled_by_perturbed_states(tell):
+def test_a_slow_set_is_sampled_by_perturbed_states(script_answers):
     seen = [shown(np.full((1, 6), float(n)), np.full((1, 6), float(-n)), 0.0, 0.0) for n in range(1, 13)]
     seen[4] = None
-    # Some have left for another motion: the middle block stops less often, or the returns are at another block.
+    # Some states have left for another motion: the middle block stops less often, or another block has the returns.
     seen[6] = replace(seen[6], stop_count=np.array([10, 18, 10]))
     seen[8], seen[10] = replace(seen[8], block=2), replace(seen[10], mirror_block=3)
-    asked = tell(slow_set, "visit", seen)
+    asked = script_answers(slow_set, "visit", seen)
     found = sample_slow_set(MODEL, at(1.0).motion, SETTINGS)
     numbers = [n for n in range(1, 13) if n not in (5, 7, 9, 11)]
     assert found.returns[:, 0].tolist() == [*numbers, 1.0]
@@ -144,7 +146,7 @@ def test_a_slow_set_is_sampled_by_perturbed_states(tell):
     assert 0.009 < sizes.max() <= 0.01
 
 
-def test_without_attractors_nothing_is_reached():
+def test_without_attractors_no_state_reaches_one():
     reached, times = label(MODEL, [], [None, None], 10.0)
     assert (reached.tolist(), times.tolist()) == ([-1, -1], [0.0, 0.0])
     assert label(MODEL, [stand_in(ASYMMETRIC)], [], 10.0)[0].shape == (0,)

@@ -1,4 +1,4 @@
-"""When a trajectory counts as settled, and on what motion, with constructed returns."""
+"""When a trajectory counts as settled, and on which motion, tested with constructed returns."""
 
 from dataclasses import replace
 
@@ -22,20 +22,20 @@ ONE, OTHER = np.array([[1.0, 0.0, 0.0, 0.0, 0.1, 0.1]]), np.array([[2.0, 0.0, 0.
     ("spacing", "symmetric", "drifts", "windows", "transients", "found"),
     [
         (CLOSED, False, [0.0], [1], [1], True),
-        # A set that is not periodic has to fill: soon if it is its own mirror image, else in the longest window.
+        # Returns must fill a set that is not periodic: early if it is its own mirror image, else in the longest window.
         (WIDE, True, [0.0] * 3, [1, 2, 4], [1, 1, 1], True),
         (WIDE, False, [0.0] * 5, [1, 2, 4, 8, 16], [1] * 5, True),
         (WIDE, True, [1.0, 1.0, 0.0], [1, 2, 4], [1, 2, 4], True),
-        # A motion that has not settled gets twice the time, and is given up if it drifts by over ten resolutions.
+        # A motion that has not settled gets twice the time; it is abandoned if it drifts by more than ten resolutions.
         (CLOSED, False, [2e-5, 0.0], [1, 1], [1, 2], True),
         (CLOSED, False, [1.1e-2] * 5, [1] * 5, [1, 2, 4, 8, 16], False),
         (CLOSED, False, [1.0, None], [1, 1], [1, 2], False),
     ],
 )
-def test_a_motion_is_given_time_to_settle(tell, spacing, symmetric, drifts, windows, transients, found):
+def test_a_motion_is_given_time_to_settle(script_answers, spacing, symmetric, drifts, windows, transients, found):
     mirror = ONE if symmetric else -ONE
     answers = [None if drift is None else shown(ONE, mirror, spacing, drift) for drift in drifts]
-    asked = tell(settling, "visit", answers)
+    asked = script_answers(settling, "visit", answers)
     assert (Convergence(MODEL, SETTINGS).settle(state_of(ONE[0])) is not None) == found
     assert [arguments[2:4] for arguments in asked] == [(x, 100 * y) for x, y in zip(transients, windows, strict=True)]
 
@@ -55,30 +55,30 @@ def test_the_remaining_distance_follows_from_the_decay_of_the_drift(tau):
 
 
 @pytest.mark.parametrize(("tau", "visits", "rests"), [(5.0, 1, True), (100.0, 3, True), (1e6, 5, False)])
-def test_a_motion_that_drifts_is_followed_until_it_is_steady(tell, tau, visits, rests):
+def test_a_motion_that_drifts_is_followed_until_it_is_steady(script_answers, tau, visits, rests):
     """Waits double up to sixteen time limits; a motion that still drifts then is undetermined."""
     own, time, seen = Convergence(MODEL, SETTINGS), 0.0, []
     waits = [SETTINGS.time_limit * 2.0**k for k in range(5)]
     for wait in waits:
         time += wait + 100.0
         seen.append(creeping(time, tau * SETTINGS.time_limit / 100.0, 0.005))
-    asked = tell(settling, "visit", seen[:visits])
+    asked = script_answers(settling, "visit", seen[:visits])
     found = own.follow_until_steady(creeping(0.0, tau * SETTINGS.time_limit / 100.0, 0.005))
     assert found is (seen[visits - 1] if rests else None)
     assert [arguments[2] for arguments in asked] == waits[:visits]
 
 
-def test_a_set_that_is_not_periodic_has_to_stay_in_place(tell):
+def test_a_set_that_is_not_periodic_must_not_drift(script_answers):
     """Otherwise it drifts along a torus, or to another motion."""
     own, moving = Convergence(MODEL, SETTINGS), shown(ONE, ONE, WIDE, 1.0)
-    tell(settling, "visit", [moving])
+    script_answers(settling, "visit", [moving])
     assert own.follow_until_steady(moving) is moving
     elsewhere = [shown(ONE + k, ONE + k, WIDE, 1.0) for k in range(1, 6)]
-    tell(settling, "visit", elsewhere)
+    script_answers(settling, "visit", elsewhere)
     assert own.follow_until_steady(moving) is None
 
 
-def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
+def test_a_set_is_its_own_mirror_image_if_it_covers_it(script_answers):
     """In its window or, if it is close to its mirror image, in a longer time."""
     own, rows = Convergence(MODEL, replace(SETTINGS, transient=3)), np.linspace(0.0, 1.0, 40)[:, None] * np.ones(6)
     touching = rows - 0.9995
@@ -86,7 +86,7 @@ def test_a_set_is_its_own_mirror_image_if_it_covers_it(tell):
         assert own.is_symmetric(shown(rows, mirror, WIDE, 0.0)) == symmetric
     both = np.concatenate([rows, touching])
     for later, changes in ((both, True), (rows, False)):
-        asked = tell(settling, "visit", [shown(later, later, WIDE, 0.0)])
+        asked = script_answers(settling, "visit", [shown(later, later, WIDE, 0.0)])
         assert own.is_eventually_symmetric(shown(rows, touching, WIDE, 0.0)) == changes
         assert asked[0][2:4] == (0.0, SYMMETRY_WINDOW * 3)
     for apart in (shown(rows, rows - 1.002, WIDE, 0.0), shown(rows, touching, CLOSED, 0.0)):
@@ -102,20 +102,20 @@ def test_distances_grow_with_the_speed_of_the_driver():
         assert (own.resolution, own.tolerance) == pytest.approx((resolution, tolerance))
 
 
-def test_a_set_of_a_chain_without_a_mirror_image_has_to_fill_as_well(tell):
-    """But not for as long as a set that may be one of two mirror images."""
+def test_a_set_of_an_asymmetric_chain_must_be_filled_by_its_returns(script_answers):
+    """This takes less time than for a set that may be one of two mirror images."""
     uneven = Model(Chain(3, threshold=(1.0, 1.0, 0.9)), law_of("linearized", 0.08))
-    asked = tell(settling, "visit", [shown(ONE, ONE[:0], WIDE, 0.0)] * 3)
+    asked = script_answers(settling, "visit", [shown(ONE, ONE[:0], WIDE, 0.0)] * 3)
     assert Convergence(uneven, SETTINGS).settle(state_of(ONE[0])) is not None
     assert [arguments[3] for arguments in asked] == [100, 200, 400]
 
 
-def test_a_motion_touches_its_mirror_image_within_the_resolution(tell):
+def test_a_motion_touches_its_mirror_image_within_the_resolution(script_answers):
     own = Convergence(MODEL, SETTINGS)
     for away, touches in ((0.9e-3, True), (1.1e-3, False)):
         assert own.is_close_to_mirror_image(shown(ONE, ONE + away, WIDE, 0.0)) == touches
     assert not own.is_close_to_mirror_image(shown(ONE, ONE[:0], WIDE, 0.0))
     # A motion with returns at another block, or without any, in the longer time does not cover its mirror image.
     found = shown(ONE, ONE + 0.9e-3, WIDE, 0.0)
-    tell(settling, "visit", [found, replace(found, block=2), None])
+    script_answers(settling, "visit", [found, replace(found, block=2), None])
     assert [own.is_eventually_symmetric(found) for _ in range(3)] == [True, False, False]

@@ -13,7 +13,7 @@ from burridge_knopoff.running.status import Status
 SETTINGS = SearchSettings(transient=1000.0, window=1000.0, seed=3, perturbations=8)
 
 
-def one_by_one(model, attractors, starts, end):
+def label_one_by_one(model, attractors, starts, end):
     """Follow each state alone, from stop to stop of each attractor's block; return labels and their times."""
     solver = Runner(model)
     labels, times = np.full(len(starts), -1), np.full(len(starts), end)
@@ -48,7 +48,7 @@ def test_labels_are_those_of_one_by_one(law, blocks, a, share, first, last):
     for start in starts[:12]:
         search.reach(start)
     assert search.attractors
-    decided, when = one_by_one(model, search.attractors, starts, last)
+    decided, when = label_one_by_one(model, search.attractors, starts, last)
     for end in (first, last):
         expected = np.where(when <= end, decided, -1)
         labels, times = label_states(model, search.attractors, position, velocity, time_limit=end)
@@ -59,8 +59,8 @@ def test_labels_are_those_of_one_by_one(law, blocks, a, share, first, last):
         assert (times[labels < 0] == end).all()
 
 
-def test_near_a_cloud_to_the_last_bit():
-    """The result agrees with all differences one by one, also exactly at the radius."""
+def test_the_distance_from_a_cloud_is_exact_to_the_last_bit():
+    """The result agrees with the differences from each return, also exactly at the radius."""
     generator = np.random.default_rng(2)
     orbit = np.repeat(generator.uniform(-1, 1, (5, 6)), 40, axis=0) + 1e-9 * generator.normal(size=(200, 6))
     clouds = [generator.uniform(-0.3, 0.3, (500, 6)), np.zeros((0, 6)), orbit, generator.uniform(-1, 1, (1, 6))]

@@ -24,7 +24,7 @@ from tests.flows import weakly_repelling
         ("nonlinear", 0.17, "PERIODIC", 134, 794.862),
     ],
 )
-def test_motion_that_is_locked_with_a_period_that_no_run_shows_is_not_periodic(law, a, kind, points, period):
+def test_motion_locked_to_a_period_longer_than_any_run_is_not_periodic(law, a, kind, points, period):
     search = Search(Model(Chain(3), law_of(law, a)), growth_window=0.0)
     index = search.reach(search.model.begin(PAPER_STATES["plus"]))
     found = search.attractors[index].motion
@@ -42,7 +42,7 @@ def test_motion_that_is_locked_with_a_period_that_no_run_shows_is_not_periodic(l
         pytest.param("nonlinear", 0.3, 1e-5, 3, None, marks=pytest.mark.slow),
     ],
 )
-def test_motion_that_still_drifts_is_no_attractor(law, a, coupling, blocks, mean):
+def test_motion_that_still_drifts_is_not_an_attractor(law, a, coupling, blocks, mean):
     """Blocks on weak springs reach antiphase in a time of about 1/coupling, or are undetermined."""
     weak = Model(Chain(blocks, coupling=coupling, pulling=1.0), law_of(law, a))
     found, labels = find_attractors(weak, SearchSettings(samples=6))
@@ -51,7 +51,7 @@ def test_motion_that_still_drifts_is_no_attractor(law, a, coupling, blocks, mean
     assert set(labels.tolist()) <= {-1, 0}
 
 
-def test_a_state_on_an_orbit_that_repels_reaches_the_chaos_around_it():
+def test_a_state_on_an_unstable_orbit_reaches_the_chaos_around_it():
     orbit = weakly_repelling()
     position = tuple(orbit.reference.position + orbit.model.sliding_offset)
     start = InitialState("near", position, tuple(orbit.reference.velocity))

@@ -1,4 +1,4 @@
-"""Labels, above all if a periodic orbit is embedded in another attractor, which has a patience."""
+"""Labels of states, in particular if an attractor has a patience because a periodic orbit is embedded in it."""
 
 from dataclasses import replace
 
@@ -36,7 +36,7 @@ def test_a_state_that_reaches_an_orbit_within_the_patience_is_assigned_to_it(fou
     orbit, states, (alone, reached_at) = found
     wide = replace(orbit, radius=1.0, close_returns=2, patience=patience)
     near, near_at = label_states(MODEL, [wide], *states, time_limit=END)
-    # Without patience the wide one is always reached first.
+    # Without patience the wide attractor is always reached first.
     comes = (alone == 0) & (reached_at < patience)
     for order in ([wide, orbit], [orbit, wide]):
         labels, times = label_states(MODEL, order, *states, time_limit=END)
@@ -47,10 +47,10 @@ def test_a_state_that_reaches_an_orbit_within_the_patience_is_assigned_to_it(fou
 
 
 @pytest.mark.parametrize(("came", "expected"), [([300.0, 100.0], 900.0), ([4000.0, 100.0], 10_000.0), ([], 10_000.0)])
-def test_patience_is_reduced_if_a_sample_arrives_early(tell, came, expected):
+def test_patience_is_reduced_if_a_sample_arrives_early(script_answers, came, expected):
     chaos = stand_in(ahead=0.05, kind=MotionKind.CHAOTIC, spacing=1.0, patience=10_000.0)
     labels, times = np.array([1] * len(came) + [0, -1]), np.array([*came, 5000.0, 20_000.0])
-    asked = tell(fractions, "label_arrays", [(labels, times, None), (np.zeros(50, dtype=int), None, None)])
+    asked = script_answers(fractions, "label_arrays", [(labels, times, None), (np.zeros(50, dtype=int), None, None)])
     known = [chaos, stand_in(partner=1, ahead=0.0)]
     search = Search(MODEL, SearchSettings(samples=20, fraction_width=0.134), attractors=known)
     with parallel_map(1) as each:
@@ -64,9 +64,9 @@ def sticking(position):
     return position @ np.array([[-2.0, 1.0, 0.0], [1.0, -4.0, 1.0], [0.0, 1.0, -2.0]]) <= 1.0
 
 
-def test_states_of_the_basin_fractions_begin_as_the_start_says(tell):
+def test_states_of_the_basin_fractions_obey_the_start_convention(script_answers):
     """With a tested start blocks stick if the spring force is too small; the states at each a are independent."""
-    asked = tell(fractions, "label_arrays", [(np.zeros(50, dtype=int), None, None)] * 3)
+    asked = script_answers(fractions, "label_arrays", [(np.zeros(50, dtype=int), None, None)] * 3)
     settings = SearchSettings(samples=0, fraction_width=0.134)
     for a, start in ((0.08, "tested"), (0.08, "moving"), (0.09, "tested")):
         with parallel_map(1) as each:
@@ -81,7 +81,7 @@ def test_states_of_the_basin_fractions_begin_as_the_start_says(tell):
     assert abs(np.corrcoef(positions[0].ravel(), positions[2].ravel())[0, 1]) < 0.3
 
 
-def test_states_begin_as_the_start_says(found):
+def test_states_obey_the_start_convention(found):
     """With a tested start such blocks begin at rest."""
     orbit, (position, velocity), (_, moving) = found
     labels, times = label_states(MODEL, [orbit], position, velocity, start="tested", time_limit=END)

@@ -34,7 +34,7 @@ def test_the_interval_is_that_of_a_poisson_count(ends):
     assert not Lifetime(ends, 1e6).is_longer_than(low)
 
 
-def test_the_interval_holds_the_lifetime_as_often_as_it_says():
+def test_the_interval_contains_the_lifetime_at_its_confidence_level():
     random = np.random.default_rng(1)
     mean, time, followed = 300.0, 100.0, 32
     held = 0
@@ -45,15 +45,15 @@ def test_the_interval_holds_the_lifetime_as_often_as_it_says():
     assert 0.93 <= held / 400 <= 0.99
 
 
-def test_an_ensemble_that_nothing_leaves_shows_that_chaos_lasts():
-    """The total time is just long enough for that."""
+def test_an_ensemble_that_no_trajectory_leaves_shows_that_chaos_lasts():
+    """The total time is just long enough."""
     assert Lifetime(0, EXPOSURE * 1e5).is_longer_than(1e5)
     assert not Lifetime(1, EXPOSURE * 1e5).is_longer_than(1e5)
 
 
 @pytest.mark.parametrize(("share", "least", "most"), [(1.0, 0.025, 0.04), (0.8, 0.0, 0.012)])
 def test_short_chaos_counts_as_lasting_no_more_often_than_the_settings_say(monkeypatch, share, least, most):
-    """Both tests together, with random lifetimes of exactly the limit in the mean, and of a shorter mean."""
+    """Both tests together, for random lifetimes whose mean equals the limit or is shorter."""
 
     def drawn(model, attractors, index, settings, exposure, random, count):
         lives = random.exponential(share * settings.lifetime, count)
@@ -81,7 +81,7 @@ LATE = 2.0 * (1.0 + 4 / 0.2)
 
 
 @pytest.fixture
-def find(monkeypatch, tell):
+def find(monkeypatch, script_answers):
     """Return a function that computes lifetimes with scripted captures and ends of the trajectories in each round.
 
     when : capture times, NaN for none; nowhere : number of the others that reach no attractor; early : their labels at
@@ -102,7 +102,7 @@ def find(monkeypatch, tell):
             ends = np.zeros(int(np.isnan(when).sum()), int)
             ends[:nowhere] = -1
             later += [(ends, None), (np.array(early, int), None)]
-        followed, asked = tell(lifetime, "label_arrays", first), tell(lifetime, "label", later)
+        followed, asked = script_answers(lifetime, "label_arrays", first), script_answers(lifetime, "label", later)
         lives = lifetimes(MODEL, attractors, SETTINGS)
         calls = [(len(position), time_limit, len(known)) for _, known, position, *_, time_limit in followed]
         return lives, runs + calls + [(len(starts), time_limit, len(known)) for _, known, starts, time_limit in asked]
@@ -121,7 +121,7 @@ ALL_STAY = ([NEVER] * MANY, 0, [])
 
 
 def test_trajectories_that_have_left_are_counted_with_their_times(find):
-    """Six are captured by the other attractor, two of them too early to count; seven leave to an unknown set."""
+    """Six are captured by the other attractor, two of them too early to count; seven leave for an unknown set."""
     when = [LATE + 20.0] * 4 + [LATE, 0.5 * LATE] + [NEVER] * 26
     found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (when, 7, [-1, 0, 0, -1, 0, 0, 0]), ALL_STAY)
     # Nine escapes are too few: more trajectories are followed.
@@ -130,7 +130,7 @@ def test_trajectories_that_have_left_are_counted_with_their_times(find):
     assert asked == [(7, LATE), (32, LATE + TIME, 1), (26, 50.0, 2), (7, 50.0, 2)]
 
 
-def test_of_chaos_that_is_over_soon_all_captures_count(find):
+def test_all_captures_count_if_chaos_is_short(find):
     when = [10.0] * 28 + [NEVER] * 4
     found, _ = find([chaos(), stand_in(partner=1, **CAUGHT)], (when, 2, [0, -1]))
     assert found == [Lifetime(30, 28 * 10.0 + 2 * (LATE + TIME) + 2 * 0.5 * LATE), None]
@@ -139,7 +139,7 @@ def test_of_chaos_that_is_over_soon_all_captures_count(find):
     assert found == [Lifetime(30, 21 * 10.0 + 2 * (LATE + TIME) + 9 * 0.5 * LATE), None]
 
 
-def test_if_some_leave_more_are_followed_to_decide(find):
+def test_more_trajectories_are_followed_if_some_leave(find):
     first = [LATE + 20.0] + [NEVER] * 31
     found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (first, 0, []), ALL_STAY)
     assert found == [Lifetime(1, (31 + MANY) * TIME + 20.0), None]
@@ -147,7 +147,7 @@ def test_if_some_leave_more_are_followed_to_decide(find):
     assert asked[:2] == [(32, LATE + TIME, 1), (MANY, LATE + TIME, 1)]
 
 
-def test_a_change_to_the_mirror_image_is_no_end(find):
+def test_a_change_to_the_mirror_image_does_not_end_chaos(find):
     found, asked = find([chaos(1), chaos(0)], ([NEVER] * 32, 0, []))
     assert found == [Lifetime(0, 32 * TIME)] * 2
     assert asked == [(32, TIME, 0), (32, 50.0, 2), (0, 50.0, 2)]
@@ -194,12 +194,12 @@ def test_lifetimes_do_not_depend_on_how_slowly_a_trajectory_is_captured():
     assert lives[0].mean == pytest.approx(109_000, rel=0.35)
 
 
-def test_trajectories_begin_apart_by_the_seed_and_the_speed(tell):
+def test_perturbations_depend_on_the_seed_and_scale_with_v(script_answers):
     """At twice the v of the paper the perturbations are up to twice a tenth of the resolution."""
     fast, away = Model(Chain(3), MODEL.law, 0.2), []
     for seed in (3, 3, 4):
-        asked = tell(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
-        tell(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
+        asked = script_answers(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
+        script_answers(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
         wide = stand_in(kind=MotionKind.CHAOTIC, radius=0.021)
         lifetimes(fast, [wide], replace(SETTINGS, seed=seed, lifetime=100.0))
         states = np.concatenate(asked[0][2:4], axis=1)
@@ -208,11 +208,11 @@ def test_trajectories_begin_apart_by_the_seed_and_the_speed(tell):
     assert away[0] == away[1] != away[2]
 
 
-def test_trajectories_begin_on_thin_chaos_and_are_recognised_there(tell):
+def test_trajectories_that_start_on_thin_chaos_are_recognised_there(script_answers):
     """Perturbations are far smaller than the radius; states within a few spacings of the returns are on the set."""
     thin = stand_in(kind=MotionKind.CHAOTIC, radius=1e-6, spacing=0.01)
-    followed = tell(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
-    asked = tell(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
+    followed = script_answers(lifetime, "label_arrays", [(np.full(32, -1), np.zeros(32), np.zeros((32, 6)))])
+    asked = script_answers(lifetime, "label", [(np.zeros(32, int), None), (np.zeros(0, int), None)])
     (found,) = lifetimes(MODEL, [thin], SETTINGS)
     assert found.ends == 0
     returns = thin.motion.returns

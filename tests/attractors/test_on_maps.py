@@ -13,7 +13,7 @@ SEARCH = SearchSettings(
 )
 
 
-def searched(model, settings=SEARCH):
+def search_map(model, settings=SEARCH):
     search = Search(model, settings)
     starts = search.starts((), "moving")
     return search, np.array([start.position[0] for start in starts]), search.labels(starts)
@@ -23,9 +23,9 @@ def searched(model, settings=SEARCH):
     ("r", "period"),
     [(2.5, 1), (3.2, 2), (3.5, 4), (3.55, 8), (3.835, 3)],
 )
-def test_a_periodic_orbit_is_the_one_attractor(maps, r, period):
-    """Of the logistic map, also in the window of period 3, in which chaos is a transient."""
-    search, _, labels = searched(LOGISTIC.at(r))
+def test_the_periodic_orbit_of_the_logistic_map_is_its_only_attractor(maps, r, period):
+    """This holds in the window of period 3 too, in which chaos is transient."""
+    search, _, labels = search_map(LOGISTIC.at(r))
     (found,) = search.attractors
     assert (found.motion.kind, found.motion.section_period) == (MotionKind.PERIODIC, period)
     assert (labels == 0).all()
@@ -36,9 +36,9 @@ def test_a_periodic_orbit_is_the_one_attractor(maps, r, period):
     assert found.motion.exponent[1] == pytest.approx(np.log(multiplier) / period, abs=1e-6)
 
 
-def test_chaos_is_one_attractor_that_lasts(maps):
+def test_chaos_of_the_logistic_map_is_a_single_attractor_that_lasts(maps):
     """At r = 4 the exponent is ln 2, and no trajectory leaves [0, 1]."""
-    search, _, labels = searched(LOGISTIC.at(3.999999))
+    search, _, labels = search_map(LOGISTIC.at(3.999999))
     (found,) = search.attractors
     assert found.motion.kind == MotionKind.CHAOTIC
     assert (labels == 0).all()
@@ -48,18 +48,18 @@ def test_chaos_is_one_attractor_that_lasts(maps):
 
 
 def test_motion_that_never_returns_is_quasiperiodic(maps):
-    search, _, labels = searched(CIRCLE)
+    search, _, labels = search_map(CIRCLE)
     (found,) = search.attractors
     assert found.motion.kind == MotionKind.QUASIPERIODIC
     assert (labels == 0).all()
 
 
 @pytest.mark.parametrize("mu", [0.0, 0.2, -0.3])
-def test_states_are_labelled_by_the_well_that_they_fall_into(maps, mu):
+def test_states_are_labelled_by_the_well_that_they_reach(maps, mu):
     """The unstable fixed point between the wells separates their basins."""
     model = TWO_WELLS.at(1.0 + mu)
     settings = SearchSettings(samples=60, position=(-1.2, 1.2), transient=100.0, window=100.0, time_limit=400.0)
-    search, x, labels = searched(model, settings)
+    search, x, labels = search_map(model, settings)
     roots = np.sort(np.roots([-1.0, 0.0, 1.0, mu]).real)
     wells = np.array([item.motion.state().position[0] for item in search.attractors])
     assert np.sort(wells) == pytest.approx(roots[[0, 2]], abs=1e-9)

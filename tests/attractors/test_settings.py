@@ -1,6 +1,6 @@
 """Settings: every field takes the ends of its range and refuses, in one line, what lies outside.
 
-config/README.md has the ranges and defaults themselves; tests/study/test_keys.py holds it against the fields.
+config/README.md has the ranges and defaults themselves; tests/study/test_keys.py compares it with the fields.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.running.section import Section, SectionRange
 from tests.refused import refused
 
-#: {class: values that any value of another field goes with}
+#: {class: values that are compatible with any value of another field}
 CLASSES = {
     MotionSettings: {},
     SearchSettings: {},
@@ -35,7 +35,7 @@ def values(kind, name):
         bad = [(low - 1.0, high), (low, high + 1.0), (high, high), (high, low), (low,), (low, 1.0, high), ("0", "1")]
         return [(low, high), (high - 1.0, high)], [*bad, 1.0]
     if isinstance(allowed, Whole):
-        # A tile takes a row of pixels at least, and the symmetric samples are some of all.
+        # A tile has at least one row of pixels, and the symmetric samples are among all samples.
         most = {"tiles": BasinSettings().pixels, "symmetric_samples": Sample().samples}.get(name, allowed.most)
         return [allowed.least, most], [allowed.least - 1, allowed.most + 1, allowed.least + 0.5, True, "3"]
     if isinstance(allowed, SectionRange):
@@ -48,7 +48,7 @@ def values(kind, name):
 
 
 @pytest.mark.parametrize(("kind", "name"), [(kind, name) for kind, name in FIELDS if name not in ("initial", "start")])
-def test_a_setting_takes_its_range_and_nothing_else(kind, name):
+def test_a_setting_accepts_its_range_and_nothing_else(kind, name):
     others = {key: value for key, value in CLASSES[kind].items() if key != name}
     good, bad = values(kind, name)
     for value in good:
@@ -64,5 +64,5 @@ def test_a_map_has_a_row_for_each_tile():
         BasinSettings(pixels=2, tiles=3)
 
 
-def test_the_defaults_that_functions_take_are_those_of_the_classes():
+def test_functions_have_the_defaults_of_the_classes():
     assert (MotionSettings(), SearchSettings()) == (MOTION, SEARCH)

@@ -61,7 +61,7 @@ def test_the_mean_distance_tends_to_that_of_the_modes(branch: str, limit: float,
             transient=10.0 / a, window=20.0 / a, sampling=1.0 / a, trajectory=0.0, events="none", lyapunov_exponents=0
         )
         found.append(run(model, modes(ends, fast), settings).mean_distance)
-    # The less modes grow between two sticks, the shorter the sticks are: ⟨J⟩ approaches that of the modes.
+    # The less the modes grow between two sticks, the shorter the sticks: ⟨J⟩ approaches that of the modes.
     first, second, third = found
     extrapolated = 2.0 * first - second
     assert closed_form < first < second < third < 1.05 * closed_form
@@ -100,7 +100,7 @@ def vertices() -> dict[tuple[int, ...], np.ndarray]:
 
 
 def test_energy_has_a_maximum_at_three_vertices() -> None:
-    """Along an edge ½ Σ N A² is convex: it falls to both sides only where it falls at once."""
+    """Along an edge ½ Σ N A² is convex: it decreases to both sides only if it decreases at once."""
     corners = vertices()
     maxima = []
     for faces, vertex in corners.items():
@@ -116,7 +116,7 @@ def test_energy_has_a_maximum_at_three_vertices() -> None:
     np.testing.assert_allclose(energies, [0, 3 - root, 2, 9 - 4 * root, 9 - 4 * root, 6 - 2 * root], atol=1e-12)
 
 
-def averaged(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
+def averaged_amplitudes(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
     """Return amplitudes of the averaged equations at some times, by steps that are projected back."""
     found, clock, steps = [], 0.0, 2000
     for time in times:
@@ -134,7 +134,7 @@ def averaged(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
     return np.array(found)
 
 
-def simulated(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
+def simulated_amplitudes(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
     """Return amplitudes of a simulation, means over the 40 time units before each time."""
     phase = np.random.default_rng(0).uniform(0.0, 2.0 * np.pi, 3)
     position, velocity = SHAPE @ (V * amplitude / FREQUENCY * np.sin(phase)), SHAPE @ (V * amplitude * np.cos(phase))
@@ -166,7 +166,7 @@ def simulated(amplitude: np.ndarray, a: float, times: np.ndarray) -> np.ndarray:
 )
 def test_amplitudes_follow_the_averaged_equations(start: tuple[float, ...], end: np.ndarray) -> None:
     times = np.array([500.0, 1000.0, 2000.0, 4000.0, 8000.0])
-    expected, found = (of(np.array(start), 0.001, times) for of in (averaged, simulated))
+    expected, found = (of(np.array(start), 0.001, times) for of in (averaged_amplitudes, simulated_amplitudes))
     np.testing.assert_allclose(expected[-1], end, atol=2e-3)
     np.testing.assert_allclose(found[-1], end, atol=0.02)
     assert np.abs(found - expected).max() < 0.1

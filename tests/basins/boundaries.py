@@ -6,12 +6,12 @@ import numpy as np
 
 
 def half_plane(points: np.ndarray) -> np.ndarray:
-    """Return 1 on one side of a straight line, else 0: α = 1."""
+    """Return 1 on one side of a straight line, otherwise 0: α = 1."""
     return (points[:, 0] > 0.4 * points[:, 1] + 0.23).astype(int)
 
 
 def disc(points: np.ndarray) -> np.ndarray:
-    """Return 1 in a disc, else 0: α = 1."""
+    """Return 1 in a disc, otherwise 0: α = 1."""
     return (np.hypot(points[:, 0] - 0.5, points[:, 1] - 0.5) < 0.3).astype(int)
 
 

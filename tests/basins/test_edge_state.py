@@ -61,7 +61,7 @@ def between_mirror_images():
     return edge_state(model, *states, attractors, FEW, time_limit=20_000), attractors
 
 
-def test_between_mirror_images_lies_the_synchronized_orbit(between_mirror_images):
+def test_the_edge_state_between_mirror_images_is_the_synchronized_orbit(between_mirror_images):
     found, _ = between_mirror_images
     assert (found.kind, found.symmetry) == (MotionKind.SYNCHRONIZED, Symmetry.SYNCHRONIZED)
     check_same(found.orbit, synchronized_orbit(found.model))
@@ -74,7 +74,7 @@ def test_attractors_are_searched_for_if_none_are_given(between_mirror_images):
     check_same(edge_state(found.model, *states, settings=FEW, time_limit=20_000).orbit, found.orbit)
 
 
-def test_its_multipliers_are_those_of_another_integrator(between_mirror_images):
+def test_multipliers_agree_with_another_integrator(between_mirror_images):
     """The others are 0, for perturbations that vanish at a stop, and 1, for that along the flow."""
     found, _ = between_mirror_images
     orbit, step = found.orbit, 1e-5
@@ -146,7 +146,7 @@ def test_the_saddle_is_the_orbit_with_which_the_attractor_is_born(a, start, stop
     assert found.has_crossing == crosses
 
 
-def test_a_third_basin_between_two():
+def test_a_third_basin_may_lie_between_two():
     """The segment between the torus and the antiphase motion passes through the basin of synchrony."""
     model, attractors = coexisting("linearized", 0.05, 60)
     third, first, second = sorted(range(3), key=lambda k: attractors[k].motion.mean_distance)
@@ -177,8 +177,8 @@ def test_a_chaotic_saddle(chaotic):
     assert not found.has_crossing
 
 
-def test_its_lifetime_is_that_of_states_around_it(chaotic):
-    """Of states displaced uniformly in all directions, within 1e-4, a fraction exp(−τ/lifetime) is left after τ."""
+def test_the_lifetime_is_that_of_displaced_states(chaotic):
+    """A fraction exp(−τ/lifetime) of states displaced uniformly in all directions, within 1e-4, remains after τ."""
     found, attractors = chaotic
     generator = np.random.default_rng(3)
     returns = found.returns[generator.integers(len(found.returns), size=3000)]
@@ -201,7 +201,7 @@ def test_smaller_radii_are_used_if_labels_contradict_each_other():
     check_same(edge_state(model, *states, wide, FEW, time_limit=5000).orbit, exact.orbit)
 
 
-def test_states_that_have_no_boundary_between_them():
+def test_states_without_a_boundary_between_them_are_refused():
     model, attractors = coexisting("linearized", 0.08)
     first, second = (item.motion.state() for item in attractors[:2])
     with pytest.raises(ValueError, match="state_b: got a state that reaches attractor 0, as state_a does"):

@@ -16,7 +16,7 @@ def test_a_fraction_of_one_half_needs_the_most_states(width):
 
 
 @pytest.mark.parametrize("share", [0.0, 0.03, 0.2, 0.5])
-def test_states_are_drawn_until_all_intervals_are_narrow_and_no_longer(share):
+def test_no_more_states_are_drawn_than_narrow_intervals_require(share):
     labels = np.where(np.random.default_rng(5).random(3000) < share, 1, -1)
     count = required_states(labels, 0.02)
 

@@ -21,7 +21,7 @@ UNEQUAL = Model(Chain(4, coupling=[1.0, 2.0, 3.0], pulling=0.5), law_of("nonline
 
 
 @pytest.mark.parametrize("model", [MODEL, UNEQUAL])
-def test_amplitude_and_phases_can_be_read_off_the_state(model):
+def test_amplitude_and_phases_follow_from_the_state(model):
     """(x, −(U' − v)/ω) is the point A (cos θ, sin θ) of each end block."""
     amplitude = np.array([0.01, 0.05, slipping_amplitude(model)])
     difference, common = np.array([0.0, 50.0, 180.0]), np.array([10.0, 200.0, 300.0])
@@ -49,16 +49,16 @@ def test_inner_blocks_oscillate_with_a_share_of_the_amplitude(model):
     angle = np.radians(phase)
     assert (position - model.sliding_offset)[:, 1:-1] == pytest.approx(share * amplitude[:, None] * np.cos(angle))
     assert swing[:, 1:-1] == pytest.approx(share * amplitude[:, None] * np.sin(angle))
-    for told, without in zip(
+    for oscillating, sliding in zip(
         (position, velocity), oscillating_states(model, amplitude, difference, common)[:2], strict=True
     ):
-        assert (told[:, [0, -1]] == without[:, [0, -1]]).all()
+        assert (oscillating[:, [0, -1]] == sliding[:, [0, -1]]).all()
 
 
 def test_with_no_share_inner_phases_change_no_bit():
-    told = (np.array([0.01, 0.05]), np.array([15.0, 180.0]), np.array([10.0, 200.0]))
-    drawn = oscillating_states(UNEQUAL, *told, 0.0, inner_phases(0.05, (2, 2), 1))
-    for one, other in zip(drawn, oscillating_states(UNEQUAL, *told), strict=True):
+    arguments = (np.array([0.01, 0.05]), np.array([15.0, 180.0]), np.array([10.0, 200.0]))
+    drawn = oscillating_states(UNEQUAL, *arguments, 0.0, inner_phases(0.05, (2, 2), 1))
+    for one, other in zip(drawn, oscillating_states(UNEQUAL, *arguments), strict=True):
         assert (one == other).all()
     position, velocity, _ = drawn
     assert (position[:, 1:-1] == UNEQUAL.sliding_offset[1:-1]).all()
@@ -73,8 +73,8 @@ def test_with_no_share_inner_phases_change_no_bit():
     st.floats(0.0, 180.0),
     st.integers(0, 99),
 )
-def test_up_to_the_slipping_amplitude_no_block_stands(model, share, size, difference, seed):
-    """Beyond it a block does at some phases."""
+def test_up_to_the_slipping_amplitude_no_block_is_at_rest(model, share, size, difference, seed):
+    """Beyond it a block is at rest at some phases."""
     common, of_inner = common_phases(0.05, (500,), seed), inner_phases(0.05, (500, model.chain.blocks - 2), seed)
     amplitude = np.full(500, size * slipping_amplitude(model, share))
     _, velocity, standing = oscillating_states(model, amplitude, np.full(500, difference), common, share, of_inner)
@@ -84,7 +84,7 @@ def test_up_to_the_slipping_amplitude_no_block_stands(model, share, size, differ
 
 
 def test_an_inner_block_oscillates_at_its_frequency_while_its_neighbours_slide():
-    """In the equations of motion of the sliding chain x_i'' = −K_ii x_i at a turning point, others at rest."""
+    """At a turning point of block i, with the others at rest, the equations of motion give x_i'' = −K_ii x_i."""
     position, _, _ = oscillating_states(
         UNEQUAL, *(np.array([x]) for x in (0.02, 0.0, 90.0)), 1.0, np.array([[0.0, 90.0]])
     )
@@ -99,7 +99,7 @@ def test_an_inner_block_oscillates_at_its_frequency_while_its_neighbours_slide()
     "chain",
     [Chain(2), Chain(2, coupling=0.5), Chain(3, ends="ring"), Chain(5, ends="ring"), Chain(grid=(2, 1), coupling=0.5)],
 )
-def test_end_blocks_that_a_spring_joins_have_no_frequency_of_their_own(chain):
+def test_end_blocks_joined_by_a_spring_are_refused(chain):
     """Opposite and equal phases are then (nearly) normal modes with frequencies other than √K_11: they are refused."""
     assert not has_free_ends(chain)
     model = Model(chain, law_of("linearized", 0.08))
@@ -152,7 +152,7 @@ def test_no_block_slips_backward():
 
 
 @pytest.mark.parametrize(("drawn", "another"), [(common_phases, inner_phases), (inner_phases, common_phases)])
-def test_phases_are_uniform_and_others_at_each_a(drawn, another):
+def test_phases_are_uniform_and_different_at_each_a(drawn, another):
     one, same, other, seeded = (
         drawn(*x) for x in ((0.08, (4000,), 1), (0.08, (4000,), 1), (0.09, (4000,), 1), (0.08, (4000,), 2))
     )

@@ -39,7 +39,7 @@ def test_the_fraction_is_that_of_plain_sampling(label, ranges):
     check_fractions(label, ranges, 200, 60, 1_000_000, (0, 1, 3, 5))
 
 
-def test_undetermined_points_are_left_out():
+def test_undetermined_points_are_excluded():
     def label(points):
         return np.where(points[:, 1] > 0.6, -1, half_plane(points))
 
@@ -75,7 +75,7 @@ def test_pairs_are_divided_into_thirds():
         seen.append(points)
         return half_plane(points)
 
-    # The edges are so far away that hardly any pair extends beyond the plane.
+    # The edges are so far away that almost no pair extends beyond the plane.
     follow_pairs(label, (0.0, 1.0), (0.0, 1e6), BATCHES, 2)
     assert PARTS == 3
     ends = np.concatenate(seen[:2])
@@ -95,7 +95,7 @@ def test_the_same_seed_gives_the_same_pairs():
     assert none.labelled_count.tolist() == [0] * len(SEPARATIONS)
 
 
-def test_selection_keeps_weights_in_the_mean():
+def test_selection_preserves_the_mean_weights():
     weight = np.array([0.1, 3.0, 0.5, 0.4, 1.0])
     generator = np.random.default_rng(1)
     mean = np.zeros(5)

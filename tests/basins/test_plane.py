@@ -40,9 +40,9 @@ def table(searched):
 
 def whole(table, known, tiles, threads):
     basin_settings = replace(PLANE, tiles=tiles, threads=threads)
-    told = basin_settings, SEARCH.label_limit
-    parts = [basins.tile(known, number, *told, "moving") for number in range(tiles)]
-    near = basins.pairs(known, *told, SEARCH.seed, "moving")
+    settings = basin_settings, SEARCH.label_limit
+    parts = [basins.tile(known, number, *settings, "moving") for number in range(tiles)]
+    near = basins.pairs(known, *settings, SEARCH.seed, "moving")
     maps = [(known.model, parts, near)]
     return basins.merge(maps, table, basin_settings, SEARCH.label_limit, "moving")
 
@@ -97,8 +97,8 @@ def test_a_plane_of_states():
 
 
 @pytest.mark.parametrize(("place", "pairs"), [(0, 0), (1, 1)])
-def test_attractors_are_read_as_they_were_found(searched, place, pairs):
-    """Returns, mirror images, and all values that decide a label."""
+def test_attractors_are_read_back_unchanged(searched, place, pairs):
+    """This includes returns, mirror images and all values that determine a label."""
     table, returns, rows = searched
     model = MODEL.at((0.08, 0.1)[place])
     found, expected = known_attractors(table, returns, model), [row.attractor for row in rows[place]]
@@ -116,7 +116,7 @@ def test_attractors_are_read_as_they_were_found(searched, place, pairs):
         assert one.motion.mirror_returns == pytest.approx(other.motion.mirror_returns, abs=1e-15)
 
 
-def test_without_attractors_nothing_is_determined(searched):
+def test_without_attractors_all_states_are_undetermined(searched):
     table, returns, _ = searched
     none = table.sel(a=[0.08]).assign_coords(a=[0.0])
     none["branch"].values[...] = -1

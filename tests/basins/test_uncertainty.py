@@ -16,7 +16,7 @@ def exponent_of(label, count, seed=4):
     return uncertainty_exponent(follow_pairs(label, UNIT, UNIT, count, seed))
 
 
-def counted(fraction, noise=0.01, counts=None):
+def pair_counts(fraction, noise=0.01, counts=None):
     """Return pairs with these fractions, up to a scatter of the batches."""
     scatter = np.exp(noise * np.random.default_rng(1).standard_normal((BATCHES, len(fraction))))
     number = np.full(len(fraction), 500) if counts is None else np.array(counts)
@@ -24,7 +24,7 @@ def counted(fraction, noise=0.01, counts=None):
 
 
 @pytest.mark.parametrize(("label", "alpha"), [(half_plane, 1.0), (disc, 1.0), *CANTOR])
-def test_exponents_that_are_known(label, alpha):
+def test_known_exponents(label, alpha):
     found = exponent_of(label, 4000)
     value, error = found.alpha
     assert found.kind == ExponentKind.SINGLE
@@ -36,7 +36,7 @@ def test_exponents_that_are_known(label, alpha):
 
 
 @pytest.mark.parametrize(("label", "alpha"), CANTOR[:2])
-def test_the_error_is_that_of_other_seeds(label, alpha):
+def test_the_error_is_the_scatter_over_seeds(label, alpha):
     found = np.array([exponent_of(label, 1200, seed).alpha for seed in range(40)])
     miss = np.abs(found[:, 0] - alpha) / found[:, 1]
     assert 0.45 < (miss < 1.0).mean() < 0.9
@@ -54,7 +54,7 @@ def test_a_boundary_without_a_single_exponent():
     assert found.local[0][-3:] == pytest.approx(1.0, abs=0.15)
 
 
-def test_no_exponent_where_too_few_pairs_differ():
+def test_there_is_no_exponent_if_too_few_pairs_differ():
     for label in (lambda x: np.zeros(len(x), dtype=int), lambda x: np.full(len(x), -1)):
         found = exponent_of(label, 400)
         assert found.kind == ExponentKind.UNKNOWN
@@ -66,15 +66,15 @@ def test_no_exponent_where_too_few_pairs_differ():
 def test_exponent_of_counts():
     """f = 3 ε^0.4; four separations with eight pairs are enough, and separations after a gap do not count."""
     fraction = 3.0 * np.array(SEPARATIONS) ** 0.4
-    assert uncertainty_exponent(counted(fraction, 0.0)).alpha == pytest.approx((0.4, 0.0), abs=1e-9)
-    found = uncertainty_exponent(counted(fraction))
+    assert uncertainty_exponent(pair_counts(fraction, 0.0)).alpha == pytest.approx((0.4, 0.0), abs=1e-9)
+    found = uncertainty_exponent(pair_counts(fraction))
     assert found.kind == ExponentKind.SINGLE
     assert found.alpha[0] == pytest.approx(0.4, abs=3.0 * found.alpha[1])
     assert found.fraction[1] == pytest.approx(fraction * 0.01 / np.sqrt(BATCHES), rel=0.5)
     few = [500] * FITTED_FROM + [8, 8, 8, 8, 7] + [500] * (len(SEPARATIONS) - FITTED_FROM - 5)
     bent = np.where(np.arange(len(SEPARATIONS)) > FITTED_FROM + 3, 1e-3 * fraction, fraction)
-    assert uncertainty_exponent(counted(bent, 0.0, few)).alpha[0] == pytest.approx(0.4, abs=1e-9)
-    pairs = counted(fraction)
+    assert uncertainty_exponent(pair_counts(bent, 0.0, few)).alpha[0] == pytest.approx(0.4, abs=1e-9)
+    pairs = pair_counts(fraction)
     pairs.different_weight[2:, -1] = 0.0
     two = uncertainty_exponent(pairs)
     pairs.different_weight[1:, -1] = 0.0
@@ -85,7 +85,7 @@ def test_exponent_of_counts():
     assert alone.alpha == uncertainty_exponent(pairs).alpha
     assert np.isfinite(alone.alpha).all()
     few[FITTED_FROM + 3] = 7
-    assert uncertainty_exponent(counted(bent, 0.0, few)).kind == ExponentKind.UNKNOWN
+    assert uncertainty_exponent(pair_counts(bent, 0.0, few)).kind == ExponentKind.UNKNOWN
 
 
 @pytest.mark.parametrize(
@@ -96,6 +96,6 @@ def test_a_change_counts_if_it_is_large_and_beyond_its_error(bend, noise, counts
     """The slope is 0.5 at first, 0.5 + bend at last: a change of 3.4 errors at a noise of 0.7, of 2.9 at 0.8."""
     z = (X - X[FITTED_FROM]) / (X[-1] - X[FITTED_FROM])
     fraction = np.exp((X[-1] - X[FITTED_FROM]) * (0.5 * z + 0.5 * bend * z**2) - 1.0)
-    found = uncertainty_exponent(counted(fraction, noise))
+    found = uncertainty_exponent(pair_counts(fraction, noise))
     assert found.kind == (ExponentKind.VARYING if counts else ExponentKind.SINGLE)
     assert found.change[0] == pytest.approx(bend, abs=0.01 + 4.0 * found.change[1])

@@ -1,16 +1,16 @@
-"""The range of a fit in catalogues made of known parts, and the recurrence of blocks by brute force."""
+"""The range of a fit in catalogues composed of known parts, and the recurrence of blocks by brute force."""
 
 import numpy as np
 
 from burridge_knopoff.catalogue.distribution import covered_blocks, fit_range, recurrence
 from burridge_knopoff.catalogue.slope import fit_slope
-from tests.catalogue.test_slope import drawn
+from tests.catalogue.test_slope import draw_magnitudes
 
 
 def parts():
     """Return magnitudes and blocks of events of one block, of a power law, and of large events beyond a gap."""
     single = np.random.default_rng(1).normal(-6.2, 0.05, 5000)
-    several = drawn(0.7, -5.0, 1.0, 3000, 2)
+    several = draw_magnitudes(0.7, -5.0, 1.0, 3000, 2)
     large = np.random.default_rng(3).normal(4.2, 0.3, 200)
     blocks = np.concatenate([np.ones(5000, dtype=int), np.full(3000, 4), np.full(200, 50)])
     return np.concatenate([single, several, large]), blocks
@@ -25,7 +25,7 @@ def test_the_range_lies_between_single_blocks_and_the_gap():
     assert fit.p_value > 0.05
 
 
-def test_ends_that_are_given_are_kept():
+def test_given_ends_are_kept():
     magnitude, blocks = parts()
     moment = np.exp(magnitude)
     assert fit_range(magnitude, moment, blocks, low=-4.3) == (-4.3, 1.0)
@@ -39,10 +39,10 @@ def test_there_is_no_range_without_events_of_several_blocks():
 
 
 def test_the_range_begins_where_the_rate_no_longer_bends():
-    """Small events are missed, by a normal distribution around −1: a range from the mode on gives too low a slope."""
+    """Small events are missing, by a normal distribution around −1: a range from the mode gives too low a slope."""
     slopes = []
     for seed in range(40):
-        everything = drawn(0.8, -6.0, 6.0, 40_000, seed)
+        everything = draw_magnitudes(0.8, -6.0, 6.0, 40_000, seed)
         chance = np.random.default_rng(100 + seed).normal(-1.0, 0.25, len(everything))
         magnitude = everything[chance < everything]
         fit = fit_slope(magnitude, *fit_range(magnitude, np.ones(len(magnitude)), np.full(len(magnitude), 2), high=4.0))
@@ -53,7 +53,7 @@ def test_the_range_begins_where_the_rate_no_longer_bends():
 def test_recurrence():
     generator = np.random.default_rng(1)
     time = np.sort(generator.uniform(0.0, 100.0, 60))
-    # In a ring, an event over the joint has its first block above its last.
+    # In a ring, the first block of an event that spans the seam is above its last.
     first, last = generator.integers(1, 7, (2, 60))
     members = covered_blocks(first, last, 8)
     count, mean, spread = recurrence(time, members, 8)

@@ -1,4 +1,4 @@
-"""Catalogues as arrays: the profiles, and runs that continue one another."""
+"""Catalogues as arrays: the profiles, and runs that continue earlier ones."""
 
 import numpy as np
 import pytest
@@ -22,14 +22,14 @@ def test_profiles_add_up_to_moments():
     assert len(record_events(MODEL, at_rest(MODEL), 200.0).slip) == 0
 
 
-def test_events_before_the_beginning_are_left_out():
+def test_events_before_the_beginning_are_excluded():
     whole, late = (record_events(MODEL, at_rest(MODEL), 200.0, begin=begin) for begin in (0.0, 100.0))
     assert np.array_equal(late.time, whole.time[whole.time >= 100.0])
     assert np.array_equal(late.interval, whole.interval[whole.time >= 100.0], equal_nan=True)
 
 
 @pytest.mark.parametrize("blocks", [5, 30])
-def test_runs_that_continue_one_another_have_the_catalogue_of_the_whole(blocks):
+def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks):
     model = Model(Chain(blocks, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
     whole = record_events(model, at_rest(model), 300.0)
     parts, at = [], at_rest(model)
@@ -47,7 +47,7 @@ def test_runs_that_continue_one_another_have_the_catalogue_of_the_whole(blocks):
 
 @pytest.mark.parametrize("ends", ["open", "ring"])
 def test_ends_and_intervals(ends):
-    """Events cover all blocks between their ends, in a ring over its joint too; intervals are those by block."""
+    """Events cover all blocks between their ends, also across the seam of a ring; intervals are those of the blocks."""
     model = Model(Chain(30, coupling=9.0, pulling=1.0, ends=ends), law_of("carlson_langer", 3.0), 0.01)
     found = record_events(model, at_rest(model), 1500.0, profiles=True)
     first, last = found.first_block, found.last_block
@@ -59,7 +59,7 @@ def test_ends_and_intervals(ends):
     stop, known = found.time + found.duration, 0
     for k, epicentre in enumerate(found.epicentre):
         before = [j for j in range(k) if epicentre in blocks[j]]
-        # An event that is not over, or lasted longer than a later one, may have reached the block after it.
+        # An event that has not ended, or that outlasted a later one, may have reached the block after it.
         if before and np.argmax(stop[before]) == len(before) - 1 and stop[before[-1]] < found.time[k]:
             known += 1
             assert found.interval[k] == pytest.approx(found.time[k] - found.time[before[-1]], rel=1e-12)
@@ -75,7 +75,7 @@ def test_the_largest_slip_may_be_backward():
     assert found.largest_slip[0] == -found.moment[0]
 
 
-def test_windows_that_there_are_not():
+def test_empty_windows_are_refused():
     start = record_events(MODEL, at_rest(MODEL), 50.0).final
     for end in (-5.0, 50.0):
         with refused(f"end: got {end}, expected a time after the start (50)"):
@@ -86,7 +86,7 @@ def test_windows_that_there_are_not():
 
 
 def test_all_events_count_unless_a_beginning_is_given():
-    """Nothing depends on where the clock begins, below 0 neither."""
+    """Nothing depends on where the clock starts, also if it starts below 0."""
     start = at_rest(MODEL)
     early = ChainState(start.position, start.velocity, start.stuck, -1000.0)
     found, shifted = record_events(MODEL, start, 200.0), record_events(MODEL, early, -800.0)

@@ -1,4 +1,4 @@
-"""Catalogues of fixed steps tend to the exact one, of first order in the step; the closed form has the exact one."""
+"""Catalogues of fixed steps converge to the exact one at first order; the closed form gives the exact one."""
 
 import numpy as np
 import pytest
@@ -20,7 +20,7 @@ def order(errors):
 
 
 @pytest.mark.parametrize("solver", ["rk4", "euler"])
-def test_first_order_in_the_step(solver):
+def test_convergence_is_of_first_order_in_the_step(solver):
     """Stops and starts are late by half a step; Euler's method also errs in between."""
     exact = record_events(MODEL, START, END)
     assert exact.blocks.tolist() == [4, 1, 1, 1, 1, 3, 1]
@@ -32,7 +32,7 @@ def test_first_order_in_the_step(solver):
     assert order(late) == pytest.approx(1.0, abs=0.2)
     for name in ("moment", "peak_velocity", "stress_drop", "energy_released"):
         errors = [np.abs(getattr(run, name) - getattr(exact, name)).max() for run in runs]
-        # A block has no speed where it stops: what is late by h there is wrong by h².
+        # A block has no speed where it stops: a delay of h changes its position by h².
         assert order(errors) > 1.4 if solver == "rk4" else order(errors) == pytest.approx(1.0, abs=0.1), name
         assert errors[-1] < (1e-8 if solver == "rk4" else 5e-3), name
 
@@ -43,7 +43,7 @@ def test_the_closed_form_has_the_exact_catalogue():
         assert np.allclose(getattr(mapped, name), getattr(exact, name), rtol=1e-9, atol=1e-12, equal_nan=True), name
 
 
-def test_runs_of_fixed_steps_continue_one_another():
+def test_runs_of_fixed_steps_can_be_continued():
     options = {"solver": "rk4", "step": 2.0**-7}
     whole = record_events(MODEL, START, END, **options)
     middle = float(np.floor((whole.time[2] + 0.5 * whole.duration[2]) * 2**7) / 2**7)
@@ -54,7 +54,7 @@ def test_runs_of_fixed_steps_continue_one_another():
         assert np.allclose(found, getattr(whole, name), rtol=1e-12, equal_nan=True), name
 
 
-def test_solvers_and_steps_that_there_are_not():
+def test_unknown_solvers_and_steps_are_refused():
     for solver in ("leapfrog", ["rk4"]):
         with refused("solver: got", "series | map | rk4 | euler"):
             record_events(MODEL, START, END, solver=solver)
@@ -65,7 +65,7 @@ def test_solvers_and_steps_that_there_are_not():
 
 @pytest.mark.parametrize(("step", "words"), [(1.0, "at most 0.468 in this chain"), (1e-30, "at most 2.5e+09 steps")])
 def test_steps_that_miss_events_or_never_end(step, words):
-    """Once 18 events of 35 were found in steps of 1, and the run had completed."""
+    """Steps of 1 once found 18 of 35 events, in a run that completed."""
     for solver in ("rk4", "euler"):
         with refused(f"step: got {step!r}", words):
             record_events(MODEL, START, END, solver=solver, step=step)

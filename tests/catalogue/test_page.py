@@ -1,10 +1,10 @@
-"""docs/catalogues.md prints what it says."""
+"""docs/catalogues.md: its code prints the output that it shows."""
 
 from tests.pages import outputs
 
 
-def test_the_page_prints_what_it_says(repository):
+def test_the_page_shows_what_its_code_prints(repository):
     results = outputs((repository / "docs" / "catalogues.md").read_text(), "catalogues.md")
     assert results
-    for _, said, printed in results:
-        assert printed == said
+    for _, expected, printed in results:
+        assert printed == expected

@@ -12,7 +12,7 @@ from burridge_knopoff.catalogue.slope import fit_slope, format_p_value
 from tests.refused import refused
 
 
-def drawn(b, low, high, count, seed):
+def draw_magnitudes(b, low, high, count, seed):
     """Draw magnitudes from exp(−bm) between two magnitudes, by the inverse of their distribution."""
     share = np.random.default_rng(seed).random(count)
     if b == 0.0:
@@ -24,7 +24,7 @@ def drawn(b, low, high, count, seed):
 
 @pytest.mark.parametrize(("b", "low", "high"), [(0.5, -3.0, 4.0), (1.0, 0.0, 2.0), (-0.4, 0.0, 3.0), (0.0, 1.0, 2.0)])
 def test_slope_and_its_error(b, low, high):
-    found = [fit_slope(drawn(b, low, high, 200, seed), low, high) for seed in range(300)]
+    found = [fit_slope(draw_magnitudes(b, low, high, 200, seed), low, high) for seed in range(300)]
     slopes = np.array([item.b for item in found])
     errors = np.array([item.error for item in found])
     assert abs(slopes.mean() - b) < 4.0 * slopes.std() / np.sqrt(300)
@@ -40,28 +40,28 @@ def test_slope_and_its_error(b, low, high):
 )
 def test_p_is_uniform_where_the_distribution_is_the_fitted_one(b, low, high, count):
     """The slope is fitted to the events that are tested (H. W. Lilliefors, J. Am. Stat. Assoc. 62 (1967) 399)."""
-    # Of different numbers of events, so that each has its own bootstrap.
-    p = np.array([fit_slope(drawn(b, low, high, count + k, k), low, high).p_value for k in range(200)])
+    # The numbers of events differ, so that each catalogue has its own bootstrap.
+    p = np.array([fit_slope(draw_magnitudes(b, low, high, count + k, k), low, high).p_value for k in range(200)])
     assert 0.015 < (p < 0.05).mean() < 0.1
     assert abs((p < 0.5).mean() - 0.5) < 0.13
     assert kstest(p, "uniform").pvalue > 0.001
     assert p.min() > 0.0
 
 
-def test_p_tells_a_rate_that_bends():
-    """A rate that is lower by half at the lower end, where a catalogue is incomplete."""
+def test_p_rejects_a_rate_that_bends():
+    """The rate is lower by half at the lower end, where a catalogue is incomplete."""
     refused_count = 0
     for seed in range(30):
-        magnitude = drawn(0.7, 0.0, 4.0, 2000, seed)
+        magnitude = draw_magnitudes(0.7, 0.0, 4.0, 2000, seed)
         kept = np.random.default_rng(1000 + seed).random(2000) < 1.0 - np.exp(-2.0 * magnitude) / 2.0
         refused_count += fit_slope(magnitude[kept], 0.0, 4.0).p_value < 0.05
     assert refused_count > 24
 
 
 @pytest.mark.parametrize("width", [0.1, 0.5])
-def test_rounded_magnitudes_take_a_range_of_whole_bins(width):
-    """Half a bin outside the first and the last centre; b is too high between centres, too low a bin further out."""
-    magnitude = drawn(0.81, -5.0, 5.0, 100_000, 1)
+def test_rounded_magnitudes_require_a_range_of_whole_bins(width):
+    """The range ends half a bin outside the outer centres; b is too high between them and too low a bin further out."""
+    magnitude = draw_magnitudes(0.81, -5.0, 5.0, 100_000, 1)
     rounded = width * np.round(magnitude / width)
     assert fit_slope(rounded, -2.0 - width / 2, 2.0 + width / 2).b == pytest.approx(0.81, abs=0.025)
     assert fit_slope(rounded, -2.0, 2.0).b > 0.81 * (1.0 + 0.4 * width)
@@ -70,10 +70,10 @@ def test_rounded_magnitudes_take_a_range_of_whole_bins(width):
 
 @pytest.mark.parametrize("width", [0.1, 0.5])
 @pytest.mark.parametrize("last", [2.0, 10.0])
-def test_rounding_biases_as_much_as_the_page_says(width, last):
+def test_the_bias_by_rounding_is_that_of_the_page(width, last):
     """docs/catalogues.md: w²/(12 s²) half a bin outside the centres, 2w/range and bw/2 on them."""
     b, low, high = 0.8, -width / 2, last + width / 2
-    magnitude = drawn(b, low, high, 2_000_000, 1)
+    magnitude = draw_magnitudes(b, low, high, 2_000_000, 1)
     rounded = width * np.round(magnitude / width)
     true = fit_slope(magnitude, low, high).b
     fraction = 1.0 - fit_slope(rounded, low, high).b / true
@@ -99,7 +99,7 @@ def test_steep_slopes_have_a_fit(b, high):
 
 def test_infinite_magnitudes():
     """An event whose slips cancel has the magnitude −∞, below every range."""
-    magnitude = drawn(1.0, 0.0, np.inf, 100, 1)
+    magnitude = draw_magnitudes(1.0, 0.0, np.inf, 100, 1)
     assert fit_slope(np.append(magnitude, -np.inf), 0.0) == fit_slope(magnitude, 0.0)
     with refused("magnitude: got inf between 0 and inf, expected finite magnitudes"):
         fit_slope(np.append(magnitude, np.inf), 0.0)
@@ -109,15 +109,15 @@ def test_infinite_magnitudes():
 
 
 @pytest.mark.parametrize("number", [np.nan, -np.nan])
-def test_what_is_no_magnitude_is_refused(number):
-    """It belongs to no range: the others alone would pass for the whole catalogue."""
+def test_nan_magnitudes_are_refused(number):
+    """NaN belongs to no range, so the other magnitudes would be taken for the whole catalogue."""
     with refused("magnitude: got nan, expected numbers"):
-        fit_slope(np.append(drawn(1.0, 0.0, np.inf, 100, 1), number), 0.0)
+        fit_slope(np.append(draw_magnitudes(1.0, 0.0, np.inf, 100, 1), number), 0.0)
 
 
 @pytest.mark.parametrize("far", [1e4, 1e62, 1e100, 1e155, 1e200, 1e308])
-def test_an_end_that_is_far_from_all_events_is_none(far):
-    magnitude = drawn(0.9, 0.0, np.inf, 200, 4)
+def test_an_end_far_beyond_all_events_does_not_change_the_fit(far):
+    magnitude = draw_magnitudes(0.9, 0.0, np.inf, 200, 4)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         whole, found, rising = (
@@ -138,8 +138,8 @@ def test_an_end_that_is_far_from_all_events_is_none(far):
     st.sampled_from([0.0, 1e5, 1e300]),
 )
 def test_slopes_scale_with_the_magnitudes(exponent, width, rises, beyond):
-    """In any unit, with an end as far as the largest event, far beyond it, or nowhere."""
-    size, magnitude = 10.0**exponent, drawn(1.0, 0.0, 3.0, 50, 2)
+    """This holds in any unit, for an end at the largest event, far beyond it, or without an end."""
+    size, magnitude = 10.0**exponent, draw_magnitudes(1.0, 0.0, 3.0, 50, 2)
     high = width * float(magnitude.max())
     expected, inside = fit_slope(magnitude, 0.0, high), size * magnitude
     # Rounding does not push the largest event out.
@@ -171,14 +171,14 @@ def test_slopes_scale_with_the_magnitudes(exponent, width, rises, beyond):
 def test_magnitudes_and_ends_at_the_limit_of_numbers(size, low, high):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        found = fit_slope(size * drawn(1.0, 0.0, np.inf, 200, 4), low, high)
+        found = fit_slope(size * draw_magnitudes(1.0, 0.0, np.inf, 200, 4), low, high)
     assert np.isfinite([found.b, found.error, found.p_value]).all()
     assert found.error > 0.0
 
 
 def test_magnitudes_that_hardly_differ_have_no_slope():
     with refused("magnitude: got differences up to 6.43769e-310 between 0 and inf, expected larger ones"):
-        fit_slope(1e-310 * drawn(1.0, 0.0, np.inf, 200, 4), 0.0)
+        fit_slope(1e-310 * draw_magnitudes(1.0, 0.0, np.inf, 200, 4), 0.0)
 
 
 def test_small_p_is_written_as_a_bound():
@@ -187,18 +187,20 @@ def test_small_p_is_written_as_a_bound():
 
 
 def test_events_outside_the_range_do_not_count():
-    magnitude = drawn(1.0, 0.0, 3.0, 1000, 1)
+    magnitude = draw_magnitudes(1.0, 0.0, 3.0, 1000, 1)
     with_others = np.concatenate([magnitude, [-5.0, 9.0]])
     assert fit_slope(with_others, 0.0, 3.0) == fit_slope(magnitude, 0.0, 3.0)
 
 
-def test_another_distribution_is_told():
-    """A bump of large events is no straight line."""
-    magnitude = np.concatenate([drawn(1.0, 0.0, 5.0, 2000, 1), np.random.default_rng(2).normal(4.0, 0.2, 300)])
+def test_another_distribution_is_rejected():
+    """A bump of large events is not a straight line."""
+    magnitude = np.concatenate(
+        [draw_magnitudes(1.0, 0.0, 5.0, 2000, 1), np.random.default_rng(2).normal(4.0, 0.2, 300)]
+    )
     assert fit_slope(magnitude, 0.0, 5.0).p_value < 0.005
 
 
-def test_what_has_no_slope():
+def test_too_few_or_equal_magnitudes_are_refused():
     with refused("magnitude: got 3 events between 0 and 2, expected 10 or more"):
         fit_slope(np.array([0.5, 1.0, 1.5]), 0.0, 2.0)
     with refused("magnitude: got only 1 between 0 and 2, expected a spread"):

@@ -1,4 +1,4 @@
-"""Exponents per event against a QR decomposition of what each event makes of perturbations."""
+"""Exponents per event, compared with a QR decomposition of the effect of each event on perturbations."""
 
 import numpy as np
 import pytest
@@ -7,19 +7,19 @@ from burridge_knopoff import Chain, ChainState, Model, event_exponents, event_mu
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
-from tests.kernel.test_catalogue import recorded
+from tests.kernel.test_catalogue import record_catalogue
 from tests.kernel.test_quasistatic import next_event
 
 
 def rough(model, seed=1, time=0.0):
-    """Return a state of rest, somewhat out of line."""
+    """Return a state at rest with slightly different positions."""
     blocks = model.blocks
     position = np.random.default_rng(seed).uniform(-0.95, -0.6, blocks) - model.sliding_offset
     return ChainState(position, np.zeros(blocks), np.ones(blocks, dtype=bool), time=time)
 
 
 def growth_between(model, start, times, count, loading):
-    """Return the logarithms by which perturbations grow from each time to the next, shape (times - 1, count)."""
+    """Return the logarithmic growth of perturbations from each time to the next, shape (times - 1, count)."""
     blocks = model.blocks
     generator = np.random.default_rng(5)
     matrix = np.vstack([generator.normal(size=(blocks, count)), np.zeros((blocks, count))])
@@ -37,12 +37,12 @@ def growth_between(model, start, times, count, loading):
 
 @pytest.mark.parametrize("blocks", [2, 3, 7, 23, 24, 30])
 def test_exponents_under_quasistatic_loading_are_those_of_the_maps_from_event_to_event(blocks):
-    """All of them: each map has one that is −∞. Once they were 0, as a time of the slip clock ended the batches."""
+    """All exponents agree; each map has one that is −∞. They were 0 when batches ended at a time of the slip clock."""
     model = Model(Chain(blocks, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 1.0)
     start, begin, end = rough(model), 2.0, 2.0 + 60.0 / blocks
     found = event_exponents(model, start, end, begin=begin, count=blocks, loading="quasistatic")
-    # As a whole, like the perturbations: chaos takes the run in groups apart from it.
-    time = recorded(model, start, end, False, loading="quasistatic")[0]["time"]
+    # The run is computed as a whole, like the perturbations; in chaos a run in groups would diverge from it.
+    time = record_catalogue(model, start, end, False, loading="quasistatic")[0]["time"]
     before, seen = time[time < begin], time[time >= begin]
     assert found.events == len(seen) > 20
     # Moments of rest before and after each event; the perturbations align until the window begins.
@@ -52,14 +52,14 @@ def test_exponents_under_quasistatic_loading_are_those_of_the_maps_from_event_to
     finite, expected = found.exponent[:-1], np.sort(growth.mean(axis=0)[:-1])[::-1]
     assert finite[0] == pytest.approx(expected[0], rel=1e-5)
     assert finite.sum() == pytest.approx(expected.sum(), abs=1e-6)
-    # Those between align slowly, each by its distance from the next.
+    # The exponents in between align slowly, each at a rate given by its distance from the next.
     assert finite == pytest.approx(expected, abs=5e-3)
     assert found.exponent[-1] == -np.inf
     assert found.exponent[0] > 0.0
 
 
 def rests(model, start, end):
-    """Return moments at which all blocks stick, from a start of rest to an end."""
+    """Return times at which all blocks stick, from a start at rest to an end."""
     runner = Runner(model, keep_events=True)
     runner.begin(start)
     assert runner.run(end) == Status.COMPLETED
@@ -78,7 +78,7 @@ def test_exponents_under_a_steady_driver_are_those_of_the_flow(blocks):
     growth = growth_between(model, start, np.concatenate([rests(model, start, times[0]), times]), 2, "steady")
     growth = growth[-len(times) + 1 :]
     assert found.events > 40
-    # From rest to rest: of the largest one to the rounding, of both together too.
+    # From rest to rest, the largest exponent and the sum of both agree to rounding.
     expected = growth.sum(axis=0) / found.events
     assert found.exponent[0] == pytest.approx(expected[0], abs=1e-7)
     assert found.exponent.sum() == pytest.approx(expected.sum(), abs=1e-7)
@@ -86,7 +86,7 @@ def test_exponents_under_a_steady_driver_are_those_of_the_flow(blocks):
 
 @pytest.mark.parametrize("v", [1e-3, 1e-5])
 def test_one_block_under_a_steady_driver_has_the_exponent_zero(v):
-    """Each of its events is the one before, a little later. Ends within slips once made it -0.14 and -0.38."""
+    """Each event repeats the previous one. Windows that ended within slips once gave -0.14 and -0.38."""
     model = Model(Chain(1, pulling=1.0), law_of("carlson_langer", 2.0), v)
     found = event_exponents(model, rough(model), 10.5 / v, begin=0.7 / v, loading="steady")
     assert found.events > 10
@@ -113,7 +113,7 @@ def test_exponents_per_event_depend_on_no_unit(blocks, loading):
 
 
 def test_a_chain_that_slips_at_the_start_or_never_rests_has_exponents():
-    """The times of rest are searched for from the start of the run; there may be none."""
+    """The search for times of rest begins at the start of the run; there may be none."""
     model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.02)
     slipping = ChainState(rough(model).position, np.array([3.0, 0.0, 0.0]), np.array([False, True, True]))
     runner = Runner(model, keep_events=True)
@@ -134,7 +134,7 @@ def test_a_chain_that_slips_at_the_start_or_never_rests_has_exponents():
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
 @pytest.mark.parametrize("share", [-1.1, -0.9, 0.5, 1.0])
 def test_multipliers_begin_at_rest(loading, share):
-    """Once they were wrong from a block beyond its backward threshold, which starts before any loading."""
+    """They were once wrong for a block beyond its backward threshold, which starts before any loading."""
     model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.02, "symmetric")
     # Spring forces, as fractions of the thresholds, below the threshold except at the first block.
     position = np.linalg.solve(model.chain.stiffness, -np.array([share, 0.3, -0.2]))
@@ -164,7 +164,7 @@ def test_multipliers_begin_at_rest(loading, share):
     expected = np.linalg.eigvals(np.stack(columns, axis=1))
     expected = expected[np.argsort(-np.abs(expected), kind="stable")]
     if loading == "quasistatic":
-        # The clock of the run is fixed here, not the next start: what moves all blocks alike remains.
+        # The clock of the run is fixed here instead of the next start, so that a common shift of all blocks remains.
         keep = np.abs(expected - 1.0).argmin()
         assert expected[keep] == pytest.approx(1.0, abs=1e-5)
         expected, found = np.delete(expected, keep), found[:-1]
@@ -172,7 +172,7 @@ def test_multipliers_begin_at_rest(loading, share):
 
 
 def test_the_exponent_of_two_blocks_is_that_of_their_map():
-    """Which SciPy integrates from stop to start to stop; its derivative by differences."""
+    """SciPy integrates the map from stop to start to stop; finite differences give its derivative."""
     model = Model(
         Chain(2, coupling=3.62, pulling=1.0, threshold=(1.0, 2.25)), law_of("carlson_langer", 0.0, {"sigma": 0.2}), 1.0
     )
@@ -194,8 +194,8 @@ def test_the_exponent_of_two_blocks_is_that_of_their_map():
 
 
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
-def test_the_clock_of_the_state_moves_no_exponent(loading):
-    """Errors were 6.7 times too small from a late state, whose events all fell into one batch."""
+def test_exponents_do_not_depend_on_the_clock_of_the_state(loading):
+    """Errors were once 6.7 times too small for a late state, whose events all fell into one batch."""
     model = Model(Chain(3, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.1)
     found = [
         event_exponents(model, rough(model, time=time), time + 512.0, loading=loading)

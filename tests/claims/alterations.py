@@ -1,4 +1,4 @@
-"""Alterations of the world in which the paper is right, and the verdict that follows, for each claim."""
+"""Alterations of data for which the paper is right, and the resulting verdict on each claim."""
 
 from __future__ import annotations
 
@@ -47,13 +47,13 @@ def synchronized(value: int, **where: object) -> Alteration:
 
 
 def cloud(scale: float, shift: float) -> Alteration:
-    """Of the section points from plus."""
+    """Change the section points from plus."""
 
     def move(world: Summaries) -> None:
         bifurcation = world["bifurcation_diagram"]
-        of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == "plus"
-        bifurcation["crossing_velocity"].values[of_plus] *= scale
-        bifurcation["crossing_velocity"].values[of_plus] += shift
+        from_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == "plus"
+        bifurcation["crossing_velocity"].values[from_plus] *= scale
+        bifurcation["crossing_velocity"].values[from_plus] += shift
 
     return move
 
@@ -103,12 +103,12 @@ def line_from(first: float) -> Alteration:
 def no_crossings(world: Summaries) -> None:
     """Let the runs from plus cross the section downward only."""
     bifurcation = world["bifurcation_diagram"]
-    of_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == "plus"
-    bifurcation["crossing_direction"].values[of_plus] = -1
+    from_plus = np.repeat(bifurcation["initial"].values, bifurcation["crossing_count"].values) == "plus"
+    bifurcation["crossing_direction"].values[from_plus] = -1
 
 
 def crossing(chosen: Callable[[np.ndarray], np.ndarray]) -> Alteration:
-    """Leave the section points of some values of a."""
+    """Keep only the section points at some values of a."""
 
     def leave(world: Summaries) -> None:
         points = world["bifurcation_diagram"]
@@ -134,7 +134,7 @@ def means_apart(a: object, **where: object) -> Alteration:
 
 
 def few(summary: str, **counts: int) -> Alteration:
-    """Leave the first ones along a dimension."""
+    """Keep only the first entries along a dimension."""
     first = {name: slice(count) for name, count in counts.items()}
     return lambda world: world.update({summary: world[summary].isel(first)})
 
@@ -165,7 +165,7 @@ def chaos_from(first: float) -> Alteration:
 def locked(
     value: int, law: int | slice = slice(None), a: Callable[[np.ndarray], np.ndarray] = np.isfinite
 ) -> Alteration:
-    """Of branch 1, where its a is so."""
+    """Change branch 1 at the values of a that satisfy a condition."""
 
     def change(world: Summaries) -> None:
         rotation = world["rotation"]
@@ -177,7 +177,7 @@ def locked(
 
 
 def parted(a: Callable[[np.ndarray], np.ndarray] = np.isfinite, **where: object) -> Alteration:
-    """Let the end blocks of branch 1 have two frequencies after detuning, where its a is so."""
+    """Give the end blocks of branch 1 two frequencies after detuning, at the values of a that satisfy a condition."""
 
     def change(world: Summaries) -> None:
         rotation = world["rotation"]
@@ -193,12 +193,12 @@ def halved_growth(world: Summaries) -> None:
 
 
 def everywhere(summary: str, name: str, value: float, **where: object) -> Alteration:
-    """Of all runs and attractors."""
+    """Set a variable for all runs and attractors."""
     return both(alter(summary, name, value, **where), alter("attractors", name, value, **where))
 
 
 def lost_at(a: float) -> Alteration:
-    """Where the synchronized orbit loses stability."""
+    """Let the synchronized orbit lose stability there."""
     return alter("orbits", "critical_a", a)
 
 
@@ -214,7 +214,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus"), reached(1, initial="minus"))),
     ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus", law="nonlinear"), reached(1, initial="minus"))),
     ("minus_synchronizes", CONVENTION, reached(1, initial="minus", **OTHER)),
-    # Outcomes that are not known would decide: those of runs, and those under another convention.
+    # Unknown outcomes, of runs or under another convention, would decide.
     (
         "minus_synchronizes",
         NOT_TESTABLE,
@@ -281,7 +281,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("same_for_both_laws", CONVENTION, reached(1, initial="minus", law="linearized", **OTHER)),
     ("phases_decide", FAILS, alter("phases", "branch", 2, phase_difference=30.0)),
     ("phases_decide", FAILS, alter("phases", "velocity_correlation", 1.0, phase_difference=180.0)),
-    # Neither close nor opposite.
+    # Phases that are neither close nor opposite.
     ("phases_decide", HOLDS, alter("phases", "velocity_correlation", 1.0, phase_difference=150.0)),
     # At amplitudes at which blocks stop during an oscillation.
     ("phases_decide", LOOSELY, alter("phases", "branch", 2, phase_difference=30.0, amplitude=0.2)),
@@ -371,7 +371,7 @@ CASES: list[tuple[str, str, Alteration]] = [
         NOT_TESTABLE,
         alter("bifurcations", "motion_before", QUASIPERIODIC, bifurcation=[14, 15]),
     ),
-    # Earlier chaos, a passed bifurcation, and undetermined motion before it do not count as an onset of chaos.
+    # Earlier chaos, a passed bifurcation or undetermined motion before it excludes an onset of chaos.
     ("locking_precedes_chaos", HOLDS, alter("bifurcations", "motion_before", TRANSIENT, bifurcation=13)),
     ("locking_precedes_chaos", HOLDS, alter("bifurcations", "motion_before", UNDETERMINED, bifurcation=13)),
     (
@@ -458,19 +458,19 @@ CASES: list[tuple[str, str, Alteration]] = [
         FAILS,
         both(everywhere("agreement", "kind", PERIODIC), alter("attractors", "section_count", 1)),
     ),
-    # Motion that repeats after enough section points for a cloud, and after one less.
+    # Motion that repeats after enough section points for a cloud, and after one fewer.
     ("plus_aperiodic", LOOSELY, repeating(9)),
     ("plus_aperiodic", CONVENTION, repeating(8)),
     ("plus_aperiodic", LOOSELY, both(repeating(9), attracting(9))),
     ("plus_aperiodic", FAILS, both(repeating(8), attracting(8))),
     ("plus_aperiodic", CONVENTION, reached(0, initial="plus", **OTHER)),
-    # An attractor that is not known, or whose kind is undetermined, is not evidence.
+    # An unknown attractor, or one of undetermined kind, is not evidence.
     ("plus_aperiodic", HOLDS, reached(-1, initial="plus", **OTHER)),
     ("plus_aperiodic", HOLDS, alter("attractors", "kind", UNDETERMINED)),
     # Transient chaos is chaos, as that of a run is.
     ("plus_aperiodic", HOLDS, alter("attractors", "kind", TRANSIENT)),
     ("plus_not_periodic", FAILS, everywhere("agreement", "kind", PERIODIC)),
-    # The claim says nothing where there is no cloud, under a convention or at an a.
+    # The claim does not apply where there is no cloud, under a convention or at an a.
     ("plus_not_periodic", HOLDS, reached(0, initial="plus", **OTHER)),
     (
         "plus_not_periodic",
@@ -488,7 +488,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("sticks_unavoidable", FAILS, alter("attractors", "stop_rate", 0.0, attractor=1)),
     ("sticks_unavoidable", HOLDS, alter("attractors", "stop_rate", 0.0, block=2)),
     ("sticks_unavoidable", LOOSELY, alter("attractors", "stop_rate", 0.0, a=ONE_OF_MANY)),
-    # A direction that does not grow leaves motion without sticks.
+    # If one direction does not grow, motion without sticks is possible.
     ("sticks_unavoidable", FAILS, alter("equilibrium", "eigenvalue", -0.1, part="real", mode=6)),
     ("sticks_unavoidable", LOOSELY, alter("equilibrium", "eigenvalue", 0.0, part="real", mode=6, a=ONE_OF_MANY)),
     ("sticks_unavoidable", NOT_TESTABLE, alter("attractors", "branch", -1)),
@@ -525,7 +525,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     # A cycle may be that of one block, or the time between stops of any.
     ("cycle_time", READING, alter("stick_slip", "cycle_time", 5.7)),
     ("cycle_time", READING, alter("stick_slip", "stop_rate", 1.0)),
-    # Or that of the middle block from plus, at the a of the figures.
+    # It may also be that of the middle block from plus, at the a of the figures.
     (
         "cycle_time",
         READING,
@@ -578,7 +578,7 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("laws_agree", LOOSELY, means_apart(ONE_OF_MANY, initial="plus")),
     ("laws_agree", NOT_TESTABLE, alter("agreement", "difference_error", 0.01, a=lambda a: a > 0.03, initial="plus")),
     ("laws_agree", HOLDS, alter("agreement", "difference_error", 0.01, a=ONE_OF_MANY)),
-    # The kind of motion is another question.
+    # The kind of motion is judged separately.
     ("laws_agree", HOLDS, alter("agreement", "same_kind", 0)),
     ("laws_agree_in_kind", FAILS, alter("agreement", "same_kind", 0, a=lambda a: a > 0.055)),
     ("laws_agree_in_kind", LOOSELY, alter("agreement", "same_kind", 0, a=ONE_OF_MANY, initial="plus")),
@@ -596,7 +596,7 @@ CASES: list[tuple[str, str, Alteration]] = [
         NOT_TESTABLE,
         alter("agreement", "kind", PERIODIC, initial="plus", law="nonlinear", a=lambda a: (a > 0.072) & (a < 0.096)),
     ),
-    # The kind of motion is one thing, ⟨J⟩ another.
+    # The kind of motion and ⟨J⟩ are judged separately.
     ("two_blocks_agree", READING, PARTED),
     ("two_blocks_agree", FAILS, both(PARTED, alter("two_blocks", "difference", 0.1, state=0))),
     ("two_blocks_agree", READING, alter("two_blocks", "difference", 0.1, state=0)),

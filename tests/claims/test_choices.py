@@ -1,4 +1,4 @@
-"""The study's own tolerances, half and twice as large: what they change in the evidence, and in verdicts."""
+"""The effect of halving and doubling the study's own tolerances on the evidence and on verdicts."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from burridge_knopoff.claims.conventions import rounded_state_changes
 from burridge_knopoff.claims.ledger import judge, ledger
 from burridge_knopoff.claims.verdict import FAILS, HOLDS, Range
 from burridge_knopoff.motion.kind import MotionKind
-from tests.claims.said import CLAIMS
+from tests.claims.verdict_texts import CLAIMS
 from tests.claims.worlds import evidence, paper_world
 
 BELOW = CLAIMS["regular_below"].parameters["a"]
@@ -44,7 +44,7 @@ def test_a_tolerance_of_agreement_decides_where_laws_part():
 @pytest.mark.parametrize(
     ("exponent", "name", "expected"),
     [
-        # Chaos of 0.0015 is none by twice the threshold; 0.0008 is by half of it.
+        # An exponent of 0.0015 is not chaotic at twice the threshold; 0.0008 is chaotic at half of it.
         (0.0015, "motion.chaotic_exponent is 0.002 (here 0.001)", "not testable"),
         (0.0008, "motion.chaotic_exponent is 0.0005 (here 0.001)", FAILS),
     ],
@@ -62,7 +62,7 @@ def test_a_tolerance_of_motion_decides_what_is_chaos(exponent, name, expected):
     assert judge(CLAIMS["plus_not_periodic"], other).verdict == (HOLDS if expected == FAILS else expected)
 
 
-def test_a_kind_that_an_attractor_has_shown_stays():
+def test_the_kind_of_an_attractor_does_not_change():
     world = paper_world()
     world["lyapunov"]["lyapunov_exponent"].loc[{"exponent": 0, "initial": "plus"}] = 0.0008
     world["lyapunov"]["run_kind"].loc[{"initial": "plus"}] = MotionKind.UNDETERMINED
@@ -71,7 +71,7 @@ def test_a_kind_that_an_attractor_has_shown_stays():
     assert (other.summaries["agreement"]["kind"] == world["agreement"]["kind"]).all()
 
 
-def test_the_threshold_of_synchrony_decides_who_synchronizes():
+def test_the_threshold_of_synchrony_decides_which_runs_synchronize():
     world = paper_world()
     world["mean_distance"]["mean_distance"].loc[{"initial": "minus"}] = 1.5e-6
     world["mean_distance"]["synchronized"].loc[{"initial": "minus"}] = 0
@@ -80,7 +80,7 @@ def test_the_threshold_of_synchrony_decides_who_synchronizes():
     assert set(found.values()) == {FAILS}
 
 
-def test_the_evidence_itself_stays_as_it_is():
+def test_the_evidence_itself_is_not_changed():
     world, same = paper_world(), paper_world()
     list(other_tolerances(evidence(world)))
     assert all(world[name].identical(same[name]) for name in same)
@@ -91,7 +91,7 @@ def test_states_that_round_to_the_papers_and_reach_another_attractor_are_listed(
     assert rounded_state_changes(evidence(world), ["minus", "plus"], ["linearized"], BELOW) == []
     rounded = world["attractors"]["rounded_branch"]
     rounded.loc[{"law": "linearized", "initial": "plus", "a": [0.05, 0.2], "corner": 1}] = 0
-    # An attractor that is not known does not count as another one.
+    # An unknown attractor does not count as another one.
     rounded.loc[{"law": "linearized", "initial": "plus", "a": 0.03}] = -1
     text = "some states that round to plus reach another attractor at a = 0.05 (linearized)"
     assert rounded_state_changes(evidence(world), ["plus"], ["linearized", "nonlinear"], BELOW) == [text]

@@ -18,7 +18,7 @@ from burridge_knopoff.figures.palette import BRANCHES
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.yaml_file import read_config
-from tests.claims.said import CLAIMS
+from tests.claims.verdict_texts import CLAIMS
 
 ROOT = Path(__file__).parents[2]
 SUMMARY = ROOT / "results/paper/summary"
@@ -49,7 +49,7 @@ def test_pages_show_the_ledger_and_the_branches(content: dict, branches: list[di
     assert REFRESH["replace_block"](text, REFRESH["pages"](content, branches)[page]) != text
 
 
-def test_the_ledger_is_of_the_claims_as_they_stand(content: dict) -> None:
+def test_the_ledger_contains_the_present_claims(content: dict) -> None:
     shown = [(claim["name"], claim["statement"], claim["figure"]) for claim in content["claims"]]
     assert shown == [(claim.name, claim.statement, claim.figure) for claim in CLAIMS.values()]
     assert content["study"] == "paper"
@@ -98,7 +98,7 @@ def test_every_figure_of_the_page_is_there(content: dict) -> None:
         assert (ROOT / f"docs/figures/{claim['figure']}.png").exists()
 
 
-def test_the_colours_of_the_branches_survive() -> None:
+def test_the_figure_of_basin_fractions_shows_the_colours_of_the_branches() -> None:
     picture = np.asarray(Image.open(ROOT / "docs/figures/basin_fractions.png").convert("RGB"), dtype=int).reshape(-1, 3)
     for name in BRANCHES:
         wanted = np.array([int(name[k : k + 2], 16) for k in (1, 3, 5)])

@@ -28,7 +28,7 @@ from burridge_knopoff.claims.verdict import (
 )
 from burridge_knopoff.study.yaml_file import ConfigError
 from tests.claims.alterations import CASES
-from tests.claims.said import CLAIMS, PICTURES, judged
+from tests.claims.verdict_texts import CLAIMS, PICTURES, judge_claim
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
 from tests.refused import refused
 
@@ -56,7 +56,7 @@ def read(tmp_path: Path, text: str) -> list:
     return read_claims(PICTURES, file)
 
 
-def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
+def test_a_claim_has_its_judge_and_its_range(tmp_path: Path) -> None:
     edge, regular = read(tmp_path, EDGE + RANGED)
     assert (edge.name, edge.topic) == ("edge", "synchronization")
     assert edge.judge is JUDGES["synchronization.edge_of_synchrony"]
@@ -84,13 +84,13 @@ def test_a_claim_knows_its_judge_and_its_range(tmp_path: Path) -> None:
         (RANGED, "{above: 0}", "{above: low}", "a.above: got 'low', expected a finite number"),
     ],
 )
-def test_what_is_not_allowed_is_said_in_one_line(tmp_path: Path, text: str, old: str, new: str, expected: str) -> None:
+def test_invalid_claims_are_refused_in_one_line(tmp_path: Path, text: str, old: str, new: str, expected: str) -> None:
     assert old in text
     with refused(expected, "claims.yaml", error=ConfigError):
         read(tmp_path, text.replace(old, new))
 
 
-def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+def test_a_missing_file_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigError, match=r"missing.yaml: cannot be read: No such file"):
         read_claims((), tmp_path / "missing.yaml")
 
@@ -101,7 +101,7 @@ def content() -> dict:
 
 
 class Recorded(dict):
-    """Summaries that note which of them are asked for."""
+    """Summaries that record which of them are requested."""
 
     def __init__(self, summaries: dict[str, xarray.Dataset]) -> None:
         super().__init__(summaries)
@@ -133,20 +133,20 @@ def test_a_judge_reads_what_it_declares(judge: Judge) -> None:
         world = paper_world()
         alteration(world)
         summaries = Recorded(world)
-        judged(name, evidence(summaries))
+        judge_claim(name, evidence(summaries))
         unread -= summaries.read
     assert not unread
 
 
 def test_a_summary_that_a_judge_does_not_declare_is_refused() -> None:
-    """Also one that the study does not have: another study may."""
+    """This includes a summary that the study does not have, since another study may."""
     expected = "basins: not declared by the judge topic.name"
     for read in (lambda known: known.summary("basins"), lambda known: "basins" in known.summaries):
         with refused(expected):
             Judge("topic.name", read, ("orbits",))(evidence(paper_world()))
 
 
-def test_the_ledger_reads_what_it_declares_and_what_its_judges_do() -> None:
+def test_the_ledger_reads_what_it_and_its_judges_declare() -> None:
     summaries = Recorded(paper_world())
     known = evidence(summaries)
     ledger("test", [], known, [])
@@ -157,7 +157,7 @@ def test_the_ledger_reads_what_it_declares_and_what_its_judges_do() -> None:
     assert set(READS) == {*OWN, *(name for claim in CLAIMS.values() for name in claim.judge.reads)}
 
 
-def test_json_is_strict_and_whole(content: dict) -> None:
+def test_json_is_strict_and_complete(content: dict) -> None:
     read = json.loads(as_json(content), parse_constant=pytest.fail)
     assert as_json(content).startswith(
         '{\n "study": "test",\n "v": 0.1,\n "contact": "one_sided",\n "start": "moving",\n'
@@ -249,7 +249,7 @@ def test_claims_that_cannot_be_tested_are_listed_by_reason(content: dict) -> Non
     assert "|" not in text
 
 
-def test_values_join_neighbours_and_count_many() -> None:
+def test_neighbouring_values_become_ranges_and_many_are_counted() -> None:
     assert format_values(A, (A > 0.0) & (A < 0.025)) == "at a = 0.0025 to 0.02"
     assert format_values(A, (A == 0.05) | (A > 0.285)) == "at a = 0.05, 0.29 to 0.3"
     assert format_values(A, (A == 0.05) | (A > 0.29)) == "at a = 0.05, 0.295, 0.3"

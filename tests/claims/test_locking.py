@@ -1,4 +1,4 @@
-"""What precedes chaos, on branches made by hand."""
+"""What precedes chaos, on hand-made branches."""
 
 import numpy as np
 import pytest
@@ -14,17 +14,17 @@ PERIODIC, CHAOTIC = MotionKind.PERIODIC, MotionKind.CHAOTIC
 @pytest.mark.parametrize(
     ("change", "kinds", "expected"),
     [
-        # Known at one value below the bifurcation, or at two: the nearest decides.
+        # The kind is known at one or two values below the bifurcation; the nearest decides.
         (Change.END, {0.1: CHAOTIC}, True),
         (Change.END, {0.1: PERIODIC}, False),
         (Change.END, {0.05: PERIODIC, 0.1: CHAOTIC}, True),
         (Change.END, {0.05: CHAOTIC, 0.1: PERIODIC}, False),
-        # Chaos beyond the bifurcation was not there before.
+        # Chaos beyond the bifurcation that did not exist before.
         (Change.END, {0.2: CHAOTIC}, False),
         (Change.BEGINNING, {0.1: CHAOTIC}, False),
     ],
 )
-def test_a_branch_may_end_on_what_was_chaotic_already(change, kinds, expected):
+def test_a_branch_may_end_on_a_branch_that_was_chaotic_before(change, kinds, expected):
     bifurcations = xr.Dataset(
         {"change": ("bifurcation", [change]), "to_branch": ("bifurcation", [7]), "grid_low": ("bifurcation", [0.1])}
     )

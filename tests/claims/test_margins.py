@@ -1,4 +1,4 @@
-"""Choices that would change a verdict, for judges whose verdict changes at a known place."""
+"""Choices that would change a verdict, for judges whose verdict changes at a known value."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def test_a_share_changes_by_its_distance_from_one():
 
 @pytest.mark.parametrize("other", [NOT_TESTABLE, FAILS])
 def test_a_choice_that_leaves_too_little_data_is_given(other):
-    """Too few states for a larger share, and a value that is the only one at which the claim can be judged."""
+    """There are too few states for a larger share, and only one value at which the claim can be judged."""
     judge = judge_with_change("share", 0.93, HOLDS, NOT_TESTABLE)
     (text,) = changing_choices(judge, NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
     head, value = text.removesuffix(" (here 0.9)").rsplit(" ", 1)
@@ -102,7 +102,7 @@ def test_other_values_with_data_are_tried(name):
     assert changing_choices(judge, NOTHING, {name: 0.0}, Verdict(HOLDS, "")) == []
 
 
-def test_where_solvers_are_compared_single_values_are_left_out_and_no_grid_halved():
+def test_for_solver_comparisons_single_values_are_left_out_but_the_grid_is_not_halved():
     """Half of the grid of the runs may lack the values at which solvers are compared."""
     data = {
         name: xarray.Dataset(coords={"a": a}) for name, a in [("lyapunov", [0.1, 0.2, 0.3]), ("solvers", [0.1, 0.3])]
@@ -125,7 +125,7 @@ def test_where_solvers_are_compared_single_values_are_left_out_and_no_grid_halve
     ],
 )
 def test_the_half_of_the_grid_that_changes_a_verdict_is_given(a, expected):
-    """Of three values one half has the first and the third, the other the second; without 0.1 it fails."""
+    """One half contains the first and third of three values, the other the second; without 0.1 the claim fails."""
     world = Evidence({"mean_distance": xarray.Dataset(coords={"a": a})}, {})
 
     def judge(evidence, _parameters):

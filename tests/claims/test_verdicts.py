@@ -1,4 +1,4 @@
-"""Every claim, on altered data: no verdict is written by hand."""
+"""The verdict on every claim from altered data; no verdict is written by hand."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from burridge_knopoff.claims.verdict import (
 )
 from tests.claims import alterations
 from tests.claims.alterations import CASES, ONE_OF_MANY, Alteration, at
-from tests.claims.said import CLAIMS, FILE, altered, judged, said
+from tests.claims.verdict_texts import CLAIMS, FILE, format_verdict, judge_altered, judge_claim
 from tests.claims.worlds import Summaries, evidence, paper_world
 
 SAID = json.loads(FILE.read_text(encoding="utf-8"))
@@ -39,23 +39,25 @@ JUDGED += [(case[0], [one[0] for one in CASES[: k + 1]].count(case[0]), *case[1:
 
 
 def expected_line(name: str, number: int) -> str:
-    """Return the line of said.json on a claim in one of its cases."""
+    """Return the line of verdict_texts.json on a claim in one of its cases."""
     known = SAID.get(name, [])
-    assert number < len(known), f"said.json has {len(known)} lines of {name}: `python -m tests.claims.said` writes more"
+    assert number < len(known), (
+        f"{FILE.name} has {len(known)} lines of {name}: run `python -m {judge_claim.__module__}`"
+    )
     return known[number]
 
 
 @pytest.mark.parametrize(("name", "number", "expected", "alteration"), JUDGED, ids=[f"{c[0]}-{c[2]}" for c in JUDGED])
 def test_altered_data_alter_the_verdict(name: str, number: int, expected: str, alteration: Alteration) -> None:
-    """Every claim holds where the paper is right; said.json has the texts and the numbers of every verdict."""
-    verdict = altered(name, alteration)
+    """Every claim holds where the paper is right; verdict_texts.json has the texts and the numbers of every verdict."""
+    verdict = judge_altered(name, alteration)
     assert verdict.verdict == expected, verdict.reason
-    assert said(verdict) == expected_line(name, number)
+    assert format_verdict(verdict) == expected_line(name, number)
     assert len(SAID[name]) == 1 + [case[0] for case in CASES].count(name)
     if expected in (CONVENTION, READING):
-        judged = set(verdict.conventions.values())
-        assert FAILS in judged
-        assert judged & {HOLDS, LOOSELY}
+        verdicts = set(verdict.conventions.values())
+        assert FAILS in verdicts
+        assert verdicts & {HOLDS, LOOSELY}
 
 
 @pytest.mark.parametrize(
@@ -77,14 +79,14 @@ def test_a_claim_depends_on_convention_where_it_holds_and_fails(
         changes = changes.replace(f"({letter})", f"({name})")
     figures = [Measured("number", 1.0)]
 
-    def judged(attractors: xarray.Dataset) -> tuple[str, str]:
+    def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         number = names.index(f"{attractors['contact'].item()}, {attractors['start'].item()}")
         return others[number], str(number + 1)
 
-    found = judge_conventions(evidence(paper_world()), own, "why", figures, ["but"], judged)
+    found = judge_conventions(evidence(paper_world()), own, "why", figures, ["but"], judge_attractors)
     verdicts = {"one_sided, moving": own, **{name: one for name, one in zip(names, others, strict=True) if one}}
     assert found == Verdict(expected, "why", figures, f"but{changes}", verdicts, own)
-    alone = judge_conventions(evidence({}), own, "why", figures, [], judged)
+    alone = judge_conventions(evidence({}), own, "why", figures, [], judge_attractors)
     assert alone == Verdict(own, "why", figures, "", {"one_sided, moving": own}, own)
 
 
@@ -123,7 +125,7 @@ def test_the_attractor_that_is_reached_is_known_by_branch_and_side() -> None:
     ],
 )
 def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> None:
-    """Too few values are no reason to say that a statement fails, whichever claim they are of."""
+    """Too few values are not a reason for a statement to fail, whatever the claim."""
     share = Share(hits, count)
     assert judge_share(share, 0.9) == expected
     texts = f"100 % (one) and {share} (other)"
@@ -134,7 +136,7 @@ def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> Non
             judge_worst_share(one, 0.9)
     else:
         assert judge_worst_share(one, 0.9) == expected
-    # What fails anyhow is not left open by another share.
+    # A failure is not left open by another share.
     assert judge_worst_share({**one, "third": Share(0, 9)}, 0.9) == FAILS
 
 
@@ -145,7 +147,7 @@ def test_one_rule_judges_all_shares(hits: int, count: int, expected: str) -> Non
         ([HOLDS, LOOSELY], LOOSELY),
         ([FAILS, FAILS], FAILS),
         ([LOOSELY, FAILS], READING),
-        # What is open does not matter if the others differ. It may differ from them if they do not.
+        # An open share does not matter if the others differ; if they agree, it may differ from them.
         ([HOLDS, NOT_TESTABLE, FAILS], READING),
         ([NOT_TESTABLE, HOLDS], NOT_TESTABLE),
         ([FAILS, NOT_TESTABLE], NOT_TESTABLE),
@@ -166,12 +168,12 @@ def test_the_worst_share_of_a_reading_decides() -> None:
     assert judge_readings(shares, 0.9) == {"first": NOT_TESTABLE, "second": HOLDS}
 
 
-def test_every_claim_is_seen_to_fail() -> None:
+def test_every_claim_fails_in_some_case() -> None:
     assert {name for name, verdict, _ in CASES if verdict in (FAILS, CONVENTION, READING)} == set(CLAIMS)
 
 
 def _under(laws: list[str]) -> Summaries:
-    """Return the world with other names of the laws; those that are too many are left out."""
+    """Return the world with other names of the laws; surplus laws are left out."""
     world = paper_world()
     for key, dataset in world.items():
         for name, names in (("law", laws), ("other_law", laws[1:])):
@@ -182,12 +184,12 @@ def _under(laws: list[str]) -> Summaries:
 
 
 def _at(chosen: Callable[[np.ndarray], object]) -> Summaries:
-    """Return the world with some values of a only."""
+    """Return the world with only some values of a."""
     world = paper_world()
     return world | {key: item.isel(a=chosen(item["a"].values)) for key, item in world.items() if "a" in item.dims}
 
 
-# What rests on runs alone: on their kinds, their distances, their cycles, or their solvers.
+# Claims that depend on runs alone: on their kinds, distances, cycles or solvers.
 OF_RUNS = ["minus_synchronizes", "chaotic_above", "antiphase", "laws_agree", "solutions_agree"]
 AT_ONE = ["plus_mean_distance", "plus_aperiodic", "velocities_touch_zero"]
 REPLACED = {"linearized": {"law": "exponential"}, "nonlinear": {}}
@@ -217,33 +219,33 @@ SPRINGS = "the study's chain has other springs, masses or static friction than t
         (["minus_synchronizes"], lambda: _at(lambda a: slice(None, None, 8)), {}, FEW),
     ],
 )
-def test_nothing_is_judged_by_what_is_not_the_papers(
+def test_no_claim_is_judged_from_a_setting_that_is_not_the_papers(
     names: Iterable[str], world: Callable[[], Summaries], config: dict[str, object], reason: str
 ) -> None:
-    """Nor without its data, nor of values that are not in the grid."""
+    """The same holds without the data, and for values that are not in the grid."""
     start, _, end = f"Not testable here: {reason}.".partition("…")
     summaries = world()
     for name in names:
-        verdict = judged(name, evidence(summaries, **config))
+        verdict = judge_claim(name, evidence(summaries, **config))
         assert verdict.verdict == NOT_TESTABLE, name
         assert verdict.reason.startswith(start)
         assert verdict.reason.endswith(end)
 
 
-def test_what_says_the_same_is_judged() -> None:
+def test_equivalent_configs_are_judged() -> None:
     same = {"coupling": [1.0, 1.0], "pulling": [1.0, 2.0, 1.0], "threshold": [1.0, 1.0, 1.0]}
     cases = [("equilibrium", {"chain": same}), ("equilibrium", {"window": 200})]
     for name, config in [*cases, *((name, {"window": 20_000}) for name in OF_RUNS)]:
-        assert judged(name, evidence(paper_world(), **config)).verdict == HOLDS
+        assert judge_claim(name, evidence(paper_world(), **config)).verdict == HOLDS
     # Ten values of a are enough.
     few = _at(lambda a: np.isin(a, a[(a >= 0.005) & (a <= 0.08)][:10]))
     assert judge(CLAIMS["minus_synchronizes"], evidence(few)).verdict == HOLDS
 
 
 @pytest.mark.parametrize("name", CLAIMS)
-def test_what_one_law_tells_is_judged_without_the_other(name: str) -> None:
-    """No claim fails for want of a law: it is judged by the law that it is about, or not testable."""
-    verdict = judged(name, evidence(_under(["linearized"]), laws={"linearized": {}}))
+def test_claims_about_one_law_are_judged_without_the_other(name: str) -> None:
+    """No claim fails because a law is missing: it is judged from the law that it concerns, or not testable."""
+    verdict = judge_claim(name, evidence(_under(["linearized"]), laws={"linearized": {}}))
     needed = CLAIMS[name].parameters.get("laws", [CLAIMS[name].parameters.get("law", "nonlinear")])
     if "nonlinear" in needed:
         assert (verdict.verdict, verdict.reason) == (NOT_TESTABLE, "Not testable here: the study has no nonlinear law.")
@@ -252,7 +254,7 @@ def test_what_one_law_tells_is_judged_without_the_other(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", CLAIMS)
-def test_a_further_law_changes_no_verdict(name: str) -> None:
+def test_an_additional_law_changes_no_verdict(name: str) -> None:
     """Its numbers would contradict every claim."""
     world = {}
     for key, item in paper_world().items():
@@ -260,9 +262,9 @@ def test_a_further_law_changes_no_verdict(name: str) -> None:
         names = {dimension: [*item[dimension].values, "stribeck"] for dimension in dimensions}
         world[key] = item.reindex(names, fill_value=-1)
     laws = {"linearized": {}, "nonlinear": {}, "stribeck": {}}
-    own = judged(name, evidence(world, laws=laws))
-    assert (own.verdict, said(own)) == (HOLDS, expected_line(name, 0))
-    first = judged(name, evidence(world, laws={"stribeck": {}, **laws}))
+    own = judge_claim(name, evidence(world, laws=laws))
+    assert (own.verdict, format_verdict(own)) == (HOLDS, expected_line(name, 0))
+    first = judge_claim(name, evidence(world, laws={"stribeck": {}, **laws}))
     compared = name in ("laws_agree", "laws_agree_in_kind", "two_blocks_agree")
     assert first.verdict == (NOT_TESTABLE if compared else HOLDS)
     assert ("compared with its first one, the stribeck law" in first.reason) == compared
@@ -271,11 +273,11 @@ def test_a_further_law_changes_no_verdict(name: str) -> None:
 @pytest.mark.parametrize("name", ["laws_agree", "laws_agree_in_kind", "two_blocks_agree"])
 def test_laws_are_compared_whichever_comes_first(name: str) -> None:
     names = ["nonlinear", "linearized"]
-    verdict = judged(name, evidence(_under(names), laws={law: {} for law in names}))
+    verdict = judge_claim(name, evidence(_under(names), laws={law: {} for law in names}))
     assert verdict.verdict == HOLDS, verdict.reason
 
 
-def test_runs_that_did_not_complete_are_no_evidence() -> None:
+def test_runs_that_did_not_complete_are_not_evidence() -> None:
     world = paper_world()
     for name, value in {"status": 1, "synchronized": 0, "mean_distance": np.nan}.items():
         at(world["mean_distance"], name, value, a=ONE_OF_MANY)

@@ -16,7 +16,7 @@ from tests.sections import AGREEMENT, MOTION
 
 _, SYNCHRONIZED, PERIODIC, QUASIPERIODIC, CHAOTIC, *_ = MotionKind
 
-# Fine where the paper's edges of synchrony are.
+# The grid is fine at the paper's edges of synchrony.
 A = np.array(sorted([0.0, 0.0025, 0.0046, 0.084, *(round(0.005 * k, 3) for k in range(1, 61))]))
 STATES = ("minus", "plus")
 POINT = ("law", "initial", "a")
@@ -45,7 +45,7 @@ Summaries = dict[str, xarray.Dataset]
 
 
 def evidence(summaries: Summaries, **config: object) -> Evidence:
-    """Return the summaries with the paper's setting, or another in part."""
+    """Return the summaries with the paper's setting, parts of which may be replaced."""
     return Evidence(summaries, {**CONFIG, **config})
 
 

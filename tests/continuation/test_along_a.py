@@ -53,7 +53,7 @@ def scripted(monkeypatch):
 
 
 def test_attractors_at_one_value_seed_the_others(scripted):
-    """Downward and upward as far as they exist; attractors that both values have are not followed again."""
+    """They do so downward and upward as far as they exist; attractors known at both values are not followed again."""
     found = continue_attractors(models(), refine=RefinementSettings(1.0))
     assert scripted == [(0.1, [OTHER]), (0.3, [OTHER]), (0.4, [OTHER])]
     assert [len(here) for here in found.attractors] == [2, 2, 2, 1]
@@ -64,9 +64,9 @@ def test_attractors_at_one_value_seed_the_others(scripted):
     assert found.grid == [0, 1, 2, 3]
 
 
-def test_a_branch_is_remembered_for_two_of_the_widest_steps(scripted, tell):
-    """No branch then ends where the grid is coarser."""
-    asked = tell(continuation, "branches", [([], [])])
+def test_a_branch_is_remembered_over_two_of_the_widest_steps(scripted, script_answers):
+    """So no branch ends only because the grid is coarser."""
+    asked = script_answers(continuation, "branches", [([], [])])
     continue_attractors(models((0.1, 0.2, 0.5, 0.55)), refine=RefinementSettings(1.0))
     ((_, _, _, reach, *_),) = asked
     assert reach == pytest.approx(0.6)
@@ -88,7 +88,7 @@ def same(one, other):
         assert one == other or (one != one and other != other)
 
 
-def test_attractors_found_by_counted_states_alone_seed_the_others():
+def test_attractors_found_only_in_basin_sampling_seed_the_others():
     """Synchrony loses stability between these two values; the antiphase orbit exists at both."""
     settings = SearchSettings(samples=6, fraction_width=0.2)
     found = continue_attractors(models((0.0862, 0.09)), settings, refine=RefinementSettings(1.0))
@@ -116,7 +116,7 @@ def test_results_do_not_depend_on_processes_or_the_cache(tmp_path, monkeypatch, 
     for two in others:
         for item in fields(one):
             same(getattr(one, item.name), getattr(two, item.name))
-    told = [line for line in caplog.messages if line.startswith("searched from initial states")]
-    assert [line.partition("; ")[2] for line in told] == ["", "", *(f"{n} from the cache" for n in (2, 3))]
+    lines = [line for line in caplog.messages if line.startswith("searched from initial states")]
+    assert [line.partition("; ")[2] for line in lines] == ["", "", *(f"{n} from the cache" for n in (2, 3))]
     # The cache has one file for each gap of the grid.
     assert len(list((tmp_path / "neighbours compared").iterdir())) == 2

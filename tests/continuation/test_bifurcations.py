@@ -1,4 +1,4 @@
-"""The entries of bifurcations, for constructed orbits and branches."""
+"""Entries in the list of bifurcations, for constructed orbits and branches."""
 
 from types import SimpleNamespace
 

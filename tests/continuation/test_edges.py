@@ -50,7 +50,7 @@ def found(known):
     return edges_at(known, SETTINGS, 20_000)
 
 
-def test_an_edge_state_between_each_two_branches(found):
+def test_every_two_branches_have_an_edge_state_between_them(found):
     between = {tuple(sorted(zip(edge.branch.tolist(), edge.side.tolist(), strict=True))): edge.state for edge in found}
     pair = between[(3, -1), (3, 1)]
     assert (pair.kind, pair.orbit.stop_counts) == (MotionKind.SYNCHRONIZED, (1, 1, 1))
@@ -62,13 +62,13 @@ def test_an_edge_state_between_each_two_branches(found):
         assert (edge.reached_count.sum(axis=1) == 40).all()
 
 
-def test_chaos_that_ends_is_no_attractor(known):
+def test_transient_chaos_is_not_an_attractor(known):
     ending = replace(known.attractors[3].motion, kind=MotionKind.TRANSIENT_CHAOS)
     fewer = replace(known, attractors=[*known.attractors[:3], replace(known.attractors[3], motion=ending)])
     assert not any(2 in edge.branch for edge in edges_at(fewer, SETTINGS, 20_000))
 
 
-def test_saddle_orbits_are_followed_to_where_their_stability_changes(known, found):
+def test_saddle_orbits_are_continued_until_their_stability_changes(known, found):
     segments, numbers = continue_edges(found, 0.12)
     at = next(k for k, edge in enumerate(found) if edge.state.symmetry == Symmetry.SYNCHRONIZED)
     segment = segments[numbers[at]]

@@ -1,4 +1,4 @@
-"""Which periodic orbits are followed, with constructed ones."""
+"""Which periodic orbits are continued, tested with constructed ones."""
 
 from dataclasses import replace
 
@@ -20,7 +20,7 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import begin_branch
     ("failing", "expected", "numbers"),
     [(None, [1.0, 1.01, 0.99], {0: 0, 1: 0, 2: 1, 3: 2}), (1.0, [1.01, 1.0001, 0.99], {1: 1, 2: 0, 3: 2})],
 )
-def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, failing, expected, numbers):
+def test_orbits_of_different_periods_are_continued_separately(monkeypatch, processes, failing, expected, numbers):
     """At one a and with the same stops, periods that differ by 1e-4 are one orbit, by 1e-2 two orbits."""
     orbit = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05)))
     periods = [1.0, 1.0001, 1.01, 0.99]
@@ -50,7 +50,7 @@ def test_orbits_of_other_periods_are_followed_apart(monkeypatch, processes, fail
     assert followed == pytest.approx(expected)
 
 
-def test_the_longest_orbits_are_followed_first_and_neighbours_late():
+def test_the_longest_orbits_are_continued_first_and_neighbours_late():
     periods = [6.0] * 8 + [100.0, 6.3, 90.0]
     placed = [((k, 0), type("Orbit", (), {"period": period})) for k, period in enumerate(periods)]
     # Their places within an octave are those of the van der Corput sequence.
@@ -68,7 +68,7 @@ def test_the_longest_orbits_are_followed_first_and_neighbours_late():
         ([(2, 3, 0, 0), (2, 3, 1, -1)], [(0, 0), (2, 0), (4, 0)]),
     ],
 )
-def test_between_values_of_the_grid_orbits_are_followed_next_to_changes(changes, expected):
+def test_between_values_of_the_grid_orbits_are_continued_next_to_changes(changes, expected):
     kind = np.full((5, 2), MotionKind.PERIODIC)
     kind[3] = MotionKind.CHAOTIC
     slots = {"branch": np.tile([0, 1], (5, 1)), "side": np.tile([0, -1], (5, 1)), "kind": kind}
@@ -76,8 +76,8 @@ def test_between_values_of_the_grid_orbits_are_followed_next_to_changes(changes,
     one = xr.Dataset({name: (("value", "attractor"), values) for name, values in slots.items()})
     one.attrs["refine_longest_period"] = 500.0
     one = one.assign(in_grid=("value", [1, 0, 0, 0, 1]))
-    told = [BranchChange(*change, 0, 0, Change.CHANGE) for change in changes]
-    assert followed_orbits._places(one, told) == expected
+    known_changes = [BranchChange(*change, 0, 0, Change.CHANGE) for change in changes]
+    assert followed_orbits._places(one, known_changes) == expected
     # Longer orbits are not followed.
     one["period"][0] = 501.0
-    assert followed_orbits._places(one, told) == [place for place in expected if place[0] != 0]
+    assert followed_orbits._places(one, known_changes) == [place for place in expected if place[0] != 0]

@@ -62,7 +62,7 @@ def test_mirror_images_are_one_branch():
 
 
 @pytest.mark.parametrize(("v", "expected"), [(0.1, {0: 0}), (0.2, {0: 0, 3: 1})])
-def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monkeypatch):
+def test_the_distance_within_which_branches_match_grows_with_the_velocity(v, expected, found, monkeypatch):
     models = [Model(Chain(3), law_of(law, A), v) for law in ("linearized", "nonlinear")]
     one, other = (part[1].motion.state() for part in found)
     near = other.vector()[None] + 1.5 * SAME_SET
@@ -71,12 +71,14 @@ def test_how_near_one_branch_is_grows_with_the_velocity(v, expected, found, monk
 
 
 @pytest.fixture
-def follow(tell):
+def follow(script_answers):
     """Return a function that calls `follow_law` with scripted sets at each step; None where no motion settles."""
 
     def found(places):
         sets = [None if place is None else np.full((10, 6), place) for place in places]
-        asked = tell(law_homotopy, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets])
+        asked = script_answers(
+            law_homotopy, "visit", [None if one is None else shown(one, one, 0.0, 0.0) for one in sets]
+        )
         pair = [Model(Chain(3), law_of(law, 0.5), 0.2, "symmetric") for law in ("linearized", "nonlinear")]
         start = shown(np.full((1, 6), 7.0), np.zeros((0, 6)), 0.0, 0.0).state()
         return follow_law(*pair, start, SETTINGS), asked
@@ -104,7 +106,7 @@ def test_a_torus_may_be_locked_on_the_way(follow):
     assert follow([torus, 0.3, *[torus] * 15])[0] is not None
 
 
-def test_of_two_branches_that_arrive_at_one_the_longer_is_matched(monkeypatch):
+def test_if_two_branches_arrive_at_one_the_longer_is_matched(monkeypatch):
     """Each is followed at three of the values of a at which it exists; the longer one arrives from two of them."""
     models = [[Model(Chain(3), law_of(law, 0.1 * k)) for k in range(6)] for law in ("linearized", "nonlinear")]
     here, there = (shown(np.full((1, 6), place), np.zeros((0, 6)), 0.0, 0.0) for place in (0.0, 9.0))
@@ -124,7 +126,7 @@ def test_of_two_branches_that_arrive_at_one_the_longer_is_matched(monkeypatch):
     assert [a for _, a in asked] == pytest.approx([a for _, a in expected])
 
 
-def test_motion_that_does_not_continue_smoothly_is_given_up(follow):
+def test_motion_that_jumps_between_steps_is_not_followed_further(follow):
     """A set may move by SAME_SET in a step, which scales with v, and not by more."""
     limit = 2.0 * SAME_SET
     assert follow([0.0, 0.99 * limit, *[0.99 * limit] * 20])[0] is not None

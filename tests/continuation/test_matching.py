@@ -16,13 +16,13 @@ def pair(place, ahead, mean=0.1):
     return [first, replace(first, motion=first.motion.mirrored(), partner=0)]
 
 
-def followed(found, memory):
+def follow_branches(found, memory):
     """Return the branches, and sides, of attractors at a = 0.1, 0.2, …"""
     numbers = branches([(k + 1) / 10 for k in range(len(found))], found, range(len(found)), memory, Matcher(1.0))
     return tuple([row.tolist() for row in values] for values in numbers)
 
 
-def test_a_set_is_as_near_as_two_directions_tell():
+def test_the_distance_of_sets_is_the_smaller_of_both_directions():
     """An orbit on a torus is close to it, although most of the torus is far from the orbit."""
     torus, orbit = at(*np.linspace(0.0, 1.0, 101)), at(0.5)
     one, other = (Outline(item) for item in (torus, orbit))
@@ -35,7 +35,7 @@ def test_a_set_is_as_near_as_two_directions_tell():
     assert left.distances(right) == pytest.approx(np.array([[0.2, 0.2], [0.0, 0.0]]))
 
 
-def test_an_orbit_and_the_chaos_around_it_go_on_as_they_are():
+def test_an_orbit_and_the_chaos_around_it_continue_as_separate_branches():
     """The chaotic sets are farther from each other than an orbit is from any of them."""
     here, there = np.linspace(0.0, 0.1, 6), np.linspace(0.008, 0.108, 6)
     before = outlines([at(*here, partner=0), at(0.041, partner=1)])
@@ -52,7 +52,7 @@ def test_returns_are_thinned_out_evenly():
     assert len(Outline(at(0.0, 1.0)).own) == 2
 
 
-def test_pairs_are_chosen_together():
+def test_all_pairs_are_matched_together():
     """Of two sets close to one the closer is matched, if the other has another match; none matches beyond the limit."""
     before = outlines([at(0.0, partner=0), at(0.02, partner=1)])
     after = outlines([at(0.015, partner=0), at(0.035, partner=1)])
@@ -66,8 +66,8 @@ def test_pairs_are_chosen_together():
     assert Matcher(1.0).match({}, after) == {}
 
 
-def test_synchrony_is_followed_by_synchrony_alone():
-    """However far it has moved."""
+def test_synchrony_is_matched_only_with_synchrony():
+    """This holds however far it has moved."""
     still, far = (at(place, symmetry=SYNCHRONIZED) for place in (0.0, 9.0))
     for before, after, found in ((still, at(0.0), {}), (at(0.0), still, {}), (still, far, {0: 0})):
         assert Matcher(1.0).match(outlines([before]), outlines([after])) == found
@@ -83,12 +83,12 @@ def test_several_synchronized_attractors_are_several_branches():
     assert not np.concatenate(side).any()
 
 
-def test_branches_at_a_pitchfork():
+def test_branches_are_matched_across_a_pitchfork():
     """The synchronized branch ends, its mirror pair begins, and another branch continues unchanged."""
     before = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0), at(1.0, partner=1, mean_distance=0.14)]
     after = [*pair(0.0, -0.005, mean=0.01), at(1.001, partner=2, mean_distance=0.15)]
     later = [*pair(0.0, 0.006, mean=0.01), at(1.002, partner=2, mean_distance=0.15)]
-    branch, side = followed([before, after, later], 0.2)
+    branch, side = follow_branches([before, after, later], 0.2)
     assert branch == [[0, 1], [2, 2, 1], [2, 2, 1]]
     # The one that is closer to the first of the previous pair has its side.
     assert side == [[0, 0], [-1, 1, 0], [1, -1, 0]]
@@ -99,18 +99,18 @@ def test_the_side_is_that_of_the_end_block_ahead_in_position():
     faster = np.array([0.0, 0.0, 0.0, 0.3, 0.0, 0.0])
     own, mirrored = first.motion.returns + faster, first.motion.mirror_returns + faster[[2, 1, 0, 5, 4, 3]]
     first = replace(first, motion=replace(first.motion, returns=own, mirror_returns=mirrored))
-    assert followed([[first, replace(first, motion=first.motion.mirrored(), partner=0)]], 0.2)[1] == [[1, -1]]
+    assert follow_branches([[first, replace(first, motion=first.motion.mirrored(), partner=0)]], 0.2)[1] == [[1, -1]]
 
 
 def test_an_attractor_that_has_vanished_is_remembered_for_a_while():
     there, else_where = at(0.0), at(1.0)
     found = [[there], [else_where], [there], [else_where], [else_where]]
-    assert followed(found, 0.2)[0] == [[1], [2], [1], [2], [2]]
-    assert followed(found, 0.1)[0] == [[1], [2], [3], [4], [4]]
+    assert follow_branches(found, 0.2)[0] == [[1], [2], [1], [2], [2]]
+    assert follow_branches(found, 0.1)[0] == [[1], [2], [3], [4], [4]]
     # Branches at the previous value are matched first.
-    assert followed([[there], [at(0.015)], [at(0.012)]], 0.2)[0] == [[1], [1], [1]]
+    assert follow_branches([[there], [at(0.015)], [at(0.012)]], 0.2)[0] == [[1], [1], [1]]
     # A value without attractors does not end a branch.
-    assert followed([[there], [], [there]], 0.2)[0] == [[1], [], [1]]
+    assert follow_branches([[there], [], [there]], 0.2)[0] == [[1], [], [1]]
 
 
 def test_an_unchanged_branch_keeps_its_number_across_inserted_values():
@@ -131,10 +131,10 @@ def test_an_unchanged_branch_keeps_its_number_across_inserted_values():
 def test_branches_are_numbered_by_their_mean_distance():
     """At one a in the order of ⟨J⟩; the motion that replaces synchrony is another branch."""
     first = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.3, 0.1, 0.2))]
-    assert followed([first], 1.0) == ([[3, 1, 2]], [[0, 0, 0]])
+    assert follow_branches([first], 1.0) == ([[3, 1, 2]], [[0, 0, 0]])
     # If ⟨J⟩ differs by rounding only, attractors keep the order in which they were found.
     for apart, numbers in ((1e-9, [1, 2, 3]), (2e-6, [2, 1, 3])):
         alike = [at(float(k), partner=k, mean_distance=mean) for k, mean in enumerate((0.1 + apart, 0.1, 0.2))]
-        assert followed([alike], 1.0)[0] == [numbers]
+        assert follow_branches([alike], 1.0)[0] == [numbers]
     still = [at(0.0, symmetry=SYNCHRONIZED, mean_distance=0.0)]
-    assert followed([still, first[:1], still], 0.1)[0] == [[0], [1], [0]]
+    assert follow_branches([still, first[:1], still], 0.1)[0] == [[0], [1], [0]]

@@ -77,7 +77,7 @@ def test_sweeps_show_the_hysteresis_of_two_folds(maps):
 @pytest.mark.parametrize(
     ("grid", "at", "periods"), [((2.8, 2.9, 3.1, 3.2), 3.0, (1, 2)), ((3.35, 3.4, 3.5), 1.0 + np.sqrt(6.0), (2, 4))]
 )
-def test_a_doubling_lies_between_values_as_near_as_asked(maps, grid, at, periods):
+def test_a_period_doubling_is_located_to_the_resolution(maps, grid, at, periods):
     """The logistic map doubles the period at 3 and at 1 + √6; the doubled orbit continues under the same number."""
     refine = RefinementSettings(0.01)
     found = continue_attractors([LOGISTIC.at(r) for r in grid], LINE, refine=refine)

@@ -18,7 +18,7 @@ BISECTED = [0.25, 0.3125, 0.375, 0.5]
 def values():
     """Return a function that returns the values of a inserted between two, with scripted attractors at each a."""
 
-    def put_in(attractors, low=0.0, high=1.0, resolution=0.1):
+    def insert_values(attractors, low=0.0, high=1.0, resolution=0.1):
         asked = []
 
         class Scripted(Search):
@@ -31,19 +31,19 @@ def values():
             (inner,) = refine_searches(ends, RefinementSettings(resolution), Matcher(1.0), each)
         return [search.model.a for search in inner], asked
 
-    return put_in
+    return insert_values
 
 
-def after(change, before, later):
+def changing_at(change, before, later):
     """Return attractors that change at one a."""
     return lambda a: list(before if a < change else later)
 
 
 def test_bisection_ends_at_the_resolution(values):
-    change = after(0.3, [at(STILL)], [at(STILL, section_period=2)])
+    change = changing_at(0.3, [at(STILL)], [at(STILL, section_period=2)])
     found, asked = values(change)
     assert found == BISECTED
-    assert {told[2:] for told in asked} == {(1, False)}
+    assert {call[2:] for call in asked} == {(1, False)}
     # No value is inserted into a step of the grid that is small enough, up to rounding.
     assert values(change, resolution=1.0)[0] == []
     assert values(change, low=0.2, high=0.2 + 0.1 * (1 + 1e-12))[0] == []
@@ -51,12 +51,12 @@ def test_bisection_ends_at_the_resolution(values):
 
 
 def test_no_value_is_inserted_where_nothing_changes(values):
-    """Nor next to a value without attractors, as a = 0."""
+    """Nor is one inserted next to a value without attractors, such as a = 0."""
     for before, later in (([at(STILL)], [at(STILL)]), ([], [at(STILL)]), ([at(STILL)], [])):
-        assert values(after(0.5, before, later)) == ([], [])
+        assert values(changing_at(0.5, before, later)) == ([], [])
 
 
-def test_windows_between_are_found_on_both_sides(values):
+def test_windows_between_values_are_refined_on_both_sides(values):
     """Values at which a third motion is found differ from both neighbours."""
 
     def window(a):
@@ -68,7 +68,7 @@ def test_windows_between_are_found_on_both_sides(values):
 
 def test_only_changing_attractors_are_followed(values):
     """Unchanged attractors are not followed, and a seed that has reached one does not count as a change."""
-    found, asked = values(after(0.3, [at(STILL), at(OTHER, partner=1)], [at(STILL)]))
+    found, asked = values(changing_at(0.3, [at(STILL), at(OTHER, partner=1)], [at(STILL)]))
     assert found == BISECTED
     for _, seeds, *_ in asked:
         assert seeds == pytest.approx([OTHER], abs=1e-3)
@@ -85,5 +85,5 @@ def test_only_changing_attractors_are_followed(values):
         (at(STILL + 0.01, mean_distance_error=0.5), []),
     ],
 )
-def test_every_way_to_differ_counts(values, later, found):
-    assert values(after(0.3, [at(STILL)], [later]))[0] == found
+def test_every_difference_of_attractors_counts(values, later, found):
+    assert values(changing_at(0.3, [at(STILL)], [later]))[0] == found

@@ -1,4 +1,4 @@
-"""Numbers in netCDF files keep their meaning: files of years ago are read by them."""
+"""Numbers in netCDF files keep their meaning, so that old files remain readable."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Point files: what is in them, CF compliance, the same bytes every time, size."""
+"""Point files: content, CF compliance, reproducible bytes and size."""
 
 import shlex
 import subprocess
@@ -26,7 +26,7 @@ def path(trajectory, tmp_path):
     return tmp_path / "point.nc"
 
 
-def test_the_file_and_the_dataset_are_the_same(trajectory, path):
+def test_the_file_and_the_dataset_have_the_same_content(trajectory, path):
     with xr.open_dataset(path) as file:
         xr.testing.assert_identical(file.load().drop_attrs(deep=True), trajectory.to_dataset().drop_attrs(deep=True))
         assert set(file.variables) == set(POINT_VARIABLES)
@@ -53,8 +53,8 @@ def test_the_file_and_the_dataset_are_the_same(trajectory, path):
             assert "_FillValue" not in variable.encoding, name
 
 
-def test_what_flags_mean():
-    """A change of these breaks whoever reads the files."""
+def test_flags_keep_their_meanings():
+    """Changing these would break programs that read the files."""
     found = {
         name: dict(zip(item.attributes["flag_values"].tolist(), item.attributes["flag_meanings"].split(), strict=True))
         for name, item in POINT_VARIABLES.items()
@@ -99,7 +99,7 @@ def made_by(command, path):
     return path.read_bytes()
 
 
-def test_same_inputs_same_bytes(tmp_path):
+def test_the_same_inputs_give_the_same_bytes(tmp_path):
     command = ["bk", "simulate", "--law", "nonlinear", "--a", "0.2", "--window", "300", "--transient", "10"]
     assert made_by(command, tmp_path / "one") == made_by(command, tmp_path / "two")
 
@@ -111,7 +111,7 @@ def test_history_is_the_command_that_makes_the_file(path, tmp_path):
 
 
 @pytest.mark.parametrize("exponents", [0, 2, 6])
-def test_history_tells_how_many_exponents(tmp_path, exponents):
+def test_history_states_the_number_of_exponents(tmp_path, exponents):
     settings = {"transient": 50.0, "window": 60.0, "lyapunov_exponents": exponents, "lyapunov_alignment": 12.5}
     run = simulate("nonlinear", 0.1, "plus", **settings)
     write_point(run, tmp_path / "point.nc")
@@ -132,7 +132,7 @@ def test_exponents_that_were_not_computed_are_nan(tmp_path):
         assert dataset["lyapunov_infinite_count"].item() == -1
 
 
-def test_no_cf_error(tmp_path):
+def test_files_comply_with_cf(tmp_path):
     law = FormulaLaw(0.08, "1 - c*tanh(a*u/c)", name="soft", c=0.1)
     files = [str(tmp_path / name) for name in ("open.nc", "ring.nc")]
     ring = Chain(3, (1.0, 2.0, 3.0), (0.5, 1.0, 0.5), (1.0, 2.0, 1.0), "ring")
@@ -146,7 +146,7 @@ def test_no_cf_error(tmp_path):
 
 @pytest.mark.parametrize(("law", "a"), [("linearized", 0.08), ("nonlinear", 0.095), ("nonlinear", 0.25)])
 def test_a_default_point_is_small(tmp_path, law, a):
-    """Under 300 KB, also where the motion never repeats and nothing compresses."""
+    """It is below 300 KB, also if the motion never repeats and does not compress."""
     write_point(simulate(law, a, "plus"), tmp_path / "point.nc")
     assert 50_000 < (tmp_path / "point.nc").stat().st_size < 300_000
 

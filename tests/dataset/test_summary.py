@@ -1,4 +1,4 @@
-"""Summaries: what is described is what is written, read back and refused."""
+"""Summaries: their variables as described, as written and as read back, and refused files."""
 
 import subprocess
 import sys
@@ -18,15 +18,15 @@ VARIABLES = {
 }
 
 
-def made(count=64, **attributes):
+def make_summary(count=64, **attributes):
     values = {"value": np.arange(2.0 * count).reshape(2, count), "verdict": [2.0] * count, "other": 1}
     coordinates = axes(law=["linearized", "nonlinear"], a=np.arange(count) / 8)
     module = "burridge_knopoff.summaries.lyapunov"
     return summary("A title", VARIABLES, values, coordinates, {"v": 0.1, **attributes}, module=module)
 
 
-def test_what_is_described_is_in_the_dataset():
-    found = made()
+def test_the_dataset_has_the_described_variables():
+    found = make_summary()
     assert list(found.data_vars) == ["value", "verdict"]
     assert found["value"].dims == ("law", "a")
     assert found["value"].values[1].tolist() == list(range(64, 128))
@@ -51,15 +51,15 @@ def test_what_is_described_is_in_the_dataset():
     assert list(found.attrs)[:4] == list(head)[:4]
     assert {key: found.attrs[key] for key in head} == head
     assert found.attrs["source_module"] == "burridge_knopoff.summaries.lyapunov"
-    assert made(history="by hand").attrs["history"] == "by hand"
-    # What was read from a part does not pass for the title of the whole.
-    assert made(title="A part", summary="A part.", source_module="other").attrs == found.attrs
+    assert make_summary(history="by hand").attrs["history"] == "by hand"
+    # The title of a part is not taken for that of the whole.
+    assert make_summary(title="A part", summary="A part.", source_module="other").attrs == found.attrs
 
 
-def test_what_is_written_is_read_back(tmp_path):
+def test_a_written_summary_is_read_back(tmp_path):
     for name, count in (("one.nc", 64), ("two.nc", 64), ("short.nc", 63)):
-        write_summary(made(count), tmp_path / name)
-        assert open_summary(tmp_path / name).drop_attrs().identical(made(count).drop_attrs())
+        write_summary(make_summary(count), tmp_path / name)
+        assert open_summary(tmp_path / name).drop_attrs().identical(make_summary(count).drop_attrs())
         with netCDF4.Dataset(tmp_path / name) as file:
             # Short arrays are not worth compressing.
             assert file["verdict"].filters()["zlib"] == (count >= 64)
@@ -78,16 +78,16 @@ print(*file["law"].values)
 
 
 def test_a_file_is_opened_again_while_it_is_open(tmp_path):
-    """As by a cell of a notebook that runs once more: HDF5 crashes where texts may have any length."""
-    write_summary(made(), tmp_path / "one.nc")
+    """A cell of a notebook that runs again does this; HDF5 crashes if texts have variable length."""
+    write_summary(make_summary(), tmp_path / "one.nc")
     run = subprocess.run(
         [sys.executable, "-c", OPEN_AGAIN, tmp_path / "one.nc"], capture_output=True, text=True, check=False
     )
     assert (run.returncode, run.stdout) == (0, "linearized nonlinear\n"), run.stderr
 
 
-def test_what_is_no_summary_of_now_is_refused(tmp_path):
-    other, bare = made(source_module="other"), made()
+def test_files_that_are_not_present_summaries_are_refused(tmp_path):
+    other, bare = make_summary(source_module="other"), make_summary()
     other.attrs["source_fingerprint"] = "0" * 16
     write_summary(other, tmp_path / "other.nc")
     with pytest.raises(BadFile, match=r"other.nc: was made by other sources \(burridge_knopoff.*lyapunov 0{16}, now"):
@@ -96,7 +96,7 @@ def test_what_is_no_summary_of_now_is_refused(tmp_path):
     for name, reason in (("bare.nc", "is truncated, or was not written by this program"), ("missing.nc", "is missing")):
         with pytest.raises(BadFile, match=reason):
             open_summary(tmp_path / name)
-    write_summary(made(), tmp_path / "cut.nc")
+    write_summary(make_summary(), tmp_path / "cut.nc")
     (tmp_path / "cut.nc").write_bytes((tmp_path / "cut.nc").read_bytes()[:-100])
     with pytest.raises(BadFile, match=r"cut\.nc"):
         open_summary(tmp_path / "cut.nc")

@@ -1,4 +1,4 @@
-"""Thousands of odd configs, runs, command lines and point files; BK_FUZZ=100 tries so many times as many, at random."""
+"""Thousands of random configs, runs, command lines and point files; BK_FUZZ=100 tries 100 times as many."""
 
 import os
 

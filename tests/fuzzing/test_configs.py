@@ -1,6 +1,6 @@
 """A changed config is refused with one line, or the study is what config/README.md says.
 
-The check knows nothing of the code that reads a config.
+The check is independent of the code that reads a config.
 """
 
 import math
@@ -31,7 +31,7 @@ SCHEMA = Draft7Validator(yaml.safe_load((ROOT / "workflow/schemas/config.schema.
 README = (ROOT / "config" / "README.md").read_text().split("```yaml\n")[1].split("```")[0]
 FILES = [path.read_text() for path in sorted((ROOT / "config").rglob("*.yaml"))]
 VALID = [*FILES, EVERY_KEY, README]
-#: Without comments, and only the keys that must be there: every other one of EVERY_KEY is put in by chance.
+#: Without comments, and with the required keys only; any other key of EVERY_KEY is inserted at random.
 SHORT = [re.sub(r"^#.*\n| +#.*", "", text, flags=re.MULTILINE) for text in (*FILES, README)]
 KEYS = re.split(r"^(?=\w)", EVERY_KEY, flags=re.MULTILINE)[1:]
 NEEDED = [key for key in KEYS if key.split(":")[0] in ("study", "a", "initial", "laws")]
@@ -39,7 +39,7 @@ some_keys = st.lists(st.sampled_from(KEYS), max_size=8, unique=True).map(
     lambda keys: "".join([*NEEDED, *(key for key in keys if key not in NEEDED)])
 )
 
-#: What is written in place of a key, a value or a part of one.
+#: Replacements for a key, a value or a part of one.
 PIECES = """
 1e-6 2E+3 -3e2
 0 -0 -1 1 2 3 7 64 1024 1025 010 0x1F 1:30 1_0 .5 5. 1e5 1.0e-9 1.0e-6 1.0e+3 1.0e+9 1.0e+400 .nan .inf -.inf ~ null
@@ -57,7 +57,7 @@ sigma: 0.1} {sigma: 0.02} {linearized: {}} mass grid springs {springs: x} {grid:
 """
 pieces = st.sampled_from(re.findall(r"\{.*?\}+|\[.*?\]+|\S+", PIECES))
 
-#: Keys with their least and greatest values, whole numbers where these are; > stands where the least is not allowed.
+#: Keys with their smallest and largest values, integers if these are; > marks a smallest value that is excluded.
 RANGES = """
 a_digits 1 15, v 1e-6 1e3, step 1e-9 10.0, transient >0.0 1e9, window 1e-3 1e9, batches 2 10000, sampling 1e-6 1e9,
 trajectory 0.0 1e9, trajectory_sampling 1e-6 1e9, event_window 0.0 1e9, lyapunov_exponents 0 2000000,
@@ -81,7 +81,7 @@ WORDS = {
 }
 BOXES = [f"{section}.{part}" for section in ("attractors", "chains") for part in ("position", "velocity")]
 BOXES += ["basins.first_position", "basins.last_position"]
-#: What holds names of the user's own.
+#: Sections with names chosen by the user.
 NAMED = ("grid", "initial", "laws", "solver", "basins.a")
 
 
@@ -99,7 +99,7 @@ KNOWN = {*flat(yaml.safe_load(EVERY_KEY)), "grid"}
 
 @st.composite
 def changed(draw):
-    """A valid config in which pieces are put, cut out and doubled."""
+    """A valid config with pieces inserted, removed and repeated."""
     lines = draw(st.one_of(st.sampled_from(SHORT), some_keys)).split("\n")
     for _ in range(draw(st.integers(1, 4))):
         row = draw(st.integers(0, len(lines) - 1))
@@ -124,7 +124,7 @@ def changed(draw):
 
 @pytest.fixture(scope="module")
 def is_study(tmp_path_factory):
-    """A function of the content of a file: True if it is a study, as it should be, False if it is refused."""
+    """Return a function of the content of a file: True if it is a valid study, False if it is refused."""
     path = tmp_path_factory.mktemp("fuzzed") / "fuzzed.yaml"
 
     def check(content):
@@ -148,16 +148,16 @@ def test_a_changed_config_is_refused_or_a_study(is_study, content):
 
 @examples(200)
 @given(st.one_of(st.binary(max_size=200), st.text(max_size=200).map(lambda text: text.encode(errors="surrogatepass"))))
-def test_any_bytes_are_no_study(is_study, content):
+def test_random_bytes_are_not_a_study(is_study, content):
     assert not is_study(content)
 
 
 @pytest.mark.parametrize("text", VALID)
-def test_the_configs_that_are_changed_are_studies(is_study, text):
+def test_the_original_configs_are_studies(is_study, text):
     assert is_study(text.encode())
 
 
-def test_every_key_is_among_those_that_are_changed():
+def test_every_key_is_changed():
     def missing(node, keys):
         for key, field in keys.fields.items():
             if key not in node:
@@ -170,7 +170,7 @@ def test_every_key_is_among_those_that_are_changed():
 
 
 def check_study(study, written):
-    """Require that an accepted study is one that config/README.md and the schema allow, and what the file says."""
+    """Require that config/README.md and the schema allow an accepted study, and that it is what the file says."""
     SCHEMA.validate(written)
     values, given = flat(study.config), flat(written)
     assert set(given) <= KNOWN, set(given) - KNOWN
@@ -228,7 +228,7 @@ def check_grid(grid, items, digits):
 
 
 def check_laws(study, values, given):
-    """Require that friction is finite, and at most 1 at rest, and that other keys name laws that there are."""
+    """Require that friction is finite, and at most 1 at rest, and that other keys name existing laws."""
     assert list(study.laws) == list(given.get("laws", ("linearized", "nonlinear")))
     assert all(re.fullmatch("[a-z][a-z0-9_]{0,31}", law) for law in study.laws)
     solvers, asked = values["solver"], given.get("solver", {})
@@ -272,8 +272,8 @@ def check_states(study):
         lengths |= {len(numbers) for numbers in lists.values()}
         drawn = [value for value in state.values() if isinstance(value, str)]
         assert all(value.startswith("random=uniform,low=") for value in drawn)
-        told = [numbers for key, numbers in lists.items() if state[key] not in drawn]
-        assert all(type(number) in (int, float) for numbers in told for number in numbers)
+        listed = [numbers for key, numbers in lists.items() if state[key] not in drawn]
+        assert all(type(number) in (int, float) for numbers in listed for number in numbers)
         position, velocity = study.state(name).coordinates(study.blocks)
         assert max(map(abs, (*position, *velocity))) <= 1e6
         assert study.config["contact"] == "symmetric" or velocity.min() >= 0.0
@@ -283,7 +283,7 @@ def check_states(study):
 
 
 def check_options(study):
-    """Require that `bk` takes the options of the first and the last point, as the numbers of the config."""
+    """Require that `bk` accepts the options of the first and the last point, with the numbers of the config."""
     others = {name: next(iter(values)) for name, values in study.parameters.items() if name != "a"}
     for law in study.laws:
         for solver in (None, *study.other_solvers(law)):

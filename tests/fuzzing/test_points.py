@@ -1,4 +1,4 @@
-"""A point file with any damage is refused with one line, or its values are those that were written."""
+"""A damaged point file is refused with one line, or its values are those that were written."""
 
 import pytest
 from hypothesis import given
@@ -58,11 +58,11 @@ def points(tmp_path_factory):
 @examples(500)
 @given(st.data())
 def test_a_damaged_point_is_refused_or_has_its_values(points, data):
-    """After a few bits, bytes or stretches are changed, moved, cut out or put in."""
+    """A few bits, bytes or ranges of bytes are changed, moved, removed or inserted."""
     whole, other = points.content
     content = bytearray(whole)
     for _ in range(data.draw(st.integers(1, 3))):
-        # Half of it in the last bytes, where the seal is.
+        # Half of the damage is in the last bytes, where the seal is.
         place = data.draw(st.integers(data.draw(st.sampled_from([0, max(0, len(content) - 120)])), len(content)))
         stretch = slice(place, place + data.draw(st.sampled_from([1, 2, 8, 64, 512, 4096])))
         damage = data.draw(st.sampled_from(["bit", "cut", "out", "twice", "zeros", "swap", "rest", "more"]))

@@ -1,4 +1,4 @@
-"""Any chain, state and settings as a run, and any words as a command line of `bk`: refused, or a run with a status."""
+"""Random chains, states, settings and command lines of `bk` are refused or give a run with a status."""
 
 import contextlib
 import io
@@ -20,7 +20,7 @@ from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from tests.fuzzing import check_refusal, examples
 
-#: Steps of rk4: what is asked for beyond is refused or done, not waited for.
+#: Limit on the steps of rk4, so that no test has to wait for a longer run.
 MOST_STEPS = 20_000
 ODD_NUMBERS = (math.nan, math.inf, -math.inf, -1.0, -0.0, 0.0, 5e-324, 1e-300, 1e-9, 2e9, 1e10, 1e300, 2.0, 10**400)
 ODD_VALUES = (*ODD_NUMBERS, True, None, "", "0.1", [], (), 1 + 0j)
@@ -35,7 +35,7 @@ LAWS = (
 
 
 class Chance(random.Random):
-    """What a run is made of, as it happens."""
+    """Random choices of the inputs of a run."""
 
     def one_in(self, count):
         return self.randrange(count) == 0
@@ -45,9 +45,9 @@ class Chance(random.Random):
 
     def position(self):
         whole = [0.0, -0.0, 1.0, -1.0, 0.5, -0.989, -0.993, -0.991, 1e6, -1e6, 5e-324, 1e-12]
-        beside = math.nextafter(self.choice([-1.0, 1.0, 0.5]), self.choice([-2.0, 2.0]))
+        neighbour = math.nextafter(self.choice([-1.0, 1.0, 0.5]), self.choice([-2.0, 2.0]))
         power = self.choice([1.0, -1.0]) * self.power(-12.0, 6.0)
-        return self.choice([self.uniform(-1.5, 1.5), self.choice(whole), power, beside])
+        return self.choice([self.uniform(-1.5, 1.5), self.choice(whole), power, neighbour])
 
     def velocity(self, contact):
         value = self.choice([self.uniform(0.0, 0.2), 0.0, self.power(-12.0, 6.0)])
@@ -74,7 +74,7 @@ class Chance(random.Random):
         }
 
     def springs(self, blocks):
-        """The paper's springs, other ones for all, or one each; sometimes one too many."""
+        """Return the paper's springs, another strength for all, or one strength each; sometimes one too many."""
         if self.one_in(2):
             return {}
         ends, extra = self.choice(["open", "ring"]), self.one_in(50)
@@ -88,7 +88,7 @@ class Chance(random.Random):
         return {"coupling": coupling, "pulling": pulling, "threshold": strengths(blocks), "ends": ends}
 
     def case(self):
-        """What a run is made of; in one of four something is odd."""
+        """Return the inputs of a run; in one of four cases something is odd."""
         blocks = self.choice([2, 3, 3, 3, 4, 5, 8])
         below_two = math.nextafter(2.0, 0.0)
         contact = self.choice(["one_sided", "one_sided", "symmetric"])
@@ -117,7 +117,7 @@ class Chance(random.Random):
         elif key == "chain":
             case[key][self.choice(["coupling", "pulling", "threshold", "ends"])] = odd
         elif key in settings:
-            # Steps that are allowed take hours.
+            # The allowed steps would take hours.
             settings[key] = 0.0 if key == "step" and odd in (1e-9, 5e-324, 1e-300) else odd
         else:
             case[key] = odd
@@ -143,7 +143,7 @@ def test_a_run_is_refused_or_ends_with_a_status(seed):
 
 
 def check_trajectory(trajectory, case):
-    """Require a status, and arrays of the right lengths with finite values in order; NaN where nothing is known."""
+    """Require a status, and arrays of the right lengths with finite values in order, or NaN for unknown values."""
     model, settings, n = trajectory.model, trajectory.settings, trajectory.model.blocks
     assert model.a >= 0.0
     assert (model.a, model.v, model.contact) == (case["a"], case["v"], case["contact"])
@@ -198,7 +198,7 @@ words = st.sampled_from(WORDS.split())
 
 @st.composite
 def command_lines(draw):
-    """The arguments of a short run with a few words put in, cut out or replaced; --out with its file comes last."""
+    """The arguments of a short run with a few words inserted, removed or replaced; --out with its file comes last."""
     arguments = SHORT.split()
     for _ in range(draw(st.integers(0, 4))):
         place = draw(st.integers(0, len(arguments)))
@@ -214,7 +214,7 @@ def folder(tmp_path_factory):
 @examples(400)
 @given(command_lines())
 def test_a_command_line_is_refused_or_runs(folder, arguments):
-    """With one line on standard error and no file if it is refused."""
+    """If it is refused, it writes one line to standard error and no file."""
     out, output, errors = folder / "fuzzed.nc", io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(output), contextlib.redirect_stderr(errors):
         try:

@@ -1,4 +1,4 @@
-"""What an edit makes out of date: which jobs have other files to make, by the sources and by each key of the config."""
+"""Which jobs are out of date after an edit of the sources or of a key of the config."""
 
 import pytest
 import yaml
@@ -29,8 +29,8 @@ def jobs_of(changes):
     return Jobs(load_study(changed_config(changes), "tiny.yaml"))
 
 
-def told(jobs):
-    """Return {(rule, files of a job): what these must be made from}."""
+def origins(jobs):
+    """Return {(rule, files of a job): what these files depend on}."""
     return {
         (rule.name, tuple(form.format(**job) for form in rule.files)): jobs.expected(rule.files[0].format(**job))
         for rule in jobs.existing.values()
@@ -40,17 +40,17 @@ def told(jobs):
 
 
 BEFORE = jobs_of({})
-TOLD = told(BEFORE)
+ORIGINS = origins(BEFORE)
 
 
 def counts(jobs):
-    """Return {rule: number of its jobs whose files are others than before}."""
-    found = [rule for (rule, files), about in told(jobs).items() if TOLD.get((rule, files)) != about]
+    """Return {rule: number of its jobs whose files differ from before}."""
+    found = [rule for (rule, files), about in origins(jobs).items() if ORIGINS.get((rule, files)) != about]
     return {rule: found.count(rule) for rule in found}
 
 
-def after(*roots):
-    """Return {rule: number of its jobs} of some rules and of all that need their output."""
+def jobs_after(*roots):
+    """Return {rule: number of its jobs} for some rules and all rules that need their output."""
     found, more = {}, {*roots}
     while more:
         found |= {name: len(BEFORE.existing[name].each) for name in more}
@@ -94,7 +94,7 @@ KEYS = [
     ({"phases.samples": 4, "phases.seed": 2}, ("phases_of_law",)),
     ({"chains.seed": 2, "chains.two_blocks.samples": 3}, ("two_blocks",)),
 ]
-#: Keys whose rules get more or less input as well, so that counts are not those of running them again.
+#: Keys that also change the inputs of rules, so that the counts differ from those of rerunning them.
 RESHAPED = [
     # rk4 computes none.
     (
@@ -129,26 +129,26 @@ RESHAPED = [
 ]
 
 
-def test_every_key_is_there():
-    """A key that is added to the config needs a row here, or a test of its own."""
+def test_every_key_has_a_case():
+    """A new key of the config needs a row here, or its own test."""
     known = {key.split(".")[0] for key in (*(key for keys, _ in KEYS for key in keys), *(key for key, *_ in RESHAPED))}
     elsewhere = {"study", "initial", "solver", "without", "grid", "catalogue", "edges"}
     assert known | elsewhere == set(CONFIG.fields)
 
 
 @pytest.mark.parametrize(("changes", "roots"), KEYS, ids=["+".join(keys) for keys, _ in KEYS])
-def test_a_key_remakes_only_what_uses_it(changes, roots):
-    assert counts(jobs_of(changes)) == after(*roots, "report")
+def test_a_key_invalidates_only_what_uses_it(changes, roots):
+    assert counts(jobs_of(changes)) == jobs_after(*roots, "report")
 
 
 @pytest.mark.parametrize(("key", "value", "expected", "spared"), RESHAPED, ids=[key for key, *_ in RESHAPED])
-def test_a_key_that_adds_or_takes_away(key, value, expected, spared):
+def test_a_key_that_adds_or_removes_jobs(key, value, expected, spared):
     found = counts(jobs_of({key: value}))
     assert {name: found.get(name) for name in expected} == expected
     assert not set(spared) & set(found)
 
 
-def test_a_solver_remakes_its_law_alone():
+def test_the_solver_of_a_law_invalidates_only_that_law():
     found = counts(jobs_of({"solver": {"nonlinear": "rk4"}}))
     assert found["simulate"] == 8
 
@@ -175,7 +175,7 @@ def test_a_solver_remakes_its_law_alone():
         ("jobs/run.py", set()),
     ],
 )
-def test_a_source_belongs_to_what_depends_on_it(name, roots):
-    """And a single-purpose module to nothing else."""
+def test_a_source_invalidates_what_depends_on_it(name, roots):
+    """A single-purpose module invalidates nothing else."""
     of = {rule.name for rule in BEFORE.existing.values() if PACKAGE / name in sources_of(*rule.sources)}
     assert roots <= of if len(of) > 3 else roots == of

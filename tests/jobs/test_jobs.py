@@ -1,4 +1,4 @@
-"""The rules of studies: which a study has, what they read and make, and that their functions are there."""
+"""The rules of studies: which rules a study has, their inputs and outputs, and that their functions exist."""
 
 import inspect
 from importlib import import_module
@@ -42,15 +42,15 @@ def test_the_stages_of_a_study(config, missing):
     assert {name for name in STAGES if name not in there} == missing
 
 
-def test_what_is_left_out_has_no_values_of_a():
-    """So that nobody who looks at the section alone takes it for wanted."""
+def test_stages_that_are_left_out_have_no_values_of_a():
+    """A reader of the section alone then sees that the stage is not part of the study."""
     study = jobs_of(without=["attractors", "solvers"]).study
     assert (study.basin_maps, study.config["phases"]["a"], study.config["solvers"]["a"]) == ([], [], [])
     assert study.omitted_stages == ("attractors", "bifurcations", "edges", "basins", "phases", "solvers")
 
 
-def test_stages_that_are_left_out_take_with_them_what_needs_their_results():
-    """What `study.stages` says for configs is what the rules say."""
+def test_leaving_out_a_stage_leaves_out_what_needs_its_results():
+    """`study.stages` agrees with the rules."""
     for stage in STAGES:
         gone = {rule.stage for rule in ALL.existing.values()} - {
             rule.stage for rule in jobs_of(catalogue={}, edges={}, without=[stage]).existing.values()
@@ -64,7 +64,7 @@ def test_figures_of_a_study_without_attractors():
     assert not {"figure_bifurcations", "figure_branches_reached", "figure_attractor_kinds"} & there.keys()
 
 
-def test_longer_chains_are_made_by_name_or_by_the_config():
+def test_longer_chains_are_made_on_request_or_if_the_config_lists_them():
     files = {"summary/chains.nc", "figures/chains.pdf", "figures/chains.png", "chains/blocks2.nc"}
     by_name, by_config = jobs_of(), jobs_of(chains={"blocks": [2, 3]})
     assert files <= by_name.all_files.keys()
@@ -87,8 +87,8 @@ def test_several_parameters():
     assert "chunk" not in ALL.existing
 
 
-def test_every_function_takes_what_the_rule_gives():
-    """Also of rules that load a module by its name."""
+def test_every_function_accepts_the_arguments_of_its_rule():
+    """This includes rules that load a module by its name."""
     jobs = [*ALL.existing.values(), Jobs(load_study(PLANE, "plane.yaml")).existing["grid"]]
     made = [rule for rule in jobs if rule.make]
     assert len(made) > 45
@@ -100,14 +100,14 @@ def test_every_function_takes_what_the_rule_gives():
             import_module(f"burridge_knopoff.{module}")
 
 
-def test_files_have_one_rule_and_jobs_wait_for_their_inputs_alone():
+def test_files_have_one_rule_and_jobs_wait_only_for_their_inputs():
     made = ALL.all_files
     assert len(made) == sum(len(rule.files) * len(rule.each) for rule in ALL.existing.values() if rule.make)
     rule = ALL.existing["basin_tile"]
     job = {"law": "nonlinear", "a": "0.0800", "tile": "0"}
     assert ALL.inputs(rule, job) == {"attractors": ["summary/attractors.nc"], "returns": ["returns/nonlinear.nc"]}
     assert len(ALL.inputs(ALL.existing["attractors"], {})["grid"]) == 2
-    # The longest jobs of a study are about no statement of the paper.
+    # No statement of the paper depends on the longest jobs of a study.
     assert not {"summary/basins.nc", "summary/catalogue.nc"} & {*ALL.inputs(ALL.existing["claims"], {})["summaries"]}
     jobs = jobs_of(solvers={"a": [0.08]})
     points = jobs.point_files(jobs.existing["solvers"], {})
@@ -115,14 +115,14 @@ def test_files_have_one_rule_and_jobs_wait_for_their_inputs_alone():
 
 
 @pytest.mark.parametrize("name", sorted(name for name, (rule, _) in ALL.all_files.items() if rule.stage != "figures"))
-def test_a_file_is_known_by_its_name(name):
+def test_a_file_is_recognized_by_its_name(name):
     rule, job = ALL.all_files[name]
     about = ALL.expected(name)
     assert about == ALL.abouts(rule, job)[name]
     assert (about["file"], about["make"]) == (name, rule.make)
 
 
-def test_points_are_known_by_their_commands():
+def test_points_are_identified_by_their_commands():
     about = ALL.expected("points/linearized/minus/a0.0500.nc")
     assert about["command"] == ALL.study.command("linearized", "minus", "0.0500")
     again = ALL.expected("solvers/map/linearized/minus/a0.0800.nc")
@@ -157,8 +157,8 @@ def test_a_key_changes_what_depends_on_it_and_nothing_else(change, rules):
     assert changed == (after | {"report"})
 
 
-def test_a_rule_that_reads_what_nothing_makes_is_refused(monkeypatch):
-    """It would be left out of every study in silence."""
+def test_a_rule_whose_input_no_rule_makes_is_refused(monkeypatch):
+    """Otherwise it would silently be left out of every study."""
     wrong = Rule(
         "mine", "Make it.", "mine", ("summary/mine.nc",), "summaries.mine:make", reads={"x": "summary/typo.nc"}
     )

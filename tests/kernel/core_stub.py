@@ -1,6 +1,6 @@
 """The stub of the kernel's compiled module, with its docstrings.
 
-`python -m tests.kernel.core_stub`, in the root of the checkout, writes it anew beside the sources.
+`python -m tests.kernel.core_stub`, run in the root of the checkout, writes it next to the sources.
 """
 
 import subprocess

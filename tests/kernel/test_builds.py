@@ -1,4 +1,4 @@
-"""How the kernel is built: the same bits whatever the vectors and the optimisation, and the flags that choose them."""
+"""Builds of the kernel: the same bits for any vector width and optimization, and the flags that select them."""
 
 import os
 import subprocess
@@ -51,8 +51,8 @@ def output(instructions, *python):
 
 
 @pytest.mark.slow
-def test_every_module_of_a_wheel_without_optimisation_makes_the_bits_of_the_kernel(installed, monkeypatch):
-    """Builds that differ in both: that is half the time of twice as many."""
+def test_every_kernel_of_an_unoptimized_wheel_gives_the_same_bits(installed, monkeypatch):
+    """The builds differ in vectors and in optimization, which takes half the time of testing these separately."""
     monkeypatch.setenv("BURRIDGE_KNOPOFF_LANES", "all")
     _, *expected = output((), sys.executable)
     for folder, flags in vector_flags().items():

@@ -13,7 +13,7 @@ from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import MOST_NUMBERS
 
 
-def recorded(model, start, end, groups=None, stops=(), loading="steady"):
+def record_catalogue(model, start, end, groups=None, stops=(), loading="steady"):
     """Return the catalogue of a run, in the order of the events, its profiles, and the solver at its end."""
     catalogue = Catalogue(model.blocks, 0.0, True, MOST_NUMBERS)
     runner = Runner(model, groups=groups, keep_events=True, catalogue=catalogue, loading=loading)
@@ -61,7 +61,7 @@ def test_one_block_in_closed_form(v, a):
         peak = mp.diff(y, first(lambda t: mp.diff(y, t, 2)))
         slip, duration, peak = float(slip), float(duration), float(peak)
     model = Model(Chain(1, pulling=1.0), law_of("linearized", a), v)
-    table, _, _ = recorded(model, at_rest(model, spread=0.0), 0.2 / v + 5.5 * max(slip / v, duration))
+    table, _, _ = record_catalogue(model, at_rest(model, spread=0.0), 0.2 / v + 5.5 * max(slip / v, duration))
     assert len(table["time"]) >= 5
     assert np.allclose(table["moment"], slip, rtol=1e-12, atol=1e-15)
     assert np.allclose(table["duration"], duration, rtol=1e-10)
@@ -77,12 +77,12 @@ def test_one_block_in_closed_form(v, a):
 
 @pytest.mark.parametrize("groups", [False, True])
 @pytest.mark.parametrize("law", ["nonlinear", "carlson_langer"])
-def test_balances(law, groups):
+def test_forces_and_displacements_balance(law, groups):
     """The slips of each block add up to its displacement."""
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of(law, 1.0), 0.02)
     start = at_rest(model)
     end = last_rest(model, start, 120.0)
-    table, runner, (ends, block, slip) = recorded(model, start, end, groups)
+    table, runner, (ends, block, slip) = record_catalogue(model, start, end, groups)
     assert len(ends) == len(table["time"]) > 15
     moved = runner.state().position - start.position + model.v * end
     total = np.bincount(block - 1, slip, model.blocks)
@@ -93,7 +93,7 @@ def test_balances(law, groups):
 
 
 def test_energy_is_the_work_of_friction():
-    """By quadrature of friction times speed along the whole motion, between two moments of rest."""
+    """The work is computed by quadrature of friction times speed along the whole motion, between two times of rest."""
     model = Model(Chain(6, coupling=2.0, pulling=1.0), law_of("nonlinear", 0.5), 0.01)
     start = at_rest(model)
     end = last_rest(model, start, 400.0)
@@ -101,7 +101,7 @@ def test_energy_is_the_work_of_friction():
     runner.begin(start)
     assert runner.run(end) == Status.COMPLETED
     time = runner.events()[0]
-    table, _, _ = recorded(model, start, end)
+    table, _, _ = record_catalogue(model, start, end)
     lost, edges = 0.0, np.unique(np.concatenate([[0.0], time, [end]]))
     node, weight = np.polynomial.legendre.leggauss(24)
     solver = Runner(model)
@@ -117,8 +117,8 @@ def test_energy_is_the_work_of_friction():
 def test_a_catalogue_does_not_depend_on_where_runs_are_divided():
     model = Model(Chain(30, coupling=20.0, pulling=1.0), law_of("carlson_langer", 3.0), 0.01)
     start = at_rest(model)
-    whole, _, _ = recorded(model, start, 150.0)
-    parts, _, _ = recorded(model, start, 150.0, stops=(10.0, 33.3, 90.1))
+    whole, _, _ = record_catalogue(model, start, 150.0)
+    parts, _, _ = record_catalogue(model, start, 150.0, stops=(10.0, 33.3, 90.1))
     assert len(whole["time"]) > 50
     for name, values in whole.items():
         exact = name not in ("energy_released", "peak_velocity")
@@ -126,9 +126,9 @@ def test_a_catalogue_does_not_depend_on_where_runs_are_divided():
 
 
 def test_groups_and_the_chain_as_a_whole_have_the_same_events():
-    """Until chaos parts them."""
+    """They have the same events until chaos makes them diverge."""
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
-    one, other = (recorded(model, at_rest(model), 60.0, groups)[0] for groups in (True, False))
+    one, other = (record_catalogue(model, at_rest(model), 60.0, groups)[0] for groups in (True, False))
     assert len(one["time"]) >= 8
     for name, values in one.items():
         assert np.allclose(values[:8], other[name][:8], rtol=1e-7, atol=1e-9, equal_nan=True), name
@@ -140,7 +140,7 @@ def test_connection_decides():
     position = np.full(9, -0.5)
     position[[1, 7]] = -0.999
     start = ChainState(position - model.sliding_offset, np.zeros(9), np.ones(9, dtype=bool))
-    table, _, _ = recorded(model, start, 8.0)
+    table, _, _ = record_catalogue(model, start, 8.0)
     first = table["time"] < 3.0
     assert set(table["epicentre"][first]) == {2, 8}
     assert (table["blocks"][first] <= 3).all()

@@ -1,4 +1,4 @@
-"""Other compilers and processors: the kernel that they make finds the bits that the installed kernel finds."""
+"""Kernels built by other compilers and for other processors give the bits of the installed kernel."""
 
 import os
 import subprocess
@@ -65,7 +65,7 @@ def exponent_count(model):
 
 
 def case(model, monkeypatch):
-    """Return what `bits.cpp` reads: settings, model, states."""
+    """Return the input of `bits.cpp`: settings, model, states."""
     monkeypatch.setattr("burridge_knopoff.running.kernel_model.KernelModel", dict)
     *arrays, value, slope, linear, rate, steepest, v, symmetric = kernel_model(model).values()
     monkeypatch.undo()
@@ -76,7 +76,7 @@ def case(model, monkeypatch):
 
 
 def found_here(model):
-    """Return what the installed kernel finds."""
+    """Return the results of the installed kernel."""
     stuck, (position, velocity), many = starts(model)
     start = ChainState(position, np.where(stuck, 0.0, velocity), stuck)
 
@@ -122,7 +122,7 @@ def rows_of(content):
 
 
 def check(compile_with, run_with, folder, monkeypatch):
-    """Compile the kernel without Python, and require that it finds what the installed one finds."""
+    """Compile the kernel without Python, and require the results of the installed one."""
     program = folder / "bits"
     command = [*compile_with, *COMPILER_FLAGS, f"-I{KERNEL}", str(SOURCE), "-o", str(program)]
     subprocess.run(command, check=True)
@@ -137,8 +137,8 @@ def check(compile_with, run_with, folder, monkeypatch):
     assert next(found, None) is None
 
 
-def test_what_reads_the_cases_compiles():
-    # Also where no other compiler is at hand.
+def test_the_program_that_reads_the_cases_compiles():
+    # This also runs if no other compiler is installed.
     compiler = sysconfig.get_config_var("CXX").split()[0]
     subprocess.run([compiler, "-std=c++20", "-fsyntax-only", f"-I{KERNEL}", SOURCE], check=True)
 
@@ -147,7 +147,7 @@ def test_what_reads_the_cases_compiles():
 @pytest.mark.parametrize("lanes", LEVELS)
 @pytest.mark.parametrize("clang", setting("BK_CLANG").split(os.pathsep))
 def test_clang_makes_the_same_bits(clang, lanes, tmp_path, monkeypatch):
-    # Where the processor lacks so wide instructions, narrower ones do.
+    # If the processor lacks instructions of this width, narrower ones are used.
     own = [flag for flag in LEVELS.values() if not missing_instructions(required_instructions([flag]))]
     flag = LEVELS[lanes] if LEVELS[lanes] in own else own[-1]
     check([clang, flag, f"-DBK_LANES={lanes}"], [], tmp_path, monkeypatch)

@@ -1,4 +1,4 @@
-"""Dashpots: one block in closed form, SciPy, balances of energy, the force at starts, and what refuses them.
+"""Dashpots: one block in closed form, SciPy, energy balances, the force at starts, and refused combinations.
 
 Kelvin-Voigt damping adds d_i = Σ c_ij (U_j' − U_i') + c_i (v − U_i') to the force on block i, slipping or stuck.
 """
@@ -17,7 +17,7 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.equilibrium import eigenvalues
 from tests.flows import carry, check_events, directions
-from tests.kernel.test_catalogue import at_rest, last_rest, recorded
+from tests.kernel.test_catalogue import at_rest, last_rest, record_catalogue
 from tests.scipy_flow import scipy_events
 
 LAWS = {"linearized": 0.1, "nonlinear": 0.3, "carlson_langer": 2.0, "exponential": 0.5, "stribeck": 1.0}
@@ -122,7 +122,7 @@ def test_one_block_in_closed_form(c, mass):
 @pytest.mark.parametrize("contact", CONTACTS)
 @pytest.mark.parametrize("blocks", [4, 30])
 def test_dashpots_in_proportion_to_masses_only_lower_a(blocks, contact):
-    """With γ m_i to the driver the linearized law is one with a − γ: all moves as without them."""
+    """Dashpots γ m_i to the driver turn the linearized law into one with a − γ; the motion is as without them."""
     gamma, generator = 0.07, np.random.default_rng(blocks)
     start = ChainState(
         generator.uniform(-0.3, 0.3, blocks), generator.uniform(0.0, 0.3, blocks), np.zeros(blocks, bool)
@@ -142,13 +142,13 @@ def test_dashpots_in_proportion_to_masses_only_lower_a(blocks, contact):
 
 @pytest.mark.parametrize("groups", [False, True])
 def test_balance_of_work_friction_and_dashpots(groups):
-    """By quadrature of what friction and each dashpot dissipate, between two moments of rest."""
+    """The dissipation by friction and by each dashpot is integrated between two times of rest."""
     damping = np.array([0.3, 0.0, 0.1, 0.2, 0.5])
     chain = Chain(6, coupling=2.0, pulling=1.0, damping=damping, pulling_damping=0.05)
     model = Model(chain, law_of("nonlinear", 1.5), 0.02)
     start = at_rest(model)
     end = last_rest(model, start, 120.0)
-    table, runner, _ = recorded(model, start, end, groups)
+    table, runner, _ = record_catalogue(model, start, end, groups)
     assert len(table["time"]) > 4
     friction = damped = towed = 0.0
     node, weight = np.polynomial.legendre.leggauss(24)
@@ -169,7 +169,7 @@ def test_balance_of_work_friction_and_dashpots(groups):
 
 
 def test_energies_of_fixed_steps_converge():
-    """Of rk4, whose events are at ends of steps, to those of `series`."""
+    """The energies of rk4, whose events are at ends of steps, converge to those of `series`."""
     model = Model(Chain(3, coupling=2.0, pulling=1.0, damping=0.3, pulling_damping=0.1), law_of("nonlinear", 0.8), 0.05)
     start = at_rest(model)
     exact = record_events(model, start, 30.0)
@@ -183,7 +183,7 @@ def test_energies_of_fixed_steps_converge():
 
 @pytest.mark.parametrize("groups", [False, True])
 def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
-    """Which tows nothing while blocks slip."""
+    """Quasi-statically, the driver does no work while blocks slip."""
     chain = Chain(5, coupling=2.0, pulling=1.0, damping=0.4, pulling_damping=0.2)
     start = at_rest(Model(chain, law_of("carlson_langer", 1.0), 0.01))
     columns = []
@@ -191,7 +191,7 @@ def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
         model = Model(chain, law_of("carlson_langer", 1.0), v)
         position = start.position + Model(chain, model.law, 0.01).sliding_offset - model.sliding_offset
         again = ChainState(position, start.velocity, start.stuck)
-        found = recorded(model, again, 0.5 / v, groups, loading=loading)[0]
+        found = record_catalogue(model, again, 0.5 / v, groups, loading=loading)[0]
         names = ("duration", "moment", "peak_velocity", "stress_drop", "energy_released", "energy_damped")
         columns.append(np.array([found["time"] * v, *(found[name] for name in names)])[:, :6])
     assert columns[0].shape == (7, 6)
@@ -203,14 +203,14 @@ def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
 def test_an_overdamped_slip_ends_where_friction_balances_the_springs(groups):
     """Behind a stationary driver the slip decays and comes to rest within rounding: the force falls to θ Φ(0)."""
     one = Model(Chain(1, pulling=2.0, threshold=3.0, pulling_damping=10.0), law_of("carlson_langer", 1.0), 0.01)
-    table, _, _ = recorded(one, at_rest(one), 90.0, groups, loading="quasistatic")
+    table, _, _ = record_catalogue(one, at_rest(one), 90.0, groups, loading="quasistatic")
     assert len(table["time"]) > 10
     assert np.allclose(table["stress_drop"], 3.0 * 0.01, rtol=1e-11)
     assert np.allclose(table["moment"], 3.0 * 0.01 / 2.0, rtol=1e-11)
     # The speed falls like exp(−τ/3.5), with (c − θ a)/D = 3.5.
     assert (table["duration"] > 20 * 3.5).all()
     many = Model(Chain(8, coupling=9.0, pulling=1.0, damping=6.0), law_of("carlson_langer", 1.0), 0.01)
-    table, runner, _ = recorded(many, at_rest(many), 60.0, groups, loading="quasistatic")
+    table, runner, _ = record_catalogue(many, at_rest(many), 60.0, groups, loading="quasistatic")
     assert len(table["time"]) > 10
     assert runner.kernel.steps < 1000 * len(table["time"])
 
@@ -224,7 +224,7 @@ def test_a_neighbour_pulls_on_a_stuck_block_by_its_dashpot():
     assert spring[1] > 1.0
     assert model.begin(state, "tested").stuck.tolist() == [False, False]
     assert model.at(damping=0.0).begin(state, "tested").stuck.tolist() == [True, False]
-    # Where the neighbour sticks it does not pull.
+    # While the neighbour sticks it does not pull.
     held = InitialState("own", (-0.6, -0.6), (0.05, 0.3))
     assert model.begin(held, "tested").stuck.tolist() == [True, True]
     # A block that is set at rest starts at once.
@@ -260,8 +260,8 @@ def test_growth_of_uniform_sliding(law, ends):
     assert np.allclose(np.sort_complex(found), np.sort_complex(expected), rtol=0.0, atol=1e-9)
 
 
-def test_units():
-    """Damping is in units of √(km), twice as large where springs and masses are."""
+def test_damping_scales_with_springs_and_masses():
+    """Damping is in units of √(km), which doubles if springs and masses do."""
     chain = Chain(3, damping=0.3, pulling_damping=(0.1, 0.0, 0.2))
     other = Chain(3, 2.0, (2.0, 4.0, 2.0), mass=2.0, threshold=2.0, damping=0.6, pulling_damping=(0.2, 0.0, 0.4))
     runs = [

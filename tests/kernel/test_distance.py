@@ -11,7 +11,7 @@ from burridge_knopoff import InitialState, simulate
 from burridge_knopoff.kernel._core import quadrature
 
 
-def test_mean_distance_to_rounding():
+def test_mean_distance_is_exact_to_rounding():
     """⟨J⟩ against the quadrature of the same run cut into its smooth pieces, each by adaptive Gauss-Kronrod."""
     options = {"transient": 0.0, "trajectory": 0.0}
     run = simulate("linearized", 0.2, "plus", window=40.0, batches=5, events="all", **options)
@@ -51,8 +51,8 @@ def test_mean_distance_has_a_closed_form_before_any_event():
     assert run.mean_distance == pytest.approx(float(expected), rel=3e-15)
 
 
-def test_the_quadrature_rule_is_numpys():
-    """And exact for the highest degree that it integrates."""
+def test_the_quadrature_rule_agrees_with_numpy():
+    """It is exact for the highest degree that it integrates."""
     x, w = quadrature()
     w = 2.0 * w
     node, weight = np.polynomial.legendre.leggauss(16)

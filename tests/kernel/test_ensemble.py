@@ -53,7 +53,7 @@ def test_events_of_random_states(law, blocks, contact, a):
 
 
 def test_a_block_that_is_pulled_back_from_its_threshold_starts_and_stops_once():
-    """What rounding leaves of its force beyond the threshold must not start it again and again."""
+    """Rounding may leave its force beyond the threshold, which must not start it again and again."""
     model = Model(Chain(3), law_of("nonlinear", 0.1), contact="symmetric")
     position = np.array([[0.2, (0.2 + 0.3 - 1.0) / 4.0, 0.3]] * 40) - model.sliding_offset
     position[:, 1] -= 2.0**-54 * np.arange(2, 42)
@@ -95,7 +95,7 @@ def test_unequal_springs_and_thresholds_and_a_drop_at_the_start(drop, ends, seed
 
 
 def members(result, order=slice(None)):
-    """The bits of all that was found, of the members in some order."""
+    """Return the bits of all results, with the members in a given order."""
     return {key: value[order].tobytes() for key, value in result.items()}
 
 
@@ -106,7 +106,7 @@ def model(request):
 
 
 def test_no_lane_depends_on_another(model):
-    """Whatever the order, in whatever company: alone, in threes, or all of them."""
+    """The results are the same in any order and in any grouping: alone, in threes, or all together."""
     start, times = states(model, 37), [0.5, 7.0, 30.0]
     whole = new_ensemble(model).run(*start, times, events=20)
     order = np.random.default_rng(3).permutation(37)
@@ -136,7 +136,7 @@ def own_images(start):
 
 
 def test_mirror_images_move_as_mirror_images(model):
-    """To the bit; and a state that is its own image stays so."""
+    """This holds to the bit, and a state that is its own image remains so."""
     start, ensemble = states(model, 30), new_ensemble(model)
     own = own_images(start)
     for one, other, times in ((start, [part[:, ::-1] for part in start], [3.0, 25.0]), (own, own, [25.0, 200.0])):
@@ -145,8 +145,8 @@ def test_mirror_images_move_as_mirror_images(model):
             assert (straight[key] == mirrored[key][:, :, ::-1]).all()
 
 
-def test_blocks_that_stop_together_are_proved_together(model):
-    """Else each step before the event would only come nearer to it: a state that is its own image takes no more."""
+def test_blocks_that_stop_together_stop_in_one_step(model):
+    """Otherwise steps would only approach the event; a symmetric state takes fewer steps per event than others."""
     start, rounds = states(model, 30), []
     for some in (start, own_images(start)):
         ensemble = new_ensemble(model)
@@ -155,7 +155,7 @@ def test_blocks_that_stop_together_are_proved_together(model):
     assert rounds[1] < rounds[0]
 
 
-def test_thresholds_behind():
+def test_blocks_below_their_backward_thresholds_start_backward():
     backward = 0
     for seed in range(4):
         threshold = np.random.default_rng(seed).uniform(0.4, 2.0, 4)
@@ -170,7 +170,7 @@ def test_thresholds_behind():
 
 @pytest.mark.parametrize(("law", "initial", "before", "after"), GRAZES)
 def test_grazing_touches(law, initial, before, after):
-    """Where a touch has just become a stick as short as 0.0013, and where it has not yet."""
+    """On one side a touch has just become a stick as short as 0.0013, on the other it has not."""
     counts = []
     for a in (before, after):
         model = Model(Chain(3), law_of(law, a))

@@ -28,8 +28,8 @@ REGULAR = [
 # Until τ = 200 these amplify an error several thousand times: 1e-12 is beyond double precision.
 CHAOTIC = [("linearized", "minus", 0.3, 1e-10), ("linearized", "plus", 0.2, 1e-10), ("nonlinear", "plus", 0.2, 1e-11)]
 
-# Pairs of a on either side of a graze: past it, a touch has become a stick as short as 0.0013, which a search on
-# samples loses. (law, initial, a before, a after)
+# Values of a on either side of a grazing, beyond which a touch has become a stick as short as 0.0013, which a search on
+# samples misses: (law, initial, a before, a after).
 GRAZES = [
     ("linearized", "minus", 0.0318743, 0.031875),
     ("linearized", "plus", 0.2900093, 0.29001),
@@ -63,8 +63,8 @@ def test_grazing_touches(law, initial, before, after):
 
 
 @pytest.mark.parametrize("law", SOLVERS)
-def test_conventions_against_the_reference(law):
-    """They decide which attractor `plus` reaches, by its first events."""
+def test_conventions_agree_with_the_reference(law):
+    """The first events decide which attractor `plus` reaches."""
     first = set()
     for contact, start in product(CONTACTS, STARTS):
         events = check(law, "plus", 0.08, end=60.0, contact=contact, start=start)
@@ -88,7 +88,7 @@ def chains(draw):
 @given(chains())
 @settings(max_examples=60)
 def test_random_chains_against_scipy(chain):
-    """Same events, at the same times within the peer's accuracy, and the same state at the end."""
+    """The events, their times within the peer's accuracy, and the state at the end agree."""
     law, a, position, velocity, options = chain
     blocks, v, end = len(position), options["v"], 8.0
     # Eq. 2: springs of 1 between blocks, and of D_i to the driver.
@@ -100,7 +100,7 @@ def test_random_chains_against_scipy(chain):
     expected, x, w = scipy_events(
         stiffness, ones, friction, v, position, velocity, slip, end, contact=options["contact"]
     )
-    # Two events closer than the peer's accuracy may come in either order, and it does not see a dip between samples.
+    # Events closer than the peer's accuracy may come in either order, and it misses a dip between samples.
     assume(len(expected) < 2 or np.diff([time for time, _, _ in expected]).min() > 1e-7)
     state = InitialState("drawn", tuple(position), tuple(velocity))
     for solver in SOLVERS[law]:

@@ -1,4 +1,4 @@
-"""Lyapunov exponents against closed forms, determinants, two trajectories side by side, and what they must be."""
+"""Lyapunov exponents, compared with closed forms, determinants and the divergence of two trajectories."""
 
 from itertools import product
 
@@ -18,7 +18,7 @@ PLUS = PAPER_STATES["plus"]
 def side_by_side(model, start, end, *, interval=3.0, distance=1e-7, batches=14):
     """Return the largest exponent and its standard error from the distance between two trajectories.
 
-    It is measured and set back to `distance` after every interval (Benettin's first method).
+    The distance is measured and reset to `distance` after every interval (Benettin's first method).
     """
     runner = Runner(model)
     offset = np.array([1.0, -0.5, 0.3, 0.2, 0.4, -0.1])
@@ -101,7 +101,7 @@ def test_transverse_exponent_of_synchrony(law, a):
     ],
 )
 def test_sum_of_all_finite_exponents_is_the_determinant(law, blocks, a, contact):
-    """From one instant with m blocks stuck to another the flow maps 2N − m dimensions to as many."""
+    """Between two instants with m blocks stuck the flow maps 2N − m dimensions to as many."""
     model = Model(Chain(blocks), law_of(law, a), contact=contact)
     states = [later(model, model.begin(wave(blocks)), 200.0)]
     for _ in range(800):
@@ -123,7 +123,7 @@ def test_sum_of_all_finite_exponents_is_the_determinant(law, blocks, a, contact)
 
 
 @pytest.mark.parametrize(("law", "initial", "a"), [("linearized", "minus", 0.08), ("nonlinear", "plus", 0.08)])
-def test_the_first_ones_do_not_depend_on_how_many_are_computed(law, initial, a):
+def test_the_first_exponents_do_not_depend_on_how_many_are_computed(law, initial, a):
     runs = [simulate(law, a, initial, events="none", lyapunov_exponents=count) for count in (0, 1, 2, 3, 6)]
     for run in runs:
         first = run.lyapunov_exponent[:3]
@@ -140,7 +140,7 @@ def test_mirror_image(law):
 
 @pytest.mark.parametrize("blocks", [2, 5])
 def test_shorter_and_longer_chains(law, blocks):
-    """One zero exponent at least, none above it in regular motion, and 2N in all."""
+    """Regular motion has at least one zero exponent, none above it, and 2N in all."""
     run = simulate(law, 0.05, wave(blocks), lyapunov_exponents=2 * blocks)
     exponent, error = run.lyapunov_exponent, run.lyapunov_error
     finite = np.isfinite(exponent)
@@ -152,7 +152,7 @@ def test_shorter_and_longer_chains(law, blocks):
 @pytest.mark.parametrize("window", [1e-3, 0.5, 3.0])
 @pytest.mark.parametrize("transient", [0.0, 100.0])
 def test_windows_too_short_for_batches(law, transient, window):
-    """No errors where a batch has seen no orthonormalisation; what there is is the growth of a real vector."""
+    """There is no error if a batch contains no orthonormalization; the exponent is then the growth of a real vector."""
     run = simulate(law, 0.2, "plus", transient=transient, window=window, lyapunov_exponents=6)
     assert run.status == "completed"
     assert np.isnan(run.lyapunov_error).all()
@@ -173,7 +173,7 @@ def test_windows_too_short_for_batches(law, transient, window):
     ],
 )
 def test_runs_without_exponents(monkeypatch, limit, settings, count):
-    """Those that do not complete, and those in which none are asked for or possible."""
+    """Some do not complete; in others no exponents are requested or possible."""
     if limit:
         monkeypatch.setattr("burridge_knopoff.running.runner.STEP_LIMIT", limit)
     run = simulate("linearized", 0.08, "plus", **settings)
@@ -193,7 +193,7 @@ REGULAR = {
 
 @pytest.mark.parametrize(("law", "initial", "a", "zeros"), [(law, *case) for law in LAWS for case in REGULAR[law]])
 def test_zero_exponents_of_regular_motion(law, initial, a, zeros):
-    """One along the flow, a second one on a torus; both within their error, the next one far from 0."""
+    """One exponent belongs to the flow, a second one to a torus; both are 0 within their errors, the next is not."""
     run = simulate(law, a, initial, events="none")
     exponent, error = run.lyapunov_exponent, run.lyapunov_error
     assert (np.abs(exponent[:zeros]) < 2.0 * error[:zeros]).all()
@@ -203,7 +203,7 @@ def test_zero_exponents_of_regular_motion(law, initial, a, zeros):
 
 @pytest.mark.parametrize("alignment", [10.0, 1000.0])
 def test_growth_like_a_power_of_time_is_within_the_error(alignment):
-    """Linear growth gains ln(1 + T/A) through a window T after an alignment A; batches alone see an exponent there."""
+    """Linear growth gains ln(1 + T/A) in a window T after an alignment A, which batches alone take for an exponent."""
     run = simulate("linearized", 0.06, "plus", events="none", lyapunov_alignment=alignment)
     window = 7000.0
     statistical = run.batch_lyapunov_exponent.std(axis=0, ddof=1) / np.sqrt(7)
@@ -234,7 +234,7 @@ def most_stuck(run, begin_time):
         ("nonlinear", "plus", 0.15, "symmetric"),
     ],
 )
-def test_as_many_are_infinite_as_blocks_are_stuck_at_once(law, initial, a, contact):
+def test_as_many_exponents_are_infinite_as_blocks_stick_at_once(law, initial, a, contact):
     run = simulate(law, a, initial, contact=contact, events="all", lyapunov_exponents=6, transient=1000.0)
     expected = most_stuck(run, 1000.0)
     assert run.lyapunov_infinite_count == expected
@@ -244,7 +244,7 @@ def test_as_many_are_infinite_as_blocks_are_stuck_at_once(law, initial, a, conta
     assert np.isfinite(run.lyapunov_error[: 6 - expected]).all()
 
 
-def test_what_was_stuck_in_the_transient_only_costs_nothing():
+def test_blocks_that_stick_only_in_the_transient_do_not_count():
     """Three blocks stuck at once before the window, one within it."""
     options = {"events": "all", "lyapunov_exponents": 6, "start": "tested", "transient": 2000.0}
     state = InitialState("held", (0.3, 0.3, 0.25), (0.1, 0.1, 0.1))
@@ -256,10 +256,10 @@ def test_what_was_stuck_in_the_transient_only_costs_nothing():
 
 
 def test_parts_of_a_chain_lose_perturbations_one_after_the_other():
-    """Block 2 is held and parts its neighbours: block 1 stops and starts, then block 3 stops.
+    """Block 2 sticks and separates its neighbours: block 1 stops and starts, then block 3 stops.
 
-    Never more than two blocks are stuck at once; but what block 1 has lost block 3 cannot restore, so that the map has
-    rank 3. The vectors that are lost are gone: their remainders are rounding and must not pass for finite exponents.
+    At most two blocks stick at once, but block 3 cannot restore the directions that block 1 has lost, so that the map
+    has rank 3. The remainders of the lost vectors are rounding errors and must not be taken for finite exponents.
     """
     model = Model(Chain(3), law_of("linearized", 0.1), 0.1)
     start = ChainState(np.array([0.17, 0.3, 0.345]), np.array([0.003, 0.0, 0.3]), np.array([False, True, False]))

@@ -18,9 +18,9 @@ CHAINS = [Chain(1), Chain(1, pulling=2.5, threshold=1.3), TRAIN, Chain(4, pullin
 def cycle(pulling, threshold, a, v):
     """Return how long one block slips and sticks in its limit cycle, to 30 digits, under the linearized law.
 
-    It slips from s = threshold on: x'' = −k x + θ a x' with x = −θ a v/k and x' = −v at the start, a growing
-    oscillation, until x' = −v again, before a whole period of the oscillation. Then it waits until its force,
-    which grows as k v τ, has come to its threshold.
+    The slip begins at s = threshold: x'' = −k x + θ a x' with x = −θ a v/k and x' = −v at the start, a growing
+    oscillation, and ends at x' = −v again, before a whole period. The block then sticks until its force, which grows as
+    k v τ, reaches its threshold.
     """
     with mpmath.workdps(30):
         k, theta, a, v = map(mpmath.mpf, (pulling, threshold, a, v))
@@ -39,7 +39,7 @@ def cycle(pulling, threshold, a, v):
 
 @pytest.mark.parametrize("a", [0.02, 0.08, 0.3])
 @pytest.mark.parametrize("chain", CHAINS[:2])
-def test_one_block_is_its_closed_form(chain, a):
+def test_one_block_agrees_with_its_closed_form(chain, a):
     model = Model(chain, law_of("linearized", a))
     slip, stick = cycle(chain.driving[0], chain.thresholds[0], a, model.v)
     # At its threshold and about to slip: on the cycle.
@@ -103,7 +103,7 @@ def test_section_of_one_block(law, blocks):
     assert np.array_equal(runs[0].position, runs[1].position)
 
 
-def test_the_section_is_in_every_form_of_settings():
+def test_the_section_is_part_of_all_forms_of_settings():
     forms = ("block=2", {"of": "block", "block": 2}, Section("block", 2))
     options = {"transient": 0.0, "window": 30.0, "batches": 2}
     times = [simulate("linearized", 0.1, "plus", section=section, **options).crossing_time for section in forms]

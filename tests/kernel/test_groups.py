@@ -1,4 +1,4 @@
-"""Long chains, in which blocks that slip together move in groups of their own: the events of the chain as a whole."""
+"""Long chains, in which blocks that slip together move in separate groups, have the events of the chain as a whole."""
 
 import numpy as np
 import pytest
@@ -85,7 +85,7 @@ def test_observables_are_those_of_the_chain_as_a_whole(section):
     assert len(found[0]["crossing_time"]) >= 1
 
 
-def test_a_run_that_goes_on_has_the_events_of_the_whole_to_the_bit():
+def test_a_continued_run_has_the_events_of_the_whole_run_to_the_bit():
     model = Model(Chain(50, coupling=20.0, pulling=1.0), law_of("nonlinear", 3.0), 0.02)
     start = at_rest(model, 7)
     whole = events(model, start, 60.0, True)[1]
@@ -96,7 +96,7 @@ def test_a_run_that_goes_on_has_the_events_of_the_whole_to_the_bit():
 
 
 def test_a_hundred_thousand_blocks():
-    """An event costs no more than in a short chain, however many blocks wait."""
+    """An event costs no more than in a short chain, however many blocks stick."""
     model = Model(Chain(100_000, coupling=100.0, pulling=1.0), law_of("carlson_langer", 5.0), 0.001)
     runner = Runner(model)
     runner.begin(at_rest(model, 1, 0.001))

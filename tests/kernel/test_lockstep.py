@@ -1,4 +1,4 @@
-"""Runs in lockstep: each gives, to the bit, what it gives alone."""
+"""Runs in lockstep: each result equals that of the run alone, to the bit."""
 
 import os
 import signal
@@ -63,7 +63,7 @@ def contents(trajectory):
 
 @settings(max_examples=60)
 @given(batches())
-def test_each_gives_what_it_gives_alone(members):
+def test_each_run_equals_the_run_alone(members):
     alone = [run(*member) for member in members]
     made = [prepare(*member) for member in members]
     ends = run_together([one.runner for one in made])
@@ -76,7 +76,7 @@ def test_each_gives_what_it_gives_alone(members):
 
 
 def test_runs_of_all_kinds_at_once():
-    """Runs that cannot use a lane (long chains in groups, closed forms, fixed steps) are carried out alone."""
+    """Runs that cannot use a lane (long chains in groups, closed forms, fixed steps) are computed alone."""
     members = []
     for law in LAWS:
         for blocks in (2, 3, 24):
@@ -93,7 +93,7 @@ def test_runs_of_all_kinds_at_once():
         assert contents(run(*member)) == contents(one.result(one.runner.status_of(end)))
 
 
-def test_runs_halt_at_stops_and_go_on():
+def test_runs_halt_at_stops_and_continue():
     model = Model(Chain(3), law_of("nonlinear", 0.08))
 
     def runners():
@@ -115,8 +115,8 @@ def test_runs_halt_at_stops_and_go_on():
             assert other.state().stuck[1]
 
 
-def test_runs_end_in_all_ways():
-    """A run without bound, one with too many events and one whose table is full end as alone, and no other."""
+def test_runs_end_as_they_do_alone():
+    """A diverging run, one with too many events and one with a full table end as they do alone; the others continue."""
     law, symmetric = law_of("linearized", 3.0), "symmetric"
     state = InitialState("drawn", (0.3, -0.4), (0.1, 0.0))
     diverging = Model(Chain(2, 0.1, 0.1), law, 1.0, symmetric), InitialState("drawn", (90.0, -50.0), (0.0, 0.0))

@@ -1,7 +1,7 @@
-"""Symmetry to the bit: what a chain and a state have of it, stays, in every engine and at any stiffness.
+"""Symmetry to the bit: every engine preserves the symmetries of a chain and a state, at any stiffness.
 
-Mirror images have their events at the same instant because they have the same bits, not because their events are near:
-how far rounding leaves a spring force from its threshold grows with the stiffness.
+Mirror images have their events at the same instant because their bits are equal, not because the events are close: the
+rounding error of a spring force grows with the stiffness.
 """
 
 from dataclasses import replace
@@ -15,7 +15,7 @@ from burridge_knopoff import Chain, Model, law_of, simulate
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.running.ensemble import new_ensemble
 
-#: Of neighbours and to the driver.
+#: Stiffness of the springs between neighbours and to the driver.
 DASHPOTS = st.sampled_from([(0.0, 0.0), (0.3, 0.0), (0.0, 0.1), (1.0, 0.2)])
 ENGINES = ("series", "map", "ensemble")
 TIMES = 20
@@ -98,7 +98,7 @@ def test_mirror_images_move_as_mirror_images(drawn):
 
 @settings(max_examples=40)
 @given(chains(("ring",)), st.integers(1, 24), st.integers(1, 5))
-def test_a_ring_knows_no_first_block(drawn, turn, period):
+def test_a_ring_has_no_first_block(drawn, turn, period):
     """A rotated state has the rotated motion; a state that is periodic along the ring stays periodic."""
     model, position, velocity, duration = drawn
     blocks = model.blocks // period * period
@@ -133,8 +133,8 @@ def test_stiff_springs_of_five_blocks(engine):
 
 @pytest.mark.parametrize("coupling", [1e-3, 1.0, 1e3])
 @pytest.mark.parametrize("apart", [1e-9, 1e-12])
-def test_starts_that_are_apart_keep_their_order(coupling, apart):
-    """Stuck blocks start where pulling · v τ makes up what is missing, here 0.5 and as little as `apart` more."""
+def test_starts_at_different_times_keep_their_order(coupling, apart):
+    """Stuck blocks start when pulling · v τ equals what their forces lack, here 0.5 and 0.5 + 0.1 `apart`."""
     v, force = 0.1, np.array([0.5, 0.5 - 0.1 * apart, 0.5])
     chain = Chain(3, coupling, pulling=1.0)
     position = -np.linalg.solve(chain.stiffness, force)
@@ -151,7 +151,7 @@ def test_starts_that_are_apart_keep_their_order(coupling, apart):
 @pytest.mark.parametrize("grid", [(3, 3), (4, 3), (6, 5)])
 @pytest.mark.parametrize("engine", ["series", "ensemble"])
 def test_grids_from_left_to_right(grid, engine):
-    """docs/model.md promises the bits for this reflection alone: the others change the order of the sums of forces."""
+    """docs/model.md guarantees identical bits only for this reflection; others change the order of sums of forces."""
     columns, rows = grid
     generator = np.random.default_rng(columns)
     left = generator.uniform(-1.2, -0.4, (rows, columns))

@@ -30,7 +30,7 @@ def test_events_of_uniform_chains(options, blocks, tolerance):
 def test_mean_distance_outside_chaos(initial):
     """To 1e-11 on every grid value of a at which the run is not chaotic.
 
-    Chaos is told without regard to the agreement: a shift of the initial state by 1e-12 changes the mean distance.
+    Chaos is identified independently of the agreement: shifting the initial state by 1e-12 changes the mean distance.
     """
     state = PAPER_STATES[initial]
     shifted = InitialState("shifted", (state.position[0] + 1e-12, *state.position[1:]), state.velocity)
@@ -70,10 +70,10 @@ def test_perturbations(contact):
         ("linearized", 2.0, Chain(3)),
     ],
 )
-def test_where_there_is_no_closed_form(law, a, chain):
+def test_models_without_a_closed_form_are_refused(law, a, chain):
     with pytest.raises(ValueError, match="solver: got 'map', expected"):
         Runner(Model(chain, law_of(law, a)), "map")
 
 
-def test_the_series_go_on_where_there_is_no_closed_form():
+def test_the_series_solver_needs_no_closed_form():
     assert simulate("linearized", 2.5, "minus", transient=5.0, window=20.0).status in ("completed", "diverged")

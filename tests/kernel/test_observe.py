@@ -30,7 +30,7 @@ def check_crossings(run):
 
 @pytest.mark.parametrize("blocks", [2, 4, 7, 8, 16])
 def test_section_of_other_chains(law, blocks):
-    """W is in a lane after those of the blocks, which may be the first lane of another vector."""
+    """W follows the blocks in the lanes, and may be in the first lane of another vector."""
     run = dense(law, 0.2, wave(blocks))
     time, w, change = check_crossings(run)
     # By the secant, whose error is a second derivative times the interval squared over the slope.
@@ -38,7 +38,7 @@ def test_section_of_other_chains(law, blocks):
     assert np.abs(run.crossing_time - secant).max() < 1e-5
 
 
-def test_a_crossing_at_the_seam_of_two_pieces_is_one():
+def test_a_crossing_between_two_pieces_counts_once():
     model = Model(Chain(3), law_of("linearized", 0.1))
     generator = np.random.default_rng(1)
 

@@ -25,7 +25,7 @@ def test_first_roots():
             c = np.convolve(c, [-root, Fraction(1)])
         for _ in range(generator.randint(0, 5)):
             centre = Fraction(generator.randint(-(2**10), 2**11), 2**10)
-            # Complex pairs as close to the axis as 1e-6: near touches that must not be taken for roots.
+            # Complex pairs within 1e-6 of the axis are near touches that must not be taken for roots.
             height = Fraction(1, generator.choice([1, 10, 1000, 10**6]))
             c = np.convolve(c, [centre**2 + height**2, -2 * centre, Fraction(1)])
         scale = max(map(abs, c)) * (-1 if c[0] < 0 else 1)

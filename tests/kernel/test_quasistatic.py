@@ -12,7 +12,7 @@ from burridge_knopoff.catalogue.events import record_events
 from burridge_knopoff.catalogue.stability import event_exponents, event_multipliers
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
-from tests.kernel.test_catalogue import at_rest, recorded
+from tests.kernel.test_catalogue import at_rest, record_catalogue
 
 # J. Huang and D. L. Turcotte, Nature 348 (1990) 234: Coulomb friction that drops to 1/1.25 as slip begins.
 COULOMB = law_of("carlson_langer", 0.0, {"sigma": 0.2})
@@ -67,7 +67,7 @@ def next_event(position, coupling, threshold=(1.0, 2.25), friction=0.8):
 
 
 def test_two_blocks_of_huang_and_turcotte():
-    """From different states, the same period of four events."""
+    """Different states lead to the same cycle of four events."""
     model = two_blocks()
     for position in ((-0.45, -1.02), (-0.55, -0.95)):
         found = record_events(
@@ -88,7 +88,7 @@ def test_two_blocks_of_huang_and_turcotte():
 
 @pytest.mark.parametrize("coupling", [1.0, 2.2, 3.25, 6.0])
 def test_events_of_two_blocks(coupling):
-    """One by one, as chaos takes them apart."""
+    """The events are compared one by one, since chaos makes the motions diverge."""
     model = two_blocks(coupling)
     found = record_events(model, resting(model, (-0.45, -1.02)), 900.0, profiles=True, loading="quasistatic")
     assert len(found.time) > 12
@@ -128,27 +128,27 @@ def test_exponents_are_those_of_the_multipliers():
 def test_mirror_images_start_together(groups):
     model = Model(Chain(8, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.0, {"sigma": 0.05}), 0.01)
     half = np.array([-0.61, -0.83, -0.72, -0.94])
-    _, runner, _ = recorded(model, resting(model, [*half, *half[::-1]]), 300.0, groups, loading="quasistatic")
+    _, runner, _ = record_catalogue(model, resting(model, [*half, *half[::-1]]), 300.0, groups, loading="quasistatic")
     assert len(runner.events()[0]) > 40
     assert np.array_equal(runner.state().position, runner.state().position[::-1])
 
 
 @pytest.mark.parametrize("groups", [False, True])
-def test_balances(groups):
+def test_forces_and_displacements_balance(groups):
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
     start = at_rest(model)
-    table, runner, (_, block, slip) = recorded(model, start, 200.0, groups, loading="quasistatic")
+    table, runner, (_, block, slip) = record_catalogue(model, start, 200.0, groups, loading="quasistatic")
     moved = runner.state().position - start.position + model.v * 200.0
     assert len(table["time"]) > 20
     assert np.allclose(np.bincount(block - 1, slip, 12), moved, rtol=0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize("groups", [False, True])
-def test_energy_released_is_what_the_springs_lose(groups):
+def test_the_released_energy_is_what_the_springs_lose(groups):
     """The driver stops, and does no work, while blocks slip."""
     model = Model(Chain(12, coupling=5.0, pulling=1.0), law_of("carlson_langer", 1.0), 0.02)
     start = resting(model, np.random.default_rng(1).uniform(-0.9, -0.6, 12))
-    table, _, _ = recorded(model, start, 60.0, groups, loading="quasistatic")
+    table, _, _ = record_catalogue(model, start, 60.0, groups, loading="quasistatic")
     assert len(table["time"]) > 10
     runner = Runner(model, loading="quasistatic", groups=groups)
     runner.begin(start)
@@ -165,14 +165,16 @@ def test_energy_released_is_what_the_springs_lose(groups):
 
 def test_groups_and_the_chain_as_a_whole_have_the_same_events():
     model = Model(Chain(40, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
-    one, other = (recorded(model, at_rest(model), 30.0, groups, loading="quasistatic")[0] for groups in (True, False))
+    one, other = (
+        record_catalogue(model, at_rest(model), 30.0, groups, loading="quasistatic")[0] for groups in (True, False)
+    )
     assert len(one["time"]) == len(other["time"]) > 20
     for name, values in one.items():
         assert np.allclose(values, other[name], rtol=1e-6, atol=1e-8, equal_nan=True), name
 
 
 @pytest.mark.parametrize("blocks", [3, 40])
-def test_runs_that_continue_one_another_have_the_catalogue_of_the_whole(blocks):
+def test_consecutive_runs_have_the_catalogue_of_the_whole_run(blocks):
     model = Model(Chain(blocks, coupling=20.0, pulling=1.0), law_of("carlson_langer", 2.0), 0.01)
     whole = record_events(model, at_rest(model), 400.0, loading="quasistatic")
     parts, at = [], at_rest(model)

@@ -45,8 +45,8 @@ def symmetric_cases(draw, loadings=("steady", "quasistatic")):
     return model, start, image, loading, end
 
 
-def followed(model, start, end, groups, loading):
-    """Return the runner at a time, the events and, under steady loading, the section crossings on the way."""
+def follow_run(model, start, end, groups, loading):
+    """Return the runner at a time, the events and, under steady loading, the section crossings until then."""
     observer = new_observer(model, [start.time, end]) if loading == "steady" else None
     runner = Runner(model, keep_events=True, groups=groups, loading=loading, observer=observer)
     runner.begin(start)
@@ -59,13 +59,13 @@ def followed(model, start, end, groups, loading):
 @given(symmetric_cases(), st.sampled_from([None, True, False]))
 def test_a_state_that_is_its_own_mirror_image_stays_so(case, groups):
     model, start, image, loading, end = case
-    state = followed(model, start, end, groups, loading)[0].state()
+    state = follow_run(model, start, end, groups, loading)[0].state()
     assert np.array_equal(state.position, state.position[image])
     assert np.array_equal(state.velocity, state.velocity[image])
 
 
-def test_synchrony_of_24_blocks():
-    """⟨J⟩ = 0.0104 once, where that of 23 blocks is exactly 0: mirror images were taken one after the other."""
+def test_24_blocks_synchronize_exactly():
+    """⟨J⟩ was once 0.0104, and exactly 0 for 23 blocks: mirror images were processed one after the other."""
     for blocks in (23, 24):
         model = Model(Chain(blocks, coupling=2.0, pulling=1.0), law_of("exponential", 0.3), 0.01)
         half = np.random.default_rng(1).uniform(-0.9, -0.5, (blocks + 1) // 2)
@@ -78,15 +78,15 @@ def test_synchrony_of_24_blocks():
 
 @settings(max_examples=100)
 @given(symmetric_cases(), st.sampled_from([None, True, False]), st.lists(st.floats(0.02, 0.98), min_size=1, max_size=3))
-def test_a_run_in_parts_is_the_whole_run_to_the_bit(case, groups, cuts):
+def test_a_run_in_parts_equals_the_whole_run_to_the_bit(case, groups, cuts):
     model, start, _, loading, end = case
-    runner, whole = followed(model, start, end, groups, loading)
+    runner, whole = follow_run(model, start, end, groups, loading)
     state, found = start, []
     for time in sorted(end * cut for cut in cuts):
-        part, rows = followed(model, state, time, groups, loading)
+        part, rows = follow_run(model, state, time, groups, loading)
         state = part.final()
         found.append(rows)
-    part, rows = followed(model, state, end, groups, loading)
+    part, rows = follow_run(model, state, end, groups, loading)
     found.append(rows)
     assert np.array_equal(part.state().vector(), runner.state().vector())
     for expected, parts in zip(whole, zip(*found, strict=True), strict=True):
@@ -95,16 +95,16 @@ def test_a_run_in_parts_is_the_whole_run_to_the_bit(case, groups, cuts):
 
 
 @pytest.mark.parametrize("groups", [True, False])
-def test_runs_of_no_length_change_nothing(groups):
-    """Crossings told by another bit once."""
+def test_runs_of_length_zero_change_nothing(groups):
+    """They once changed a bit of a crossing."""
     model = Model(Chain(3, 1.1, 1.0, ends="ring"), law_of("linearized", 0.3), 0.03)
     for seed in range(40):
         position = np.random.default_rng(seed).uniform(-1.2, -0.9, 3) - model.sliding_offset
         start = ChainState(position, np.zeros(3), np.ones(3, dtype=bool))
-        whole = followed(model, start, 30.0, groups, "steady")[1]
+        whole = follow_run(model, start, 30.0, groups, "steady")[1]
         state, found = start, []
         for time in (1.6, 1.6, 1.6, 30.0):
-            part, rows = followed(model, state, time, groups, "steady")
+            part, rows = follow_run(model, state, time, groups, "steady")
             state = part.final()
             found.append(rows)
         for axis, (expected, parts) in zip((1, 0), zip(whole, zip(*found, strict=True), strict=True), strict=True):
@@ -112,15 +112,15 @@ def test_runs_of_no_length_change_nothing(groups):
 
 
 def test_a_run_may_be_divided_within_its_first_piece():
-    """Where no side of the section is known yet."""
+    """At this point the side of the section is still unknown."""
     model = Model(Chain(3, 1.78, 1.0), law_of("linearized", 0.3), 0.056)
     for seed in range(130):
         ends, middle = np.random.default_rng(seed).uniform(-1.2, -0.9, 2)
         position = np.array([ends, middle, ends]) - model.sliding_offset
         start = ChainState(position, np.zeros(3), np.ones(3, dtype=bool))
-        crossings = followed(model, start, 5.0, None, "steady")[1][1]
-        first, before = followed(model, start, 0.484, None, "steady")
-        after = followed(model, first.final(), 5.0, None, "steady")[1][1]
+        crossings = follow_run(model, start, 5.0, None, "steady")[1][1]
+        first, before = follow_run(model, start, 0.484, None, "steady")
+        after = follow_run(model, first.final(), 5.0, None, "steady")[1][1]
         assert np.array_equal(np.concatenate([before[1], after]), crossings)
 
 
@@ -128,7 +128,7 @@ WAYS = ("whole", "groups", "exponents", "catalogue", "any")
 
 
 def leg(model, state, end, way, loading):
-    """Move a state on to a time in one of the ways to move, and return the state there."""
+    """Move a state to a time in one of the modes, and return the state there."""
     blocks = model.blocks
     given = {
         "whole": {"groups": False},
@@ -144,7 +144,7 @@ def leg(model, state, end, way, loading):
 
 
 def ends_after(model, start, loading):
-    """Return a time at which no slip is under way and rounding has not grown far, some 60 stops and starts from now."""
+    """Return a time, some 60 stops and starts later, at which no slip is in progress and rounding errors are small."""
     if loading == "steady":
         return start.time + 8.0
     found = record_events(model, start, start.time + 20.0, loading=loading)
@@ -159,8 +159,8 @@ def ends_after(model, start, loading):
     st.integers(0, 2**32 - 1),
     st.lists(st.tuples(st.sampled_from(WAYS), st.floats(0.05, 1.0)), min_size=2, max_size=6),
 )
-def test_a_state_goes_on_in_any_way(blocks, loading, seed, legs):
-    """From one way of moving to another and back, over a time in which rounding does not grow far."""
+def test_a_state_can_be_continued_in_any_mode(blocks, loading, seed, legs):
+    """The mode changes and changes back, over a time in which rounding errors remain small."""
     law = DROP if loading == "quasistatic" else "nonlinear"
     model = Model(Chain(blocks, coupling=3.0, pulling=1.0), law_of(law, 1.0), 0.05)
     position = np.random.default_rng(seed).uniform(-1.1, -0.7, blocks) / model.chain.driving - model.sliding_offset
@@ -173,8 +173,8 @@ def test_a_state_goes_on_in_any_way(blocks, loading, seed, legs):
     assert np.array_equal(state.stuck, whole.stuck)
 
 
-def test_slip_events_go_on_in_any_way():
-    """An event that is under way where the run changes its way of moving keeps what it had."""
+def test_slip_events_can_be_continued_in_any_mode():
+    """An event in progress when the mode changes keeps its slips."""
     model = Model(Chain(30, coupling=5.0, pulling=1.0), law_of(DROP, 2.0), 0.02)
     position = np.random.default_rng(2).uniform(-0.95, -0.6, 30) - model.sliding_offset
     start = ChainState(position, np.zeros(30), np.ones(30, dtype=bool))
@@ -197,7 +197,7 @@ def test_slip_events_go_on_in_any_way():
         assert np.allclose(table, tables[0], rtol=1e-9, atol=1e-9)
 
 
-def test_the_end_of_a_catalogue_serves_all_that_takes_a_state():
+def test_the_end_of_a_catalogue_is_accepted_wherever_a_state_is():
     """Each of these once ended in a segmentation fault from 24 blocks on."""
     model = Model(Chain(30, coupling=3.0, pulling=1.0), law_of(DROP, 1.0), 0.05)
     position = np.random.default_rng(3).uniform(-1.0, -0.7, 30) - model.sliding_offset

@@ -26,7 +26,7 @@ FORMULAS = {
 @pytest.mark.parametrize("w", [1e-2, 1e-3])
 @pytest.mark.parametrize("name", FORMULAS)
 def test_events_against_scipy(name, w, contact):
-    """On a horizon on which the peer, whose steps have to be short, loses nothing."""
+    """The time is short enough for the peer, which needs short steps, to remain accurate."""
     model = Model(Chain(3), FormulaLaw(0.1, FORMULAS[name], w=w), contact=contact)
     start = model.begin(PAPER_STATES["minus"])
     expected, end = model_events(model, start, 6.0)
@@ -47,7 +47,7 @@ def test_lanes_against_one_state(name, w):
     assert check_against_scalar(model, new_ensemble(model), 20, 6.0) > 50
 
 
-def test_an_exponential_that_is_next_to_nothing_costs_no_steps():
+def test_a_negligible_exponential_costs_no_steps():
     """Its argument changes by millions while the block slips."""
     model = Model(Chain(3), FormulaLaw(0.1, FORMULAS["gaussian"], w=1e-4))
     runner = Runner(model)

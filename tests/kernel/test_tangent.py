@@ -77,7 +77,7 @@ SHORT_OR_SMALL = [
 @pytest.mark.parametrize("damping", [0.0, 0.2])
 @pytest.mark.parametrize("blocks", [2, 3, 6, 10])
 def test_nonlinear_pieces_against_scipy(blocks, damping, amplitude, end):
-    """However small the motion: the perturbations obey equations whose terms are of order 1.
+    """This holds for motion of any amplitude: the perturbations obey equations whose terms are of order 1.
 
     An absolute 1e-18 lets SciPy follow the smallest of these motions; its error is 1e-13 of the map per unit of time.
     """
@@ -87,7 +87,7 @@ def test_nonlinear_pieces_against_scipy(blocks, damping, amplitude, end):
     assert np.abs(without_events(model, start, end) - expected).max() < 1e-11 * np.abs(expected).max()
 
 
-def test_a_nonlinear_piece_beside_stuck_blocks_and_backward_against_scipy():
+def test_a_nonlinear_piece_with_stuck_blocks_and_backward_slip_against_scipy():
     model = Model(Chain(5), law_of("nonlinear", 0.9), contact="symmetric")
     velocity = np.array([0.8, 0.0, 0.9, 0.0, -0.7])
     start = ChainState(np.array([0.1, 0.3, 0.0, 0.3, -0.1]), velocity, velocity == 0.0)
@@ -110,7 +110,7 @@ def test_linearized_pieces_against_the_matrix_exponential(solver, damping, stuck
 
 
 def check_against_differences(model, start, end):
-    """Compare where the differences have converged; return the events, None where they have not.
+    """Compare if the differences have converged and return the events, otherwise None.
 
     The error of second order, of which the two steps show three quarters, is below 3e-5 of the map; extrapolation
     leaves one of fourth order, about the square of that. Rounding of 1e-15 over the step gives 1e-11, amplified.
@@ -153,7 +153,7 @@ def test_finite_differences_of_random_chains(blocks, law, contact, seed, end):
 
 
 def turns(model, start, events):
-    """Return the signs of the spring force at which blocks have turned round at once."""
+    """Return the signs of the spring force at which blocks have reversed without sticking."""
     signs = []
     for (time, block, kind), (after, other, start_kind) in pairwise(events):
         if (kind, start_kind) == (0, 1) and block == other and time == after:
@@ -162,8 +162,8 @@ def turns(model, start, events):
     return signs
 
 
-def test_every_kind_of_event_is_met(law):
-    """Turning round forward and backward, and neighbours that are stuck together, each several times."""
+def test_every_kind_of_event_occurs(law):
+    """Reversals in both directions, and neighbours that stick at the same time, each occur several times."""
     met = {1: 0, -1: 0, "stuck": 0, "start": 0}
     generator = np.random.default_rng(5)
     for _ in range(200):
@@ -211,7 +211,7 @@ def test_composition_and_the_direction_of_the_flow(blocks, law, contact, seed, s
     times = np.array([time for time, _, _ in events])
     assume((np.abs(times - share * end) > 1e-6).all())
     rest = tangent_map(model, half.state(), (1.0 - share) * end)
-    # Of a short slip or a near graze little more than the square root of the digits is left.
+    # A short slip or a near grazing leaves little more than half of the digits.
     assume(not any(0.0 < gap < 1e-3 for gap in np.diff(times)))
     size = np.abs(rest).max() * np.abs(half.perturbations).max()
     assert np.abs(whole.perturbations - rest @ half.perturbations).max() < 1e-9 * size
@@ -243,7 +243,7 @@ def test_starts_of_a_stiff_chain_on_soft_springs(coupling, pulling, v, damping):
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 5, 6])
-def test_each_vector_goes_its_way_alone(law, count):
+def test_each_vector_is_independent_of_the_others(law, count):
     """The same bits for the first vectors, however many are carried."""
     model = Model(Chain(3), law_of(law, 0.15), contact="symmetric")
     start = model.begin(PAPER_STATES["plus"])
@@ -261,7 +261,7 @@ def test_perturbations_change_nothing_of_the_run(law):
     assert one.kernel.steps == other.kernel.steps
 
 
-def test_a_solver_that_begins_again_has_forgotten_its_stops(law):
+def test_a_solver_that_begins_again_forgets_its_stops(law):
     """A start at τ = 0 is not a reversal after a stop in the previous run."""
     model = Model(Chain(2), law_of(law, 0.1))
     # Held beyond their thresholds until τ = 0.
@@ -275,8 +275,8 @@ def test_a_solver_that_begins_again_has_forgotten_its_stops(law):
     assert (used.perturbations == tangent_map(model, held, 1.0)).all()
 
 
-def test_all_blocks_stuck_for_long():
-    """Under a slow driver: nothing but the positions is left, and they stay."""
+def test_perturbations_while_all_blocks_stick():
+    """Under a slow driver only perturbations of positions remain, and these are constant."""
     model = Model(Chain(3), law_of("nonlinear", 0.1), v=1e-5)
     start = ChainState(np.array([0.2, 0.21, 0.22]), np.zeros(3), np.ones(3, dtype=bool))
     assert (tangent_map(model, start, 10.0) == block_diag(np.eye(3), np.zeros((3, 3)))).all()

@@ -43,8 +43,8 @@ def test_the_last_step_ends_at_the_end(law):
     assert run.step_count == 7
 
 
-def test_what_is_due_at_the_start_happens_then(law):
-    """Blocks that begin at rest where friction holds them stop at once, not a step later."""
+def test_blocks_held_by_friction_at_the_start_stop_at_once(law):
+    """They do not stop one step later."""
     state = InitialState("at rest", (-1.8, 0.5, 1.2), (0.0, 0.0, 0.0))
     run = simulate(law, 0.08, state, solver="rk4", step=0.1, window=0.5, **OPTIONS)
     assert run.event_time.tolist() == [0.0, 0.0]

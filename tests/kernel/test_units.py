@@ -1,4 +1,4 @@
-"""A chain in other units is the same chain: limits of the kernel are in the chain's own time."""
+"""A chain in other units is the same chain: the kernel's limits are in the chain's own units of time."""
 
 import numpy as np
 import pytest
@@ -62,7 +62,7 @@ def test_a_stiff_light_block_moves_as_one_of_the_paper():
 
 
 def test_exponents_of_a_fast_chain():
-    """Perturbations are kept apart as often as events come: once a unit of time would lose all of them."""
+    """Perturbations are orthonormalized as often as events occur; once per unit of time would lose all of them."""
     factor, initial = 1024.0, wave(3)
     short = InitialState("short", tuple(np.array(initial.position) / factor), initial.velocity)
     paper, fast = (

@@ -28,7 +28,7 @@ def test_parameters_of_the_same_name_belong_to_their_own_law():
     assert float(blend(one, other, 0.5)(1.0)) == pytest.approx(1.0 - 2.0 * 0.1)
 
 
-def test_negative_numbers_stand_in_brackets():
+def test_negative_numbers_are_in_brackets():
     law = law_of("mine", 0.1, {"formula": "1 - a*u*c**2", "c": -2.0})
     assert float(blend(law, law, 0.5)(1.0)) == pytest.approx(0.6)
     assert float(mirror_law(law, 0.1).slope(1.0)) == pytest.approx(0.4)
@@ -44,14 +44,14 @@ def test_laws_of_the_longest_formulas_are_blended():
 
 
 @pytest.mark.parametrize("name", ["linearized", "nonlinear", "exponential"])
-def test_the_mirror_image_of_a_law_grows_where_it_falls(name):
+def test_the_reflected_law_increases_where_the_law_decreases(name):
     law = law_of(name, 0.3)
     image = mirror_law(law, 0.2)
     assert float(image(0.2)) == pytest.approx(float(law(0.2)), rel=1e-15)
     np.testing.assert_allclose(image.slope(SPEEDS), -law.slope(SPEEDS), rtol=1e-12)
 
 
-def test_a_mirror_image_that_is_no_friction_is_refused():
+def test_a_reflected_law_that_is_not_a_friction_law_is_refused():
     with pytest.raises(ValueError, match="its value at u = 0 is 1.2"):
         mirror_law(law_of("mine", 0.5, {"formula": "0.8 + 0.4*a*u"}), 1.0)
 

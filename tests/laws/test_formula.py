@@ -1,4 +1,4 @@
-"""Formulas: what is a law, and what is refused in one line."""
+"""Formulas that are laws, and those that are refused in one line."""
 
 import numpy as np
 import pytest
@@ -74,8 +74,8 @@ def test_any_text_is_a_law_or_refused(text):
     assert "\n" not in message
 
 
-def test_a_formula_is_the_law_that_it_spells():
-    """The same operations, and so the same bits of a motion."""
+def test_a_formula_equals_the_built_in_law():
+    """The operations are the same, and so are the bits of a motion."""
     built_in, formula = LAWS["nonlinear"](0.2), FormulaLaw(0.2, "1/(1 + a*u)")
     assert formula.tape == built_in.tape
     assert formula != built_in
@@ -94,7 +94,7 @@ def test_a_formula_is_the_law_that_it_spells():
         "0.7 - 0.1*log(1 + u)*(1 + a*u)",
     ],
 )
-def test_a_formula_is_what_python_makes_of_it(formula):
+def test_a_formula_has_the_values_that_python_computes(formula):
     """The slope is compared with a complex step, which has no cancellation."""
     names = {"a": 0.02, "c": 0.03, **{name: getattr(np, name) for name in ("exp", "sqrt", "tanh", "log")}}
     law = FormulaLaw(0.02, formula, **({"c": 0.03} if "c" in formula.replace("exp", "") else {}))

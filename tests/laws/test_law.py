@@ -85,7 +85,7 @@ def test_series_along_a_motion(law):
 
 @each_law
 def test_event_times(law):
-    """Against SciPy, from both states of the paper, up to near-coincidences, whose order is undetermined."""
+    """They agree with SciPy, from both states of the paper, up to near-coincidences, whose order is undetermined."""
     compared = 0
     model = Model(Chain(3), law)
     for state in PAPER_STATES.values():
@@ -101,7 +101,7 @@ def test_event_times(law):
 
 @each_law
 def test_tangent_map_through_stops_and_starts(law):
-    """Against differences of the flow; where friction drops at the start, the map of a start is not the identity."""
+    """It agrees with differences of the flow; with a drop at the start, the map of a start is not the identity."""
     model = Model(Chain(3), law)
     start = model.begin(PAPER_STATES["plus"])
     checked, starts = 0, 0
@@ -178,7 +178,7 @@ def test_a_law_may_be_above_1_at_rest_by_rounding():
 
 
 def test_minus_0_is_0():
-    """The same number must not make two different files."""
+    """The same number must not give two different files."""
     law = FormulaLaw(-0.0, "1 - a*u - c*u", c=-0.0)
     assert repr((law.a, law.parameters["c"])) == "(0.0, 0.0)"
 

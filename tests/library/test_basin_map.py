@@ -11,7 +11,7 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from tests.refused import refused
 
 
-def test_what_is_taken_if_nothing_is_said():
+def test_defaults_are_those_of_the_config():
     defaults = {"pixels": 64, "samples": 100, "seed": 1, "threads": 1}
     defaults |= {"v": None, "contact": None, "start": "moving"}
     parameters = inspect.signature(basin_map).parameters
@@ -61,7 +61,7 @@ def test_bad_input_is_refused_in_one_line(options, words):
 
 
 @pytest.mark.slow
-def test_a_model_of_its_own():
+def test_a_map_for_any_model():
     """Labels of a map for a law by formula in an asymmetric chain, and of its equivalent short form."""
     law = FormulaLaw(0.1, "1/(1 + a*u)**p", p=1.2)
     chain = Chain(3, coupling=(1.0, 1.2))

@@ -1,4 +1,4 @@
-"""Catalogues in Python: of a run that continues, as a Dataset, as a picture, and of runs that end early."""
+"""Catalogues in Python: of a continued run, as a Dataset, as a picture, and of runs that end early."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ MODEL = Model(Chain(20, coupling=9.0, pulling=1.0), law_of("carlson_langer", 3.0
 
 
 def test_a_run_continues_as_a_catalogue():
-    """From its end, with the events of one long run."""
+    """The catalogue continues from the end of the run, with the events of one long run."""
     rough = InitialState("rough", {"random": "uniform", "low": -1.0, "high": -0.9, "seed": 1}, 0.0)
     run = simulate(MODEL, initial=rough, start="tested", transient=100.0, window=200.0, batches=2, lyapunov_exponents=0)
     found = run.catalogue(500.0, transient=100.0)
@@ -51,7 +51,7 @@ def test_solvers_have_the_same_events():
 
 
 def test_a_run_that_ends_early_has_no_rates():
-    """Backward slip under the linearized law is fed without limit."""
+    """Backward slip under the linearized law grows without limit."""
     model = Model(Chain(3), law_of("linearized", 2.5), 0.1, "symmetric")
     found = record_events(model, model.begin(InitialState("own", (-1.0, -0.5, -0.8), (0.1, 0.0, 0.2))), 1000.0)
     assert found.status.name == "DIVERGED"
@@ -96,7 +96,7 @@ def test_recurrence_on_grids_and_networks(form, tmp_path):
     assert covered == {(time, block) for time, part in together for block in part.tolist()}
 
 
-def test_bars_over_the_joint_of_a_ring():
+def test_bars_across_the_seam_of_a_ring():
     model = Model(Chain(12, coupling=9, pulling=1, ends="ring"), law_of("carlson_langer", 3.0), v=0.01)
     found = record_events(model, at_rest(model), 600.0)
     over = found.first_block > found.last_block

@@ -23,7 +23,7 @@ MISSING = ("nonlinear", "plus", "0.0800")
 
 
 def make_study(folder):
-    """Make the points of a study but one, and its summaries of points."""
+    """Make all points of a study except one, and its summaries of points."""
     small = run_study(folder, {**CONFIG, "without": ["attractors"]}, ("points", "summary"))
     small.grid.path(*MISSING).unlink()
     study = small.study
@@ -37,9 +37,9 @@ def results(tmp_path_factory):
     return folder
 
 
-def test_nodes_are_the_files(results):
+def test_the_tree_has_the_files_as_nodes(results):
     files = [*results.rglob("*.nc")]
-    # What a job is writing, or has left half-written, is none.
+    # A file that a job is writing, or has left incomplete, is not a node.
     (results / "summary" / ".some.part-0123abcd.nc").touch()
     study = open_study(results)
     assert len(list(study["summary"])) == 7
@@ -65,7 +65,7 @@ def test_a_study_is_shown_on_one_screen(results):
     assert any(re.fullmatch("summary/lyapunov +Lyapunov exponents and kinds of motion", line) for line in lines)
 
 
-def test_files_are_opened_when_they_are_asked_for(results, tmp_path):
+def test_files_are_opened_on_request(results, tmp_path):
     """A damaged file does not matter to the others."""
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     (tmp_path / POINT).write_bytes(b"")
@@ -91,14 +91,14 @@ def test_groups_are_trees_of_their_files(results):
 @pytest.mark.parametrize(
     "path", ["summary/lyapunow", f"points/{MISSING[0]}/{MISSING[1]}/a{MISSING[2]}", "point", "summary/lyap"]
 )
-def test_what_is_not_there_is_named(results, path):
+def test_a_missing_file_is_named(results, path):
     study = open_study(results)
     assert path not in study
     with pytest.raises(KeyError, match=f"{path}: not among the results in {results}"):
         study[path]
 
 
-def test_parts_of_arrays_are_read_as_they_are_asked_for(results):
+def test_parts_of_arrays_are_read_on_request(results):
     path = results / "points" / "linearized" / "plus" / "a0.2200.nc"
     node = open_study(results)["points/linearized/plus/a0.2200"]
     with xarray.open_dataset(path) as point:
@@ -139,20 +139,20 @@ def test_numbers_over_the_grid(results):
     ],
 )
 def test_a_file_that_is_damaged_or_not_of_the_study_is_named(results, tmp_path, name, damage, reason):
-    """With the same line, and command that recreates the file, as `bk show`."""
+    """The message, with the command that recreates the file, is that of `bk show`."""
     shutil.copytree(results, tmp_path, dirs_exist_ok=True)
     damage(tmp_path / name)
-    said = []
+    messages = []
     study = open_study(tmp_path)
     for read in (lambda: study[name.removesuffix(".nc")], lambda: open_result(tmp_path / name)):
         with pytest.raises(ValueError, match=reason) as caught:
             read()
-        said.append(str(caught.value))
-    assert said[0] == said[1]
-    assert said[0].startswith(f"{tmp_path / name}: ")
+        messages.append(str(caught.value))
+    assert messages[0] == messages[1]
+    assert messages[0].startswith(f"{tmp_path / name}: ")
     root = tmp_path.parents[1]
     remedy = f"snakemake -c2 --configfile few.yaml -R {tmp_path.relative_to(root)}/{name}"
-    assert said[0].endswith(f"; remake it: cd {root} && {remedy}")
+    assert messages[0].endswith(f"; remake it: cd {root} && {remedy}")
 
 
 def test_a_folder_without_a_study_is_refused(tmp_path):
@@ -178,7 +178,7 @@ def test_a_study_that_snakemake_has_made(finished):
 
 @pytest.mark.slow
 def test_threads_may_open_files(results):
-    """In a process of its own, which HDF5 may crash."""
+    """This runs in a separate process, since HDF5 may crash it."""
     script = (
         "from concurrent.futures import ThreadPoolExecutor; from burridge_knopoff import open_study\n"
         f"study = open_study({str(results)!r})\n"

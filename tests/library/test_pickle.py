@@ -1,4 +1,4 @@
-"""What the library returns can be copied, and can leave its process, to the bit."""
+"""Results of the library can be copied and passed between processes without changing a bit."""
 
 import copy
 import pickle
@@ -72,7 +72,7 @@ def test_a_copy_has_the_same_bits(result, copied):
 
 
 @pytest.mark.parametrize("copied", COPIES.values(), ids=COPIES)
-def test_what_is_computed_once_cannot_be_written_to_in_a_copy_either(copied):
+def test_cached_arrays_of_a_copy_are_read_only_too(copied):
     chain = Chain(3)
     assert [each.driving.flags.writeable for each in (chain, copied(chain))] == [False, False]
 
@@ -88,7 +88,7 @@ CONTINUED = {
 
 @pytest.mark.parametrize("copied", COPIES.values(), ids=COPIES)
 @pytest.mark.parametrize(("model", "initial", "settings"), CONTINUED.values(), ids=CONTINUED)
-def test_a_run_goes_on_from_a_copied_state(model, initial, settings, copied):
+def test_a_run_continues_from_a_copied_state(model, initial, settings, copied):
     settings = {"window": 20.0, "events": "all", **settings}
     first = simulate(model, initial=initial, start="tested", transient=40.0, **settings)
     whole, other = (
@@ -100,7 +100,7 @@ def test_a_run_goes_on_from_a_copied_state(model, initial, settings, copied):
 
 @pytest.mark.parametrize("copied", COPIES.values(), ids=COPIES)
 @pytest.mark.parametrize("options", [{}, {"loading": "quasistatic"}, {"solver": "euler", "step": 0.01}], ids=str)
-def test_a_catalogue_goes_on_from_a_copied_state(options, copied):
+def test_a_catalogue_continues_from_a_copied_state(options, copied):
     """The first catalogue ends within an event, whose beginning the copy must contain."""
     first = record_events(TRAIN, TRAIN.begin(ROUGH, "tested"), 60.0, **options)
     end = first.final.time

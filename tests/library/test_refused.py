@@ -1,4 +1,4 @@
-"""What library calls refuse in a line, before the kernel sees it, and runs that end where their law does."""
+"""Calls that the library refuses in one line, and runs that leave the range of their law."""
 
 import numpy as np
 import pytest
@@ -96,12 +96,12 @@ def test_states_that_cannot_be_labelled(attractors, given, message):
         lambda: Chain(3, coupling=xr.DataArray([0.08])),
     ],
 )
-def test_calls_that_have_no_answer(call):
+def test_calls_without_an_answer_are_refused(call):
     with refused(match="expected|is not a valid"):
         call()
 
 
-def test_the_kernel_takes_no_arrays_that_do_not_fit():
+def test_the_kernel_refuses_arrays_of_wrong_shape():
     kernel: Ensemble = new_ensemble(MODEL)
     with pytest.raises(ValueError, match=r"got shapes \(4, 3\), \(1, 3\), \(4, 3\), expected \(n, 3\) for each"):
         kernel.run(POSITION, VELOCITY[:1], np.zeros((4, 3), np.intc), [1.0])
@@ -122,7 +122,7 @@ def test_a_law_as_in_a_config():
 
 
 @pytest.mark.parametrize("missing", ["formula", "text"])
-def test_a_law_of_ones_own_says_what_it_lacks(missing):
+def test_an_incomplete_custom_law_is_refused(missing):
     words = {"formula": "1 - a*u", "text": "Φ = 1 − aU′"}
     kind = type("Own", (Law,), {key: value for key, value in words.items() if key != missing})
     with pytest.raises(ValueError, match=f"{missing}: missing"):
@@ -132,8 +132,8 @@ def test_a_law_of_ones_own_says_what_it_lacks(missing):
         unused(0.1)
 
 
-def test_a_run_ends_where_its_law_does():
-    """A block that is let go far ahead of the others comes to the speed at which the root has no value."""
+def test_a_run_ends_at_the_limit_of_its_law():
+    """A block released far ahead of the others reaches the speed at which the root has no value."""
     model = Model(Chain(3), FormulaLaw(0.0, "sqrt(1 - 0.05*u)"))
     far = InitialState("far", (-100.0, -30.0, 20.0), (0.1, 0.1, 0.1))
     assert simulate(model, initial=far, transient=0, window=50).status == "diverged"
@@ -166,7 +166,7 @@ def test_names_of_folders_are_shown_in_a_line(tmp_path, content):
         open_study(folder)
 
 
-def test_attractors_need_a_state_to_begin_from():
+def test_a_search_without_initial_states_is_refused():
     for call in (
         lambda: find_attractors("linearized", 0.1, samples=0),
         lambda: find_attractors(MODEL, SearchSettings(samples=0)),

@@ -60,7 +60,7 @@ def test_a_bad_initial_state_is_refused_in_one_line(given, words):
         simulate("linearized", 0.08, given)
 
 
-def test_settings_are_those_of_both_ways():
+def test_settings_may_be_given_in_both_ways():
     settings = Settings(**SHORT, batches=3)
     ways = [
         simulate(MODEL, initial="plus", settings=settings),
@@ -77,13 +77,13 @@ def test_settings_are_those_of_both_ways():
     "options",
     [{"v": 0.2}, {"v": 0.1}, {"chain": Chain(3)}, {"contact": "one_sided"}, {"contact": "symmetric"}, {"a": 0.1}],
 )
-def test_what_a_model_has_is_refused_beside_it(options):
-    """It would have no effect, and what is given may be the default of a law."""
+def test_arguments_that_a_model_already_has_are_refused(options):
+    """They would have no effect, even if the given value is the default of a law."""
     with pytest.raises(ValueError, match="got some together with a model"):
         simulate(MODEL, initial="plus", **options)
 
 
-def test_other_things_in_the_place_of_settings_are_refused():
+def test_other_objects_in_place_of_settings_are_refused():
     with pytest.raises(ValueError, match="settings: got 'plus', expected"):
         simulate("linearized", 0.08, "minus", "plus")
 

@@ -13,7 +13,7 @@ SHORT = {"transient": 50.0, "window": 50.0, "batches": 2}
 A = [0.3, 0.05, 0.1]
 
 
-def test_the_numbers_are_those_of_single_runs():
+def test_a_sweep_has_the_numbers_of_single_runs():
     options = {"chain": Chain(3, coupling=1.2), "v": 0.12, **SHORT}
     runs = sweep("nonlinear", A, "plus", **options)
     assert runs["a"].values.tolist() == A
@@ -46,7 +46,7 @@ def test_a_model_and_the_number_of_cores():
 def test_a_grid_over_several_parameters_has_the_numbers_of_single_runs(law, axes):
     model = Model(Chain(3), law_of(law, 0.08))
     runs = sweep(model, initial="plus", **axes, **SHORT)
-    # a is first, since it is an argument of its own; the others are in the order given.
+    # a is first, since it is a separate argument; the others are in the given order.
     assert runs["mean_distance"].dims == tuple(sorted(axes, key=lambda name: name != "a"))
     for values in product(*axes.values()):
         point = dict(zip(axes, values, strict=True))
@@ -67,7 +67,7 @@ def test_the_number_of_one_block_is_a_dimension():
         sweep(model, **{"mass[4]": [1.0, 1.2]}, **SHORT)
 
 
-def test_parameters_that_are_one_number_are_no_dimensions():
+def test_parameters_with_one_value_are_not_dimensions():
     runs = sweep("carlson_langer", 0.3, v=[0.1, 0.2], sigma=0.05, coupling=1.1, **SHORT)
     assert runs["mean_distance"].dims == ("v",)
     assert (runs["a"].item(), runs.attrs["law_sigma"], runs.attrs["chain_coupling"]) == (0.3, 0.05, 1.1)
@@ -76,14 +76,14 @@ def test_parameters_that_are_one_number_are_no_dimensions():
 
 
 @pytest.mark.parametrize("number", [0.08, np.float64(0.08), np.array(0.08)])
-def test_one_point_is_the_numbers_of_one_run(number):
+def test_one_point_has_the_numbers_of_one_run(number):
     runs, run = sweep("linearized", number, "plus", **SHORT), simulate("linearized", 0.08, "plus", **SHORT)
     assert (runs["a"].item(), runs["mean_distance"].shape) == (0.08, ())
     assert runs["mean_distance"].item() == run.mean_distance
     assert np.array_equal(runs["lyapunov_exponent"], run.lyapunov_exponent)
 
 
-def test_a_run_that_does_not_complete_is_there():
+def test_a_run_that_does_not_complete_is_included():
     runs = sweep("linearized", [0.1, 1.9], contact="symmetric", transient=0.0, window=1e4)
     assert runs["status"].values.tolist() == [0, 3]
     assert np.isnan(runs["mean_distance"].values).tolist() == [False, True]

@@ -1,4 +1,4 @@
-"""Chains of any springs: the algebra against dense matrices, what is refused, and the sum of all symmetries."""
+"""Chains of any springs: their algebra, compared with dense matrices, their symmetries, and refused chains."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def test_the_algebra(chain):
 
 @given(st.integers(2, 40))
 def test_the_algebra_of_the_papers_chains(blocks):
-    """Exactly: K·1 = D, on which co-moving coordinates rest; K is positive definite with eigenvalues of at least 1."""
+    """K·1 = D exactly, as co-moving coordinates require; K is positive definite with eigenvalues of at least 1."""
     chain = Chain(blocks)
     assert (chain.stiffness @ np.ones(blocks) == chain.driving).all()
     assert np.linalg.eigvalsh(chain.stiffness).min() >= 1.0 - 1e-12
@@ -104,7 +104,7 @@ def test_refused(options, message):
         Chain(**options)
 
 
-def test_what_is_computed_once_is_not_written_to():
+def test_cached_arrays_are_read_only():
     chain = Chain(3, coupling=np.array(0.5), pulling=2.0)
     arrays = [chain.thresholds, chain.coupling_to_previous, chain.coupling_to_next, chain.driving, Chain(3).driving]
     for array in (*arrays, Model(chain, law_of("linearized", 0.1)).sliding_offset):
@@ -112,15 +112,15 @@ def test_what_is_computed_once_is_not_written_to():
             array[0] = 2.0
 
 
-def test_ends_are_told_by_their_name():
-    """A text that was read is another object than the one in a program."""
+def test_ends_are_compared_by_value():
+    """A text that was read is a different object from the one in a program."""
     assert Chain(3, coupling=(1.0, 2.0), ends="".join(["op", "en"])).stiffness[0, 2] == 0.0
 
 
 @pytest.mark.parametrize(
     "options", [{"coupling": [1.0, 2.0]}, {"pulling": [1.0, 2.0, 3.0]}, {"threshold": [1.0, 1.0, 2]}, {"ends": "ring"}]
 )
-def test_springs_that_differ_have_no_closed_form(options):
+def test_unequal_springs_have_no_closed_form(options):
     law = law_of("linearized", 0.1)
     assert Model(Chain(3, coupling=0.5, pulling=2.0, threshold=1.5), law).has_closed_form
     assert not Model(Chain(3, **options), law).has_closed_form

@@ -1,4 +1,4 @@
-"""Initial states: the paper's, by name or numbers, and what is refused."""
+"""Initial states: the paper's, by name or numbers, and refused ones."""
 
 import pytest
 

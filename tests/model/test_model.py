@@ -1,11 +1,11 @@
-"""What a model refuses."""
+"""Models that are refused."""
 
 import pytest
 
 from burridge_knopoff import Chain, FormulaLaw, Model, law_of
 
 
-def test_a_law_has_to_be_analytic_up_to_the_velocity_of_the_driver():
+def test_a_law_must_be_analytic_up_to_the_driver_velocity():
     law = FormulaLaw(0.1, "1/(1 + a*u) + 0.0001*log(1 - u/16)")
     assert Model(Chain(3), law, 1.5).v == 1.5
     with pytest.raises(
@@ -14,7 +14,7 @@ def test_a_law_has_to_be_analytic_up_to_the_velocity_of_the_driver():
         Model(Chain(3), law, 2.0)
 
 
-def test_a_model_is_of_a_chain_and_a_law():
+def test_a_model_requires_a_chain_and_a_law():
     for given, key in (((3, law_of("linearized", 0.1)), "chain"), ((Chain(3), "linearized"), "law")):
         with pytest.raises(ValueError, match=f"^{key}: got .*, expected a {key.capitalize()}$"):
             Model(*given)

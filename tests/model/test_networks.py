@@ -1,4 +1,4 @@
-"""Grids, networks from a file, masses and drawn numbers: against dense matrices, and what is refused."""
+"""Grids, networks from a file, masses and random numbers, compared with dense matrices, and refused ones."""
 
 from fractions import Fraction
 
@@ -32,19 +32,19 @@ def written(folder, edges, damped=False):
 
 @st.composite
 def networks(draw):
-    """Blocks and springs of a network, connected or not, and the springs to the driver that keep it in place."""
+    """Blocks and springs of a network, connected or not, and the springs to the driver that hold it."""
     blocks = draw(st.integers(2, 9))
     pairs = st.tuples(st.integers(1, blocks), st.integers(1, blocks)).filter(lambda pair: pair[0] != pair[1])
     edges = draw(st.dictionaries(pairs, strength, min_size=1, max_size=15))
     edges = {pair: value for pair, value in edges.items() if pair[::-1] not in edges or pair[0] < pair[1]}
     pulling = draw(st.lists(st.one_of(st.just(0.0), strength), min_size=blocks, max_size=blocks))
-    for part in connected(blocks, edges):
+    for part in connected_blocks(blocks, edges):
         if not any(pulling[block] for block in part):
             pulling[min(part)] = 1.0
     return blocks, edges, pulling
 
 
-def connected(blocks, edges):
+def connected_blocks(blocks, edges):
     """Return the sets of connected blocks (0 …)."""
     part = list(range(blocks))
     for _ in range(blocks):
@@ -146,7 +146,7 @@ def test_the_previous_block_comes_first_in_a_row_or_ring(chain, start, index, sp
     check_algebra(chain)
 
 
-def solved(matrix, load):
+def solve_exactly(matrix, load):
     """Return the solution in rational arithmetic, rounded."""
     rows = [[Fraction(value) for value in row] for row in np.column_stack([matrix, load]).tolist()]
     for i, row in enumerate(rows):
@@ -157,15 +157,15 @@ def solved(matrix, load):
 
 
 @given(st.integers(2, 4), st.integers(2, 3), strength, st.integers(0, 2**32 - 1))
-def test_a_network_slides_where_the_exact_solution_rounds_to(columns, rows, coupling, seed):
-    """Also if the driver is weakly coupled, so that a solution in double precision has few correct digits."""
+def test_the_sliding_position_of_a_network_is_the_rounded_exact_solution(columns, rows, coupling, seed):
+    """This includes a weakly coupled driver, for which a solution in double precision has few correct digits."""
     blocks = columns * rows
     drawn = {"random": "uniform", "low": 0.5, "high": 2.0, "seed": seed}
     chain = Chain(grid=(columns, rows), coupling=coupling, pulling=[1e-6, *(blocks - 1) * [0.0]], threshold=drawn)
-    assert (-chain.sliding_offset(1.0) == solved(chain.stiffness, chain.thresholds)).all()
+    assert (-chain.sliding_offset(1.0) == solve_exactly(chain.stiffness, chain.thresholds)).all()
 
 
-def test_long_rows_and_rings_slide_as_short_ones_do():
+def test_long_rows_and_rings_slide_like_short_ones():
     for chain in (Chain(40, 7.0, 0.3, UNIFORM), Chain(40, 7.0, 0.3, UNIFORM, "ring")):
         expected = -0.7 * nearest_solution(chain.sparse_stiffness, chain.thresholds)
         assert np.allclose(chain.sliding_offset(0.7), expected, rtol=1e-13, atol=0)
@@ -176,12 +176,12 @@ def test_long_rows_and_rings_slide_as_short_ones_do():
         assert np.abs(chain.force(offset) - 0.7).max() < 1e-12
 
 
-def test_a_grid_is_as_symmetric_as_it_is():
+def test_a_symmetric_grid_has_symmetric_sliding_positions():
     offset = Chain(grid=(60, 60), coupling=30.0).sliding_offset(1.0).reshape(60, 60)
     assert all((offset == other).all() for other in (offset.T, offset[::-1], offset[:, ::-1]))
 
 
-def test_masses_break_the_mirror():
+def test_unequal_masses_break_the_mirror_symmetry():
     assert Chain(3, mass=2.0).is_mirror_symmetric
     assert not Chain(3, mass=(1.0, 1.0, 2.0)).is_mirror_symmetric
     assert not Model(Chain(3, mass=2.0), law_of("linearized", 0.1)).has_closed_form
@@ -189,7 +189,7 @@ def test_masses_break_the_mirror():
     assert Chain(3, mass=(1.0, 1.0, 1.0)).is_equivalent_to(Chain(3))
 
 
-def test_drawn_numbers_are_those_of_their_seed():
+def test_random_numbers_depend_on_their_seed():
     chain, longer = Chain(50, threshold=UNIFORM, mass=UNIFORM), Chain(80, threshold=UNIFORM)
     assert (chain.thresholds == Chain(50, threshold=chain.threshold).thresholds).all()
     assert (chain.thresholds == longer.thresholds[:50]).all()
@@ -234,7 +234,7 @@ def test_initial_states_of_any_number_of_blocks():
         ("1 2 1\n3 1 1\n2 1 1\n", "got 2 1 1, a pair of blocks that is listed twice"),
     ],
 )
-def test_files_that_are_no_list_of_springs(tmp_path, lines, message):
+def test_files_that_are_not_a_list_of_springs_are_refused(tmp_path, lines, message):
     path = tmp_path / "springs.txt"
     path.write_text(lines)
     with refused(f"chain.springs: {path}: ", message):
@@ -269,7 +269,7 @@ def test_refused_networks(tmp_path):
             Chain(**{"grid": (2, 2), **options})
 
 
-def test_a_changed_file_is_another_chain(tmp_path):
+def test_a_changed_file_gives_another_chain(tmp_path):
     path = written(tmp_path, {(1, 2): 1.0})
     chain = Chain(springs=path)
     assert Chain(springs=chain.springs) == chain

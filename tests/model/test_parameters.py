@@ -1,4 +1,4 @@
-"""The parameters of a model by name: each changes the number in the equations of motion that bears its name."""
+"""The parameters of a model by name: each changes the number of that name in the equations of motion."""
 
 import numpy as np
 import pytest
@@ -16,7 +16,7 @@ def test_the_names_are_those_of_the_law_the_driver_and_the_chain():
     assert [parameter_value(MODEL, name) for name in names] == [0.3, 0.05, 0.2, 0.2, 1.0, 0.0, 1.5, 1.0, 1.0, 0.0]
 
 
-def test_a_model_at_other_parameters_is_one_made_of_them():
+def test_a_model_with_changed_parameters_equals_one_built_from_them():
     numbers = {"a": 0.4, "sigma": 0.1, "eta": 0.3, "v": 0.1, "coupling": 2, "pulling": 0.5, "threshold": 1.5, "mass": 3}
     made = Model(
         Chain(3, coupling=2.0, pulling=0.5, threshold=1.5, mass=3.0),
@@ -27,7 +27,7 @@ def test_a_model_at_other_parameters_is_one_made_of_them():
     assert all(parameter_value(made, name) == value for name, value in numbers.items())
     assert set_parameters(MODEL, {}) == MODEL
     assert MODEL.at(0.4) == MODEL.at(a=0.4) == Model(MODEL.chain, MODEL.law.at(0.4), 0.2)
-    # What is computed of the chain once is kept.
+    # Cached properties of the chain are kept.
     assert MODEL.at(v=0.3).chain is MODEL.chain
 
 
@@ -42,7 +42,7 @@ DRAWN = Model(Chain(3, threshold="random=uniform,low=0.9,high=1.1,seed=1"), MODE
         (MODEL, {"pulling[1]": 0, "pulling[3]": 2}, Chain(3, pulling=(0.0, 1.5, 2.0))),
         (MODEL, {"coupling[1]": 0.5}, Chain(3, pulling=1.5, coupling=(0.5, 1.0))),
         (MODEL, {"threshold[2]": 1.1}, Chain(3, pulling=1.5, threshold=(1.0, 1.1, 1.0))),
-        # One number for all comes first, in whatever order they are given.
+        # A number for all blocks is applied first, whatever the order of the parameters.
         (MODEL, {"mass[2]": 3.0, "mass": 2.0}, Chain(3, pulling=1.5, mass=(2.0, 3.0, 2.0))),
         (Model(Chain(3), MODEL.law), {"pulling[3]": 0.7}, Chain(3, pulling=(1.0, 2.0, 0.7))),
         (Model(Chain(2, mass=(1.0, 2.0)), MODEL.law), {"mass[1]": 3.0}, Chain(2, mass=(3.0, 2.0))),
@@ -56,7 +56,7 @@ DRAWN = Model(Chain(3, threshold="random=uniform,low=0.9,high=1.1,seed=1"), MODE
         ),
     ],
 )
-def test_the_number_of_one_block_or_spring(model, parameters, chain):
+def test_the_parameter_of_one_block_or_spring(model, parameters, chain):
     made = set_parameters(model, parameters)
     assert made == Model(chain, model.law, model.v)
     for name, value in parameters.items():
@@ -70,13 +70,13 @@ def test_the_last_spring_of_a_ring_joins_the_last_block_to_the_first():
     assert stiffness[0, 1] == stiffness[2, 3] == -1.0
 
 
-def test_the_drawn_numbers_of_the_other_blocks_stay():
+def test_the_random_numbers_of_the_other_blocks_are_kept():
     one = DRAWN.at(**{"threshold[2]": 1.5}).chain
     assert one.thresholds.tolist() == [DRAWN.chain.thresholds[0], 1.5, DRAWN.chain.thresholds[2]]
     assert DRAWN.at(**{"threshold[2]": parameter_value(DRAWN, "threshold[2]")}).chain.is_equivalent_to(DRAWN.chain)
 
 
-def test_other_contact_and_the_shape_of_the_chain_stay():
+def test_the_contact_and_the_shape_of_the_chain_are_kept():
     model = Model(Chain(4, ends="ring"), law_of("nonlinear", 0.1), contact="symmetric").at(pulling=0.25)
     assert (model.contact, model.chain.ends, model.blocks) == ("symmetric", "ring", 4)
     assert np.diag(model.chain.stiffness).tolist() == [2.25] * 4
@@ -114,11 +114,11 @@ def test_other_contact_and_the_shape_of_the_chain_stay():
         ),
     ],
 )
-def test_what_is_no_number_of_the_model_is_refused(model, parameters, words):
+def test_unknown_parameters_are_refused(model, parameters, words):
     with refused(words, match="expected"):
         set_parameters(model, parameters)
 
 
-def test_a_word_is_no_value():
+def test_a_parameter_given_as_a_word_is_refused():
     with refused("pulling: 'neighbours'", match="expected one number"):
         parameter_value(Model(Chain(3), MODEL.law), "pulling")

@@ -1,4 +1,4 @@
-"""Mirror synchrony of chains: closed form and 40 digits for two blocks, symmetries, whole runs."""
+"""Mirror synchrony of chains: closed form and 40-digit arithmetic for two blocks, symmetries, whole runs."""
 
 import math
 from dataclasses import astuple, fields, replace
@@ -42,7 +42,7 @@ def fate(chain, state, watch):
 
 
 def two_block_exponent(law, a):
-    """Return the transverse exponent of two synchronous blocks: in 40 digits, from a difference while both stick."""
+    """Return the transverse exponent of two synchronous blocks, to 40 digits, from a difference while both stick."""
     options = {"velocity": [0.0, 0.0], "v": V, "start": "tested"}
     events = reference_events(law, a, [-0.99, -0.99], end=12.0, **options)
     start, stop, again = [time for time, block, _ in events if block == 1][:3]
@@ -61,7 +61,7 @@ def two_block_exponent(law, a):
     ("law", "a"), [*(("linearized", a) for a in (0.01, 0.03, 0.1, 0.3)), *(("nonlinear", a) for a in (0.02, 0.1))]
 )
 def test_transverse_exponent_of_two_blocks(law, a):
-    """The error is that of the phases at which the window begins and ends."""
+    """The error arises from the phases at which the window begins and ends."""
     chain = model(2, a, law)
     state = chain.begin(InitialState("state", (-1.0, -0.9), (0.1, 0.1)))
     exponent, error = transverse_exponent(chain, state, 2000.0, 10_000.0)
@@ -86,7 +86,7 @@ def test_two_blocks_synchronize_below_the_critical_a_only():
 def test_transverse_exponent_against_two_trajectories(blocks, law):
     """A second trajectory is kept at 1e-7 from the symmetric one: their distance grows at the same rate.
 
-    Antisymmetric parts only, so that errors of second order, which are symmetric, do not count.
+    Only antisymmetric parts are compared, since errors of second order are symmetric.
     """
     chain = model(blocks, 0.2, law)
     runner = Runner(chain)
@@ -149,8 +149,8 @@ def test_a_run_cut_off_while_it_synchronizes_is_undetermined():
         assert fate(model(2, 0.04), state, Watch(time_limit=limit)).outcome == outcome
 
 
-def test_an_exactly_symmetric_start_is_no_proof_of_synchrony():
-    """The distance is 0 from the first instant, but the motion repels: no verdict."""
+def test_an_exactly_symmetric_start_does_not_show_synchrony():
+    """The distance is 0 from the beginning, but the motion is unstable, so the outcome is undetermined."""
     state = InitialState("state", (-1.0, -1.0), (0.1, 0.1))
     result = fate(model(2, 0.1), state, Watch(time_limit=2000.0))
     assert result.distance == 0.0
@@ -159,7 +159,7 @@ def test_an_exactly_symmetric_start_is_no_proof_of_synchrony():
 
 
 class Scripted:
-    """A runner whose four blocks are the given distances apart, (outer pair, inner pair), at each look."""
+    """A runner whose four blocks are at the given distances, (outer pair, inner pair), at each check."""
 
     model = model(4, 0.1)
 
@@ -187,11 +187,11 @@ FAR, NEAR_SYMMETRY = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
     ("distances", "exponent", "expected"),
     [
         (FAR, None, Fate(APART, distance=0.5, mean_distance=0.5)),
-        # The last quarter of ten looks is the last two, before it the two before these.
+        # The last quarter of ten checks is the last two, the quarter before them the previous two.
         ([*FAR[:8], (0.4, 0.0), (0.2, 0.1)], None, Fate(APART, distance=0.4, mean_distance=0.3)),
         ([*FAR[:8], (0.3, 0.0), (0.2, 9e-7)], None, Fate(APART, distance=0.3, mean_distance=0.25, pairs=1)),
         ([*FAR[:8], (0.26, 0.3), (0.2, 0.1)], None, Fate(APART, distance=0.3, mean_distance=0.25)),
-        # Still falling: the largest is below half of that of the quarter before.
+        # The distance still falls: its largest value is below half of that of the quarter before.
         ([*FAR[:8], (0.2, 0.24), (0.2, 0.1)], None, Fate(Outcome.UNDETERMINED, distance=0.24, mean_distance=0.22)),
         ([*FAR[:6], (0.3, 0), (0.3, 0), *[(0.2, 0.2)] * 2], None, Fate(APART, distance=0.2, mean_distance=0.2)),
         # Near symmetric motion the outcome is undetermined unless the exponent exceeds three errors.
@@ -199,26 +199,26 @@ FAR, NEAR_SYMMETRY = [(0.5, 0.3)] * 10, [(0.008, 0.006)] * 10
         (NEAR_SYMMETRY, (0.29, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0, 0.29)),
         (NEAR_SYMMETRY, (math.nan, 0.1), Fate(Outcome.UNDETERMINED, math.nan, 0.008, 0.008, 0)),
         ([(0.0, 0.011)] * 10, None, Fate(APART, distance=0.011, mean_distance=0.011, pairs=1)),
-        # Synchronized, if the exponent says so.
+        # Synchronized if the exponent is negative.
         ([*FAR[:2], (1e-12, 1e-13)], (-0.01, 1.0), Fate(Outcome.SYNCHRONIZED, 60.0, 1e-12, 1e-12, 2, -0.01)),
         ([*FAR[:2], (1e-12, 1e-13)], (0.0, 1.0), Fate(Outcome.UNDETERMINED, 60.0, 1e-12, 1e-12, 2, 0.0)),
         (FAR[:9], None, Fate(Outcome.UNDETERMINED)),
     ],
 )
-def test_the_fate_that_distances_tell(tell, distances, exponent, expected):
-    asked = tell(chains, "transverse_exponent", [exponent])
+def test_distances_and_the_exponent_decide_the_fate(script_answers, distances, exponent, expected):
+    asked = script_answers(chains, "transverse_exponent", [exponent])
     found = watch_state(Scripted(distances), ChainState(np.zeros(4), np.zeros(4), np.zeros(4, bool)), Watch(200.0))
     assert astuple(found) == pytest.approx(astuple(expected), nan_ok=True)
-    assert [told[2:] for told in asked] == ([(200.0, 50.0)] if exponent else [])
+    assert [call[2:] for call in asked] == ([(200.0, 50.0)] if exponent else [])
 
 
 @pytest.mark.parametrize(("v", "pair", "near"), [(0.05, 0.5e-6, 0.005), (0.2, 1e-6, 0.02)])
-def test_distances_are_judged_by_the_speed(tell, v, pair, near):
-    """Those of pairs below the speed of the paper alone, those from symmetric motion at any."""
+def test_distances_scale_with_the_driver_velocity(script_answers, v, pair, near):
+    """Distances of pairs scale only below the paper's velocity, those from symmetric motion at any velocity."""
     runner = Scripted([])
     runner.model = Model(Chain(4), law_of("linearized", 0.1), v)
     for share, inside in ((0.99, True), (1.01, False)):
-        asked = tell(chains, "transverse_exponent", [(1.0, 0.1)] * 2)
+        asked = script_answers(chains, "transverse_exponent", [(1.0, 0.1)] * 2)
         runner.distances = [(0.5, share * pair)] * 10
         assert watch_state(runner, None, Watch(200.0)).pairs == inside
         assert not asked
@@ -228,11 +228,11 @@ def test_distances_are_judged_by_the_speed(tell, v, pair, near):
 
 
 @pytest.mark.parametrize("start", ["moving", "tested"])
-def test_a_watched_chain_begins_as_it_is_told_to(tell, start):
-    """Tested, blocks with a spring force −(K U) of at most the threshold stick."""
-    watched = tell(chains, "watch_state", [Fate(APART)] * SAMPLE.samples)
-    perturbed = tell(chains, "transverse_exponent", [(0.0, 0.0)] * SAMPLE.symmetric_samples)
-    runs = tell(chains, "run", [SimpleNamespace(lyapunov_exponent=[0.1], lyapunov_error=[0.2])])
+def test_a_watched_chain_obeys_the_start_convention(script_answers, start):
+    """With a tested start, blocks with a spring force −(K U) of at most the threshold stick."""
+    watched = script_answers(chains, "watch_state", [Fate(APART)] * SAMPLE.samples)
+    perturbed = script_answers(chains, "transverse_exponent", [(0.0, 0.0)] * SAMPLE.symmetric_samples)
+    runs = script_answers(chains, "run", [SimpleNamespace(lyapunov_exponent=[0.1], lyapunov_error=[0.2])])
     chains.watch_chain([model(3, 0.0)], [0.05], replace(SAMPLE, start=start))
     position = np.array([state.position for state in SAMPLE.initial_states(3, 0.05)])
     stuck = position @ np.array([[-2.0, 1.0, 0.0], [1.0, -4.0, 1.0], [0.0, 1.0, -2.0]]) <= 1.0
@@ -243,8 +243,8 @@ def test_a_watched_chain_begins_as_it_is_told_to(tell, start):
     assert [(settings.start, section_only) for _, _, settings, section_only in runs] == [(start, True)]
 
 
-def test_a_window_of_several_parts_is_their_mean():
-    """Whole windows of any length, each begun where the one before ends."""
+def test_a_window_of_several_parts_gives_their_mean():
+    """The parts are whole windows of any length, each beginning where the previous one ends."""
     chain = model(5, 0.2)
     state = chain.begin(SAMPLE.initial_states(5)[0])
     whole, _ = transverse_exponent(chain, state, 100.0, 173.0)
@@ -279,7 +279,7 @@ def test_deviations_from_the_multiplier_are_within_the_error(law, window):
 
 
 def test_in_chaos_the_error_is_the_scatter_of_whole_windows():
-    """Windows one after another scatter by what each of them says of itself."""
+    """Consecutive windows scatter by the error of each."""
     chain = model(6, 0.25)
     state = chain.begin(SAMPLE.initial_states(6)[0])
     found = np.array([transverse_exponent(chain, state, 200.0 + 500.0 * k, 500.0) for k in range(40)])
@@ -296,7 +296,7 @@ def test_a_state_is_watched_up_to_the_time_limit_at_most(monkeypatch):
     assert asked == [20.0 * check for check in range(1, 11)]
 
 
-def test_a_watched_chain_is_its_states_one_by_one():
+def test_a_watched_chain_equals_its_states_one_by_one():
     watch = Watch(time_limit=600.0)
     results = chains.watch_chain([model(3, 0.0), model(3, 0.0, "nonlinear")], [0.05, 0.2], SAMPLE, watch)
     for (i, law), (j, a) in product(enumerate(("linearized", "nonlinear")), enumerate((0.05, 0.2))):
@@ -306,8 +306,8 @@ def test_a_watched_chain_is_its_states_one_by_one():
             np.testing.assert_array_equal(results[name][i, j], values, name)
         starts = [chain.begin(state) for state in SAMPLE.initial_states(3, a)[:2]]
         exponents = [transverse_exponent(chain, start, 150.0, 150.0) for start in starts]
-        told = np.stack([results[f"symmetric_{name}"][i, j] for name in ("exponent", "error")], axis=1)
-        assert told.tolist() == [list(item) for item in exponents]
+        symmetric = np.stack([results[f"symmetric_{name}"][i, j] for name in ("exponent", "error")], axis=1)
+        assert symmetric.tolist() == [list(item) for item in exponents]
         run = simulate(
             law, a, SAMPLE.initial_states(3, a)[0], transient=300.0, window=300.0, batches=5, lyapunov_exponents=1
         )
@@ -317,7 +317,7 @@ def test_a_watched_chain_is_its_states_one_by_one():
     assert (results["symmetric_exponent"][0, 1] > 0.0).all()
 
 
-def test_each_a_has_states_of_its_own():
+def test_each_a_has_its_own_states():
     """A larger sample begins with the smaller one, other numbers of blocks and other seeds have others."""
     samples = [
         SAMPLE.initial_states(3, 0.05),
@@ -343,8 +343,8 @@ def test_a_chain_without_mirror_blocks_is_refused():
             call()
 
 
-def test_a_ring_synchronizes_by_its_transverse_exponent():
-    """Four blocks in a ring with a formula for friction: what synchronizes does as a symmetric motion attracts."""
+def test_a_ring_synchronizes_if_its_transverse_exponent_is_negative():
+    """Four blocks in a ring, with a formula for friction, synchronize where the symmetric motion attracts."""
     ring = Model(Chain(4, ends="ring"), FormulaLaw(0.02, "1/(1 + a*u)**2"))
     start = symmetrized(ring.begin(InitialState("state", (-1.0, -0.9, -0.9, -1.0), (0.1, 0.1, 0.1, 0.1))))
     exponent, error = transverse_exponent(ring, start, 500.0, 1000.0)
@@ -355,7 +355,7 @@ def test_a_ring_synchronizes_by_its_transverse_exponent():
 
 
 def test_a_perturbation_is_renewed_after_ten_time_units_at_most(monkeypatch):
-    """And so that all batches have as many pieces of one length: 173 time units have five times four."""
+    """All batches then have the same number of pieces of one length: 173 time units have five times four."""
     times, after = [], Runner.state_after
     monkeypatch.setattr(Runner, "state_after", lambda runner, at, time: times.append(time) or after(runner, at, time))
     chain = model(4, 0.05)

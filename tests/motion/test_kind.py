@@ -21,7 +21,7 @@ def test_period_of_a_repeating_sequence(period):
     assert repetition_length(section, 1e-6, 60) == period
     assert repetition_length(section + 1e-9 * random.normal(size=len(section)), 1e-6, 60) == period
     assert repetition_length(section + 1e-3 * random.normal(size=len(section)), 1e-6, 60) == 0
-    # As long as it may be, and seen just often enough.
+    # The longest allowed period, observed just often enough.
     assert repetition_length(section[: 3 * period], 1e-6, period) == period
 
 
@@ -48,7 +48,7 @@ def run_of(velocity, states, first_event=0.0, falling=False):
     }
 
 
-def test_a_state_that_comes_back_as_its_mirror_image_has_not_come_back():
+def test_returning_as_the_mirror_image_is_not_a_return():
     """W' repeats after three points, the state of all blocks after six: three points lead to the mirror image."""
     velocity = np.tile([1.0, 2.0, 3.0], 60)
     turn = np.array([[0.1, 0.0, 0.4], [0.2, 0.0, 0.5], [0.3, 0.0, 0.6]])
@@ -59,9 +59,9 @@ def test_a_state_that_comes_back_as_its_mirror_image_has_not_come_back():
     run = run_of(velocity, np.tile(turn, (60, 1)))
     for name in ("event_position", "event_velocity"):
         assert section_period({**run, name: states}, MOTION) == 6
-    # Downward crossings are no section points.
+    # Downward crossings are not section points.
     assert section_period(run_of(velocity, states, falling=True), MOTION) == 0
-    # States that drift although W' repeats; states known from late on only; none at all.
+    # States that drift although W' repeats, states that are stored only from late on, and no states at all.
     drifting = states + 1e-4 * np.arange(180.0)[:, None]
     assert section_period(run_of(velocity, drifting), MOTION) == 0
     assert section_period(run_of(velocity, states, first_event=150.0), MOTION) == 6
@@ -77,7 +77,7 @@ def test_a_slow_approach_does_not_hide_a_period():
     assert section_period(run_of(1.0 + 0.5 ** np.arange(1000), np.ones((1000, 3))), MOTION) == 1
 
 
-def test_the_words_of_a_kind():
+def test_kinds_in_words():
     assert MotionKind.TRANSIENT_CHAOS.words == "transient chaos"
 
 
@@ -97,7 +97,7 @@ def test_the_words_of_a_kind():
         (0.1, 0, (2.3e-2, -3e-3), 1e-2, MotionKind.UNDETERMINED),
         (0.1, 0, (0.02, 0.0), 1e-3, MotionKind.CHAOTIC),
         (1e-9, 0, (0.02, 0.0), 1e-3, MotionKind.SYNCHRONIZED_CHAOS),
-        # Motion that repeats is periodic, also on an orbit that repels all others.
+        # Motion that repeats is periodic, also on an unstable orbit.
         (1e-9, 1, (0.02, 0.0), 1e-3, MotionKind.SYNCHRONIZED),
         (0.1, 2, (0.02, 0.0), 1e-3, MotionKind.PERIODIC),
         # Uniform sliding: its section points are rounding.
@@ -106,10 +106,10 @@ def test_the_words_of_a_kind():
         # Above the threshold but not above its error, or the other way round: no chaos.
         (0.1, 0, (2e-3, -0.01), 1e-3, MotionKind.QUASIPERIODIC),
         (0.1, 0, (9e-4, -0.01), 1e-5, MotionKind.UNDETERMINED),
-        # Weak chaos or a torus: the error leaves both.
+        # Weak chaos or a torus: the error allows both.
         (0.1, 0, (2e-3, 0.0), 1e-3, MotionKind.UNDETERMINED),
         (0.1, 0, (9e-4, 0.0), 1e-3, MotionKind.QUASIPERIODIC),
-        # End blocks that move as one are on a torus only if the second exponent is as good as 0.
+        # End blocks that move as one are on a torus only if the second exponent is 0 within its error.
         (1e-9, 0, (0.0, -9e-4), 1e-3, MotionKind.QUASIPERIODIC),
         (1e-9, 0, (0.0, -1.1e-3), 1e-3, MotionKind.UNDETERMINED),
         (0.1, 0, (0.0, -1.1e-3), 1e-3, MotionKind.QUASIPERIODIC),
@@ -120,7 +120,7 @@ def test_the_words_of_a_kind():
         (0.1, 0, (np.nan, np.nan), np.nan, MotionKind.UNDETERMINED),
         (1e-9, 1, (np.nan, np.nan), np.nan, MotionKind.SYNCHRONIZED),
         (0.1, 0, (0.0,), 1e-5, MotionKind.UNDETERMINED),
-        # An error that is not known decides nothing, neither chaos nor rest.
+        # With an unknown error neither chaos nor its absence is shown.
         (0.1, 0, (0.0079, -0.0009), np.nan, MotionKind.UNDETERMINED),
         (0.1, 0, (-0.0079, -0.009), np.nan, MotionKind.UNDETERMINED),
         (0.1, 3, (-0.0079, -0.009), np.nan, MotionKind.PERIODIC),
@@ -128,7 +128,7 @@ def test_the_words_of_a_kind():
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-5, 1e-2), MotionKind.QUASIPERIODIC),
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-5, 1e-2, 1e-5), MotionKind.UNDETERMINED),
         (0.1, 0, (1e-4, -0.05, -0.1), (1e-2, 1e-5, 1e-5), MotionKind.UNDETERMINED),
-        # Each is judged by its own one.
+        # Each exponent is judged by its own error.
         (1e-9, 0, (0.0, -9e-4), (1e-4, 1e-3), MotionKind.QUASIPERIODIC),
         (1e-9, 0, (0.0, -9e-4), (1e-3, 5e-4), MotionKind.UNDETERMINED),
         (0.1, 0, (2e-3, 0.0), (1e-4, 1e-3), MotionKind.CHAOTIC),
@@ -136,11 +136,11 @@ def test_the_words_of_a_kind():
     ],
 )
 def test_kinds(mean_distance, period, exponents, error, kind):
-    """By one error of all exponents, or one each; a period is one of section points."""
-    assert told(mean_distance, period, exponents, error).kind == kind
+    """The error is common to all exponents or one for each; periods are counted in section points."""
+    assert motion_with(mean_distance, period, exponents, error).kind == kind
 
 
-def told(mean_distance, period, exponents, error, settings=MOTION, points=2000):
+def motion_with(mean_distance, period, exponents, error, settings=MOTION, points=2000):
     """Return the motion of a run with section points at τ = 0, 1, … and without events."""
     random = np.random.default_rng(3).random(period or points)
     run = run_of(np.resize(random, points), np.zeros((points, 3)), first_event=np.inf)
@@ -154,14 +154,14 @@ REGULAR = (0.1, (0.0, -1e-5), 1e-5)
 
 @pytest.mark.parametrize(("period", "kind"), [(5, "PERIODIC"), (6, "QUASIPERIODIC"), (0, "QUASIPERIODIC")])
 @pytest.mark.parametrize("points", [40, 400, 4000])
-def test_the_longest_period_decides_and_no_window(period, kind, points):
+def test_the_longest_period_decides_whatever_the_window(period, kind, points):
     mean, *exponents = REGULAR
-    found = told(mean, period, *exponents, replace(MOTION, longest_period=5.0), points)
+    found = motion_with(mean, period, *exponents, replace(MOTION, longest_period=5.0), points)
     assert found.kind.name == kind
     assert found.section_period == (5 if kind == "PERIODIC" else 0)
 
 
-def test_a_longer_period_is_known_from_the_stops():
+def test_stops_show_a_longer_period():
     """The motion is locked: it has not left its periodic orbit, but no period is observed within a run."""
     states = np.tile(np.random.default_rng(5).random((50, 3)), (12, 1))
     run = run_of(states[:, 0], states) | {"lyapunov_exponent": np.zeros(2), "lyapunov_error": np.full(2, 1e-5)}
@@ -169,13 +169,13 @@ def test_a_longer_period_is_known_from_the_stops():
     assert found == Motion(MotionKind.QUASIPERIODIC, 0, 50.0)
     assert not found.can_be_periodic
     assert motion_of_completed_run(run, 0.1, MOTION) == Motion(MotionKind.PERIODIC, 50, 50.0)
-    # The states of the last events alone do not show it for long enough.
+    # The states of the last events cover too short a time to show it.
     late = run_of(states[:, 0], states, first_event=400.0)
     assert np.isnan(period_of(late, replace(MOTION, longest_period=40.0))[1])
 
 
-def test_an_approach_that_turns_round_the_limit_has_no_period():
-    """A multiplier next to a root of 1 brings it back to where it was, but nearer: that is no period."""
+def test_an_approach_that_circles_its_limit_has_no_period():
+    """A multiplier close to a root of 1 brings it back to where it was, but closer: this is not a period."""
     k = np.arange(600.0)
     approach = 1.0 + 1e-6 * np.exp(-1e-3 * k) * np.cos(2.0 * np.pi * k / 88.0)
     assert repetition_length(approach, 1e-6, 200) == 0
@@ -203,9 +203,9 @@ def test_a_motion_in_words(motion, words):
 
 
 @pytest.mark.parametrize(("points", "kind"), [(2, MotionKind.PERIODIC), (3, MotionKind.PERIODIC)])
-def test_stops_tell_a_period_that_section_points_do_not(points, kind):
+def test_stops_show_a_period_that_section_points_do_not(points, kind):
     run = run_of(np.arange(points), np.ones((points, 3)))
-    told = {
+    averages = {
         "status": "completed",
         "mean_distance": 0.1,
         "lyapunov_exponent": np.zeros(0),
@@ -214,7 +214,7 @@ def test_stops_tell_a_period_that_section_points_do_not(points, kind):
     states = np.tile([[0.1, 0.2, 0.3], [0.4, 0.5, 0.6]], (20, 1))
     stops = {"event_position": states, "event_velocity": states, "event_time": np.arange(40.0)}
     stops |= {"event_block": np.tile([2, 3], 20), "event_kind": np.zeros(40, dtype=int)}
-    assert motion_of_run({**run, **told, **stops}, True, MOTION).kind == kind
+    assert motion_of_run({**run, **averages, **stops}, True, MOTION).kind == kind
 
 
 @pytest.mark.parametrize("name", ["period_tolerance", "zero_exponent", "chaotic_exponent"])
@@ -240,8 +240,8 @@ def test_motion_under_a_slow_driver_is_smaller_and_slower(name):
         (3, (np.nan,), np.nan, False),
     ],
 )
-def test_an_orbit_that_repels(period, exponents, error, unstable):
-    assert told(0.1, period, exponents, error).unstable is unstable
+def test_a_run_may_stay_on_an_unstable_orbit(period, exponents, error, unstable):
+    assert motion_with(0.1, period, exponents, error).unstable is unstable
 
 
 @pytest.mark.parametrize(
@@ -255,8 +255,8 @@ def test_an_orbit_that_repels(period, exponents, error, unstable):
         (1.001, MotionKind.PERIODIC),
     ],
 )
-def test_what_leaves_an_orbit_is_not_periodic(growth, kind):
-    """However close it passes, the fate of a run whose cycles diverge is undetermined."""
+def test_motion_that_leaves_an_orbit_is_not_periodic(growth, kind):
+    """The fate of a run whose cycles diverge is undetermined, however close it passes."""
     size = 1e-12 if growth == 1.001 else 1e-7
     away = size * float(growth) ** (np.arange(700.0) - (700.0 if abs(growth) > 1.0 else 0.0))
     run = run_of(0.2 + np.repeat(away, 3) + np.tile([0.0, 0.3, 0.1], 700), np.zeros((2100, 3)), first_event=np.inf)
@@ -268,7 +268,7 @@ def test_what_leaves_an_orbit_is_not_periodic(growth, kind):
 
 
 @pytest.mark.parametrize("away", [1e-11, 1e-10])
-def test_weak_chaos_next_to_an_orbit_that_repels_is_not_periodic(away):
+def test_weak_chaos_next_to_an_unstable_orbit_is_not_periodic(away):
     """The run repeats to 1e-6 throughout; its largest exponent, 7e-4, is within its error."""
     orbit = weakly_repelling()
     start = orbit.reference
@@ -277,8 +277,8 @@ def test_weak_chaos_next_to_an_orbit_that_repels_is_not_periodic(away):
     assert motion_of_run(vars(run), True, MOTION).kind == MotionKind.UNDETERMINED
 
 
-def test_uniform_sliding_that_attracts_is_no_periodic_motion():
-    """Friction grows with speed there; what crosses W = 0 is rounding."""
+def test_stable_uniform_sliding_is_not_periodic_motion():
+    """Friction increases with speed there; the crossings of W = 0 are rounding errors."""
     model = Model(Chain(3), law_of("stribeck", 0.3), 0.5)
     run = simulate(model, initial="plus", transient=2000.0, window=2000.0)
     assert run.lyapunov_exponent[0] < -0.01
@@ -286,8 +286,8 @@ def test_uniform_sliding_that_attracts_is_no_periodic_motion():
     assert (found.kind, found.section_period) == (MotionKind.UNDETERMINED, 0)
 
 
-def test_what_repeats_without_a_section_point_is_periodic():
-    """Two blocks: W stays above 0, and the orbit is one of a family, so that the second exponent is 0."""
+def test_motion_that_repeats_without_section_points_is_periodic():
+    """Of two blocks W stays above 0, and the orbit belongs to a family, so that the second exponent is 0."""
     start = {"position": [0.5, -1.0], "velocity": [0.05, 0.05]}
     run = simulate(Model(Chain(2), law_of("nonlinear", 3.0), 0.05), initial=start, transient=2000.0, window=2000.0)
     assert not len(run.crossing_time)

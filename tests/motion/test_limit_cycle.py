@@ -17,13 +17,13 @@ from burridge_knopoff.running.runner import Runner
 @pytest.mark.parametrize(
     ("initial", "a", "symmetry"), [("minus", 0.08, Symmetry.SYNCHRONIZED), ("plus", 0.08, Symmetry.SYMMETRIC)]
 )
-def test_a_state_returns_after_the_time_that_is_told(initial, a, symmetry):
+def test_a_state_returns_after_the_stated_time(initial, a, symmetry):
     model = Model(Chain(3), law_of("linearized", a))
     runner = Runner(model, keep_events=True, events_from=5000.0)
     runner.begin(model.begin(PAPER_STATES[initial]))
     runner.run(5500.0)
     found = list(_close_returns(model, runner.log.events.times(), runner.log.events.values()))
-    assert {told for _, _, told, _ in found} == {symmetry}
+    assert {returned for _, _, returned, _ in found} == {symmetry}
     for start, time, _, size in found:
         assert time > 1.0
         end = Runner(model).state_after(start, time)
@@ -32,8 +32,8 @@ def test_a_state_returns_after_the_time_that_is_told(initial, a, symmetry):
 
 
 @pytest.mark.parametrize(("v", "mirrored"), [(0.1, [2.0, 1.1, 1.1, 1.1]), (0.2, [1.1, 1.1, 1.1, 1.1])])
-def test_of_states_as_near_as_each_other_the_first_is_the_return(v, mirrored):
-    """How near is told by the speed; the mirror block stops too soon at first, or too far from where it has to be."""
+def test_the_first_of_equally_close_states_is_the_return(v, mirrored):
+    """The distance scales with v; the mirror block first stops too soon, or too far from the required place."""
     state = np.array([0.1, 0.2, 0.3, 0.0, 0.05, 0.06])
     image = state[[2, 1, 0, 5, 4, 3]]
     stops = [(0.0, 1, state), (0.05, 3, image), (0.5, 3, image + 0.5), (1.0, 1, state + 0.5)]
@@ -48,8 +48,8 @@ def test_of_states_as_near_as_each_other_the_first_is_the_return(v, mirrored):
     assert all(np.array_equal(start.vector(), state) for start, *_ in found)
 
 
-def test_an_orbit_elsewhere_is_not_that_of_a_motion(monkeypatch):
-    """Newton's method may come to any: here to synchrony, from motion in opposite phases."""
+def test_a_distant_orbit_is_not_the_orbit_of_a_motion(monkeypatch):
+    """Newton's method may converge to any orbit, here to synchrony from motion in opposite phases."""
     model = Model(Chain(3), law_of("linearized", 0.08))
     elsewhere = limit_cycle(model, synchronized_orbit(model).reference)
     monkeypatch.setattr(module, "find_periodic_orbit", lambda *_: elsewhere)
@@ -62,7 +62,7 @@ def test_an_orbit_elsewhere_is_not_that_of_a_motion(monkeypatch):
     [(3, "nonlinear", 0.19, [0.0, -0.04, -0.9]), (2, "linearized", 0.08, [0.0, -0.5])],
 )
 def test_chaos_lies_on_none_of_the_orbits_that_it_passes_by(blocks, law, a, position, monkeypatch):
-    """Of three blocks, and a thin one of two blocks: Newton's method finds unstable orbits near the motion."""
+    """Newton's method finds unstable orbits near the chaos of three blocks and the thin chaos of two."""
     passed = []
 
     def find(*arguments):
@@ -85,8 +85,8 @@ def test_an_unstable_orbit_is_that_of_a_motion_that_never_leaves_it():
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e-11, 1e-10, 1e-9, 3e-9, 1e-8])
-def test_synchrony_that_is_not_exact_closes_all_the_same(apart):
-    """The end blocks stop almost together, which is no return of one to the other."""
+def test_synchrony_that_is_not_exact_is_periodic_too(apart):
+    """The end blocks stop almost together, which is not a return of one to the other."""
     model = Model(Chain(3), law_of("linearized", 0.0865))
     orbit = synchronized_orbit(model)
     start = orbit.reference

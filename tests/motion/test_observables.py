@@ -1,4 +1,4 @@
-"""What is measured of a steady motion: of whole runs, and of hand-made motions."""
+"""Observables of steady motion, of whole runs and of hand-made motions."""
 
 from dataclasses import replace
 
@@ -23,7 +23,7 @@ from burridge_knopoff.motion.section_returns import visit
 from burridge_knopoff.motion.settings import MOTION
 from tests.motion.stand_in import ROWS, nearest, shown, stand_in
 
-#: Some of them again and again.
+#: Some of them occur repeatedly.
 ROUND = np.tile(ROWS[:5], (8, 1))
 
 
@@ -58,13 +58,13 @@ def test_returns_are_the_stops_of_the_first_block(threshold):
     assert motion.mean_distance_error == pytest.approx(run.mean_distance_error, abs=1e-9)
     assert motion.exponent.shape == (3,)
     assert motion.state().vector().tolist() == motion.returns[-1].tolist()
-    # Too few returns say nothing.
+    # Too few returns show nothing.
     assert visit(chain, start, 500.0, 20.0) is None
     assert Classifier(chain, 500.0, 20.0, MOTION).measure(start) is None
 
 
-def test_attractors_whose_ends_never_stop_are_known():
-    """In four blocks at a = 0.02 some states come to motion in which only the middle blocks stop."""
+def test_attractors_whose_end_blocks_never_stop_are_recognized():
+    """Of four blocks at a = 0.02 some states reach motion in which only the middle blocks stop."""
     settings = SearchSettings(samples=40)
     chain = Model(Chain(4), law_of("linearized", 0.02))
     attractors, labels = find_attractors(chain, settings)
@@ -102,12 +102,12 @@ def test_mirror_images_of_a_motion():
         (ROWS + 0.029, MotionKind.CHAOTIC, 0.01, 0.1, True),  # three spacings of the attractor
         (ROWS + 0.031, MotionKind.CHAOTIC, 0.01, 0.1, False),
         (ROUND, MotionKind.CHAOTIC, 0.01, 0.0, False),  # a periodic orbit is not part of chaos
-        (ROUND, MotionKind.CHAOTIC, 1e-7, 0.0, True),  # but of chaos so thin that it looks like one
-        (ROWS, MotionKind.CHAOTIC, 0.01, 0.0, True),  # chaos seen for so long that it looks like one
+        (ROUND, MotionKind.CHAOTIC, 1e-7, 0.0, True),  # but it is part of chaos so thin that it looks like an orbit
+        (ROWS, MotionKind.CHAOTIC, 0.01, 0.0, True),  # chaos observed for so long that it looks like an orbit
         (ROUND, MotionKind.QUASIPERIODIC, 0.01, 0.0, True),
     ],
 )
-def test_what_lies_on_an_attractor(found, kind, spacing, own_spacing, expected):
+def test_which_motions_lie_on_an_attractor(found, kind, spacing, own_spacing, expected):
     attractor = stand_in(returns=ROWS, kind=kind, spacing=spacing).motion
     assert is_on_attractor(shown(found, ROWS, own_spacing, 0.0), attractor, 1e-3, 1e-6) == expected
 
@@ -117,7 +117,7 @@ def test_a_motion_seen_from_the_other_end_stops_at_the_other_block():
     assert (motion.mirrored().block, motion.mirrored().mirror_block) == (3, 1)
 
 
-def test_motions_seen_at_other_blocks_are_others():
+def test_motions_with_returns_at_other_blocks_differ():
     attractor = stand_in(returns=ROWS).motion
     found = shown(ROWS, ROWS, 0.0, 0.0)
     assert is_on_attractor(found, attractor, 1e-3, 1e-6)

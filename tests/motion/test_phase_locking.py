@@ -1,4 +1,4 @@
-"""Closed orbits to which what looks like a torus is locked."""
+"""Periodic orbits to which apparent tori are locked."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -17,7 +17,7 @@ from burridge_knopoff.running.simulation import run
 from tests.flows import weakly_repelling
 
 LOCKED = Model(Chain(3), law_of("linearized", 0.0275))
-#: A state on a torus there, which approaches its periodic orbit by the factor e in 30 000 time units.
+#: A state near a torus, whose distance from its periodic orbit falls by the factor e in 30 000 time units.
 ON_IT = state_of(np.array([0.027653, 0.008746, -0.031365, 0.0, 0.201334, 0.12468]))
 
 
@@ -37,7 +37,7 @@ def test_orbit_of_a_locked_torus_is_where_the_motion_ends():
     assert orbit.period == pytest.approx(time, abs=1e-3)
     factor = abs(multipliers(orbit).whole[0])
     assert 0.8 < factor < 0.95
-    # Without any of this: the returns of the motion itself, which repeat in the end and come nearer by that factor.
+    # Independently: the returns of the motion itself finally repeat, and the distance falls by that factor.
     late = visit(LOCKED, start, 900_000.0, 3.5 * orbit.period).returns
     away = np.abs(late - late[-1]).max(axis=1)
     turn = len(late) - 1 - np.flatnonzero(away[:-1] < 1e-9)[-1]
@@ -62,7 +62,7 @@ def test_neither_chaos_nor_a_torus_is_locked(law, a):
 @pytest.mark.parametrize(
     ("apart", "expected"),
     [
-        # Four time units before, after 3, 2 and 1 much farther away; the oldest half is not looked at.
+        # Four time units earlier, and much farther away after 3, 2 and 1; the oldest half is ignored.
         ((0.0, 0.0, 0.0, 0.0, 0.0, 0.09, 1.1, 1.0, 2.0), 4.0),
         ((0.0, 0.0, 0.0, 0.0, 0.0, 0.11, 1.1, 1.0, 2.0), 0.0),
         ((0.0, 0.0, 0.0, 0.0, 0.3, 0.2, 1.1, 0.01, 2.0), 2.0),
@@ -71,26 +71,26 @@ def test_neither_chaos_nor_a_torus_is_locked(law, a):
         ((0.0, 5.0), 1.0),
     ],
 )
-def test_how_long_before_a_motion_was_far_nearer_than_later(apart, expected):
+def test_the_time_of_the_closest_earlier_approach(apart, expected):
     returns = np.zeros((len(apart) + 1, 6))
     returns[:-1, 2] = apart
     returns += 0.3
     assert recurrence(7.0 + np.arange(len(returns)), returns) == expected
 
 
-def test_any_coordinate_may_keep_returns_apart():
+def test_any_coordinate_may_separate_returns():
     returns = np.zeros((9, 6))
     returns[-2, 5], returns[-3, 0] = 1.0, -1e-3
     returns[:-3] = 2.0
     assert recurrence(np.arange(9.0), returns) == 2.0
 
 
-def test_an_orbit_has_to_be_there_to_attract_and_to_be_approached():
+def test_an_orbit_must_exist_attract_and_be_approached():
     model = Model(Chain(3), law_of("linearized", 0.08))
     stable, unstable = limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=1000.0), weakly_repelling()
 
     def found(orbit, away, time, window):
-        """Return the orbit that is found of returns so far from those of an orbit in one window after the other."""
+        """Return the orbit found from returns at these distances from those of an orbit in consecutive windows."""
         turn = visit(orbit.model, orbit.reference, 0.0, window).returns
         return locked_orbit(orbit.model, np.concatenate([turn + distance for distance in away]), time)
 
@@ -111,17 +111,17 @@ def test_an_orbit_has_to_be_there_to_attract_and_to_be_approached():
         (0.1, (0.031, 0.032, 0.033), False),  # too far off
         (0.1, (0.058, 0.059, 0.06), False),
         (0.2, (0.058, 0.059, 0.06), True),  # distances grow with the velocity
-        (0.1, (0.02, 0.01, 0.03), False),  # farther in the last cycle than before
+        (0.1, (0.02, 0.01, 0.03), False),  # farther away in the last cycle than before
         (0.1, (0.02, 0.02, 0.03), False),
         (0.1, (0.01, 0.02, 0.015), False),
         (0.1, (0.02, 0.03, 0.04, 0.05, 0.01), True),  # four cycles decide
         (0.1, (0.02, 0.03, 0.04, 0.03), False),
-        (0.1, (0.02,), False),  # a single one does not
+        (0.1, (0.02,), False),  # a single cycle does not
     ],
 )
-def test_each_turn_has_to_be_nearer(tell, v, away, expected):
+def test_each_cycle_must_be_closer(script_answers, v, away, expected):
     on_orbit = np.random.default_rng(5).uniform(-1.0, 1.0, (40, 6))
-    asked = tell(locking, "visit", [SimpleNamespace(returns=on_orbit)])
+    asked = script_answers(locking, "visit", [SimpleNamespace(returns=on_orbit)])
     orbit = SimpleNamespace(model=replace(LOCKED, v=v), reference="reference", period=100.0)
     # The oldest cycle is incomplete and is not compared.
     returns = np.concatenate([on_orbit[20:], *(on_orbit + distance for distance in away[::-1])])
@@ -129,7 +129,7 @@ def test_each_turn_has_to_be_nearer(tell, v, away, expected):
     assert asked[0][:4] == (orbit.model, "reference", 0.0, 100.0)
 
 
-def test_what_an_orbit_that_does_not_complete_shows_is_not_approached(tell):
-    tell(locking, "visit", [None])
+def test_an_orbit_that_does_not_complete_is_not_approached(script_answers):
+    script_answers(locking, "visit", [None])
     orbit = SimpleNamespace(model=LOCKED, reference="reference", period=100.0)
     assert not locking._is_approaching(np.zeros((5, 6)), orbit)

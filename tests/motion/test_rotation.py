@@ -14,28 +14,28 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.summaries.plateaux import Plateau, locked_share, plateaux
 
 
-def of_plus(a, duration):
+def from_plus(a, duration):
     model = Model(Chain(3), law_of("linearized", a))
     return rotation_number(model, Runner(model).state_after(model.begin(PAPER_STATES["plus"]), 3000.0), duration)
 
 
 def test_a_tongue_has_one_rotation_number_and_a_torus_another_at_each_a():
     """`plus` at a = 0.08 lies in a tongue of width 0.002, with 35 cycles of the end blocks per 54 of the middle."""
-    inside = [of_plus(a, 2000.0) for a in (0.0795, 0.08, 0.0805)]
+    inside = [from_plus(a, 2000.0) for a in (0.0795, 0.08, 0.0805)]
     for number, error in inside:
         assert error < 1e-6
         assert number == pytest.approx(35 / 54, abs=1e-6)
-    outside = [of_plus(a, 2000.0)[0] for a in (0.07, 0.0725, 0.075)]
+    outside = [from_plus(a, 2000.0)[0] for a in (0.07, 0.0725, 0.075)]
     assert (np.diff(outside) < -5e-5).all()
 
 
-def test_half_of_the_time_is_less_exact_than_the_whole():
-    short, error = of_plus(0.07, 500.0)
-    assert abs(short - of_plus(0.07, 8000.0)[0]) < error < 1e-3
+def test_half_of_the_time_is_less_accurate_than_the_whole():
+    short, error = from_plus(0.07, 500.0)
+    assert abs(short - from_plus(0.07, 8000.0)[0]) < error < 1e-3
 
 
 def test_motion_that_passes_through_its_centre_has_no_phase():
-    """In synchrony the end blocks are not apart, on the antiphase the middle block rests."""
+    """In synchrony the end blocks coincide; in antiphase the middle block slides uniformly."""
     model = Model(Chain(3), law_of("linearized", 0.08))
     together = Runner(model).state_after(model.begin(PAPER_STATES["minus"]), 9000.0)
     assert np.isnan(rotation_number(model, together, 100.0)).all()
@@ -50,11 +50,11 @@ def rotation(number, locked, in_grid, error=1e-9):
 def test_plateaux_are_runs_of_one_rotation_number():
     number = [0.65, 9 / 14, 9 / 14, 7 / 11, 7 / 11 + 1e-10, 7 / 11, np.nan, 7 / 11]
     found = rotation(number, [0, 1, 1, 1, 1, 1, -1, 1], [1, 1, 0, 1, 0, 1, 1, 1])
-    told = plateaux(found.sel(law="linearized"))
+    listed = plateaux(found.sel(law="linearized"))
     a = found["a"].values[0]
-    assert told == [
+    assert listed == [
         Plateau(a[1], a[2], Fraction(9, 14)),
-        # Over what was not looked at.
+        # The plateau extends over values without a result.
         Plateau(a[3], a[7], Fraction(7, 11)),
     ]
     # If the errors exceed the difference between two ratios, the ratios are not found to be equal.
@@ -62,7 +62,7 @@ def test_plateaux_are_runs_of_one_rotation_number():
         *a[:6],
         a[7],
     ]
-    # Values put in between, and what is not known, count for no share.
+    # Inserted and unknown values do not count.
     share, low, high = locked_share(found.sel(law="linearized"), a < 0.065)
     assert share == 0.75
     assert low < share < high

@@ -1,4 +1,4 @@
-"""Which returns a motion is seen by, and what they tell: from hand-made events and sets."""
+"""The section returns of a motion and what they show, from hand-made events and sets."""
 
 import numpy as np
 import pytest
@@ -14,8 +14,8 @@ from tests.motion.stand_in import ROWS, shown
     ("stopping", "block", "mirror_block"),
     [((1, 2, 3, 4), 1, 1), ((2, 3), 2, 2), ((1, 3), 1, 4), ((2,), 2, 3), ((3, 4), 4, 1), ((), None, None)],
 )
-def test_returns_are_those_of_the_outermost_block_that_stops(stopping, block, mirror_block):
-    """Of two equally far out the lower one; a motion and its mirror image are seen at stops of mirror blocks."""
+def test_returns_are_taken_at_the_outermost_block_that_stops(stopping, block, mirror_block):
+    """Of two blocks equally close to an end the first is taken; mirror images have their returns at mirror blocks."""
     number = np.tile(np.arange(1, 5), 20)
     states = np.random.default_rng(3).uniform(size=(80, 8))
     chain, stops = Model(Chain(4), law_of("linearized", 0.1)), np.isin(number, stopping)
@@ -37,7 +37,7 @@ def test_returns_are_those_of_the_outermost_block_that_stops(stopping, block, mi
     [(8, 8, True, True), (7, 8, True, False), (8, 7, True, False), (8, 7, False, True), (7, 8, False, False)],
 )
 def test_eight_returns_show_a_set_and_its_mirror_image(first, last, symmetric, seen):
-    """In a chain that is its own mirror image both of them; else the stops of the first block are all."""
+    """A mirror-symmetric chain shows both; in any other chain the stops of the first block count alone."""
     chain = Chain(3, threshold=1.0 if symmetric else (1.0, 1.0, 0.9))
     block = np.array([1] * first + [3] * last)
     states = np.random.default_rng(3).uniform(size=(len(block), 6))
@@ -48,13 +48,13 @@ def test_eight_returns_show_a_set_and_its_mirror_image(first, last, symmetric, s
 @pytest.mark.parametrize(
     ("first", "second", "alike"),
     [
-        ((10, 20, 30), (300, 200, 100), True),  # seen from the other end, for ten times as long
+        ((10, 20, 30), (300, 200, 100), True),  # with returns at the other end, for ten times as long
         ((10, 20, 10), (10, 20, 10.6), True),
         ((10, 20, 10), (10, 22, 10), False),
         ((1, 0, 0, 1), (0, 1, 1, 0), False),
     ],
 )
-def test_motions_are_alike_by_how_often_mirror_blocks_stop(first, second, alike):
+def test_motions_are_compared_by_the_stop_rates_of_mirror_blocks(first, second, alike):
     assert (
         has_same_stop_shares(np.array(first), np.array(second))
         == has_same_stop_shares(np.array(second), np.array(first))
@@ -74,8 +74,8 @@ def test_motions_are_alike_by_how_often_mirror_blocks_stop(first, second, alike)
         ((0, 0, 0), (1, 1)),
     ],
 )
-def test_a_block_that_hardly_ever_stops_shows_no_returns(stops, expected):
-    """In a window four times as long as well; the mirror image is seen at the mirror block."""
+def test_a_block_that_rarely_stops_gives_no_returns(stops, expected):
+    """This also holds in a window four times as long; the mirror image has its returns at the mirror block."""
     assert period.section_blocks(np.array(stops)) == expected
     assert period.section_blocks(np.array(stops[::-1])) == expected[::-1]
 
@@ -98,7 +98,7 @@ def test_a_block_without_velocity_sticks():
         (0.01, 0.031, False, False),
     ],
 )
-def test_what_has_settled(spacing, drift, closed, settled):
+def test_which_motion_has_settled(spacing, drift, closed, settled):
     found = shown(ROWS, ROWS, spacing, drift)
     assert found.has_periodic_spacing(1e-6) == closed
     assert found.is_settled(1e-6, 1e-3) == settled
@@ -112,10 +112,10 @@ def test_what_has_settled(spacing, drift, closed, settled):
         (ROWS, 1e-6, False),
         # Bands of chaos that are visited in order and are wider than the tolerance.
         (np.tile(ROWS[:5], (8, 1)) + 5e-6 * ROWS, 1e-6, False),
-        (np.tile(ROWS[:20], (2, 1)), 1e-6, False),  # not seen twice in two thirds of the window
+        (np.tile(ROWS[:20], (2, 1)), 1e-6, False),  # not repeated in two thirds of the window
     ],
 )
-def test_a_closed_orbit_comes_round(rows, spacing, expected):
+def test_a_periodic_orbit_repeats_its_returns(rows, spacing, expected):
     assert shown(rows, rows, spacing, 0.0).is_periodic(1e-6) == expected
 
 
@@ -123,7 +123,7 @@ def test_a_closed_orbit_comes_round(rows, spacing, expected):
     ("length", "longest", "expected"), [(1, 60, 1), (3, 60, 3), (7, 7, 7), (9, 8, 8), (13, 60, 60)]
 )
 def test_the_length_of_an_orbit(length, longest, expected):
-    """Of forty returns the first third is left out, and what is left, 27, shows twice what is at most 13 long."""
+    """The first third of forty returns is left out; the remaining 27 show periods of at most 13 twice."""
     orbit = np.tile(ROWS[:length], (40, 1))[:40]
     orbit[:13] += 0.5
     assert orbit_length(orbit + 1e-7 * ROWS, 1e-6, longest) == expected

@@ -8,7 +8,7 @@ from tests.motion.stand_in import nearest
 
 
 def test_a_bound_changes_no_distance_within_it():
-    """And whether a set is near another is what its distance says, at the limit and either side of it."""
+    """Whether a set is near another agrees with its distance, at the limit and on either side of it."""
     generator = np.random.default_rng(8)
     for size in (9, 20, 21, 200):
         first, second = generator.normal(size=(size, 6)), generator.normal(size=(150, 6))

@@ -3,7 +3,7 @@
 from burridge_knopoff.periodic_orbits.flow import flow
 from tests.reference import reference_run
 
-# It can be added to doubles of order 1 without rounding, and 40 digits resolve it.
+# This step can be added to doubles of order 1 without rounding, and 40 digits resolve it.
 SHIFT = 2.0**-40
 
 

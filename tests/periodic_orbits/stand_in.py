@@ -9,10 +9,10 @@ from burridge_knopoff.periodic_orbits.floquet import Multipliers
 _T = TypeVar("_T")
 
 
-def stand_in(kind: type[_T], **told: Any) -> _T:
+def stand_in(kind: type[_T], **attributes: Any) -> _T:
     """Return an object of a class with the given attributes only."""
     one = object.__new__(kind)
-    one.__dict__.update(told)
+    one.__dict__.update(attributes)
     return one
 
 

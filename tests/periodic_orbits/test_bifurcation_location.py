@@ -31,7 +31,7 @@ LINE = line_along_a(Chain(3))
         ((1.0 + 5e-7j, 1.0 - 5e-7j, 0.1), None),
     ],
 )
-def test_the_pair_whose_product_is_1_tells_a_torus_from_a_saddle(values, kind):
+def test_a_pair_with_product_1_distinguishes_a_torus_from_a_saddle(values, kind):
     saddle = np.array([2.0, 0.5])
     point = SimpleNamespace(multipliers=SimpleNamespace(symmetry_preserving=np.array(values), symmetry_breaking=saddle))
     assert bifurcations.kind_at(point, (BifurcationKind.NEIMARK_SACKER, "symmetry_preserving")) == kind
@@ -42,13 +42,13 @@ def test_the_pair_whose_product_is_1_tells_a_torus_from_a_saddle(values, kind):
 
 @pytest.fixture
 def branch(monkeypatch):
-    """Return how a branch is made of which are told, by length, a and how far its multiplier is from that `at` 0."""
+    """Return a function that makes a branch from functions of the length: a, and the multiplier minus `at`."""
 
     def made(value, a=lambda length: length, at=-1.0):
         def point(length, slope=1.0):
             orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=1.0)
-            told = {"value": a(length), "multipliers": only(at + value(length)), "length": length, "tangent": [slope]}
-            return stand_in(BranchOrbit, line=LINE, orbit=orbit, **told)
+            fields = {"value": a(length), "multipliers": only(at + value(length)), "length": length, "tangent": [slope]}
+            return stand_in(BranchOrbit, line=LINE, orbit=orbit, **fields)
 
         monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
         return point
@@ -95,7 +95,7 @@ def test_the_place_of_a_bifurcation_is_known_within_where_the_sign_changes(branc
     assert (bifurcation.before.length, bifurcation.after.length) == (0.0, 0.5)
 
 
-def test_noise_of_one_sign_is_no_bifurcation(monkeypatch, branch):
+def test_noise_of_one_sign_is_not_a_bifurcation(monkeypatch, branch):
     """If noise hides the sign within 3e-9, the bracket of the bifurcation has a half-width of 1e-8."""
     point = branch(lambda length: length - 0.3 if abs(length - 0.3) > 3e-9 else 1e-15)
     monkeypatch.setattr(bifurcations, "brentq", lambda value, low, high, **_: 0.3)
@@ -103,7 +103,7 @@ def test_noise_of_one_sign_is_no_bifurcation(monkeypatch, branch):
     assert bifurcation.error == pytest.approx(1e-8, rel=1e-3, abs=0.0)
 
 
-def test_a_value_that_is_0_for_long_is_no_bifurcation(monkeypatch, branch):
+def test_a_value_that_remains_0_is_not_a_bifurcation(monkeypatch, branch):
     """There is no bifurcation if the sign is the same 1e-7 away on both sides, or if an orbit is not found."""
 
     def lost(first, length):
@@ -123,8 +123,8 @@ def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeyp
         keeping = np.array([*pair, -1.0 - (length - 0.4), 1.0 + 0.1 * (length - 0.7)])
         multipliers = Multipliers(keeping, np.array([1.0 + length - 0.2]), power=1)
         orbit = SimpleNamespace(symmetry=Symmetry.SYNCHRONIZED)
-        told = {"value": 0.1 + length, "multipliers": multipliers, "length": length, "tangent": [1.0]}
-        return stand_in(BranchOrbit, line=LINE, orbit=orbit, **told)
+        fields = {"value": 0.1 + length, "multipliers": multipliers, "length": length, "tangent": [1.0]}
+        return stand_in(BranchOrbit, line=LINE, orbit=orbit, **fields)
 
     monkeypatch.setattr(bifurcations, "step_along", lambda first, length: point(length))
     found = bifurcations._roots(point(0.0), point(0.5))
@@ -144,7 +144,7 @@ def test_bifurcations_between_two_orbits_come_in_the_order_of_the_branch(monkeyp
         (BifurcationKind.PERIOD_DOUBLING, [0.5, 0.9e-4, np.inf], 0.9e-4),
     ],
 )
-def test_a_short_stick_is_none_at_a_grazing(kind, sticks, shortest):
+def test_a_short_stick_counts_as_0_at_a_grazing(kind, sticks, shortest):
     """Within 1e-10 of the grazing, a duration that vanishes like a root is shorter than 1e-4."""
     orbit = SimpleNamespace(model=Model(Chain(3), law_of("linearized", 0.1)))
     here = SimpleNamespace(orbit=orbit, grazing_distances=SimpleNamespace(stick=np.array(sticks)))
@@ -197,8 +197,8 @@ def test_an_orbit_grazes_at_the_length_that_is_left(distance, slope, beyond, a, 
         ([(0.121, BifurcationKind.FOLD)], [], None),
     ],
 )
-def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_that(monkeypatch, upward, downward, expected):
-    """It is searched for both ways, over the length of the last steps and twice the last change of a."""
+def test_a_branch_joins_a_simpler_one_at_the_nearest_bifurcation_of_the_latter(monkeypatch, upward, downward, expected):
+    """The search goes in both directions, over the length of the last steps and twice the last change of a."""
     asked, own = [], locate_bifurcations
 
     def followed(orbit, interval, *, parameter, upward):
@@ -262,6 +262,6 @@ def test_a_fold_next_to_a_simpler_orbit_is_where_that_one_branches(monkeypatch, 
         (Symmetry.ASYMMETRIC, 2.0, None),
     ],
 )
-def test_what_a_branch_begins_as_tells_its_bifurcation(symmetry, period, kind):
+def test_the_beginning_of_a_branch_determines_its_bifurcation(symmetry, period, kind):
     orbit = SimpleNamespace(symmetry=Symmetry.ASYMMETRIC, period=2.0)
     assert bifurcations._branch_point_kind(orbit, SimpleNamespace(symmetry=symmetry, period=period)) == kind

@@ -22,7 +22,7 @@ GRAZING = {"linearized": 0.035539733583, "nonlinear": 0.035803901459}
 PERIOD_DOUBLING = 0.272317183794
 
 
-def settled(a, position=MINUS, law="linearized", velocity=(0.099, 0.1012, 0.1023)):
+def settled_orbit(a, position=MINUS, law="linearized", velocity=(0.099, 0.1012, 0.1023)):
     """Return the periodic orbit on which a long run of the paper's chain ends."""
     model = Model(Chain(3), law_of(law, a))
     end = Runner(model).state_after(model.begin(InitialState("one", position, velocity)), 10_000.0)
@@ -42,7 +42,7 @@ def segment(orbit, a_range, beyond, settings):
 @pytest.fixture(scope="module")
 def six():
     """The segment of stable orbits on which the end blocks stop six and three times."""
-    orbit = settled(0.12)
+    orbit = settled_orbit(0.12)
     assert orbit.stop_counts == (6, 6, 3)
     return segment(orbit, (0.1, 0.15), 4, STEPS)
 
@@ -105,7 +105,7 @@ def test_symmetric_motion_doubles_its_period(families):
 
 
 def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing():
-    found = segment(settled(0.1), (0.01, 0.13), 4, STEPS)
+    found = segment(settled_orbit(0.1), (0.01, 0.13), 4, STEPS)
     assert found.downward.end.kind == BifurcationKind.PITCHFORK
     assert found.downward.end.a == pytest.approx(CRITICAL["linearized"], abs=1e-10)
     assert found.upward.end.kind == BifurcationKind.GRAZING
@@ -115,9 +115,9 @@ def test_the_asymmetric_orbits_begin_at_the_pitchfork_and_end_at_a_grazing():
     assert np.abs(found.upward.end.after.multipliers.whole[0]) > 1.3
 
 
-def test_what_branches_off_joins_only_where_it_is_near():
+def test_a_branch_joins_a_simpler_one_only_nearby():
     """At the root of the test function, an orbit far from any simpler one is at a fold."""
-    (point, *_) = follow(settled(0.1), (0.09999, 0.10001), STEPS)
+    (point, *_) = follow(settled_orbit(0.1), (0.09999, 0.10001), STEPS)
     assert bifurcations.kind_at(point, (BifurcationKind.FOLD, "symmetry_preserving")) == BifurcationKind.FOLD
 
 
@@ -142,7 +142,7 @@ def test_runs_leave_an_orbit_beyond_its_bifurcation(six):
 def seven():
     """The segment of stable orbits on which the end blocks stop seven and four times."""
     for u in (-0.989, 0.3, -0.4, 0.7):
-        orbit = settled(0.15, (u, -0.993, -0.991))
+        orbit = settled_orbit(0.15, (u, -0.993, -0.991))
         if sorted(orbit.stop_counts) == [4, 7, 7]:
             return segment(orbit, (0.13, 0.16), 4, STEPS)
     raise AssertionError("no run reaches it")
@@ -169,8 +169,8 @@ def test_a_bifurcation_does_not_depend_on_the_direction_of_continuation(seven):
         assert (one.kind, one.is_turning_point) == (other.kind, other.is_turning_point)
 
 
-def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
-    doubled = settled(0.135)
+def test_a_doubled_orbit_ends_at_the_period_doubling_of_the_single_one():
+    doubled = settled_orbit(0.135)
     assert sorted(doubled.stop_counts) == [12, 26, 26]
     found = segment(doubled, (0.13, 0.15), 4, ContinuationSettings(largest_step=1e-4))
     assert found.upward.end.kind == BifurcationKind.PERIOD_DOUBLING
@@ -187,7 +187,7 @@ def test_a_doubled_orbit_ends_at_the_flip_of_the_single_one():
 
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear"])
-def test_a_flip_may_break_the_mirror_symmetry(law):
+def test_a_period_doubling_may_break_the_mirror_symmetry(law):
     """Two synchronized blocks separate so that each does in one period what the other does in the next."""
     model = Model(Chain(2), law_of(law, 0.05))
     one = limit_cycle(model, model.begin(InitialState("one", (-0.9, -0.9), (0.1, 0.1))), 1000.0)
@@ -209,17 +209,17 @@ def test_a_flip_may_break_the_mirror_symmetry(law):
 
 
 def test_a_torus_branches_off_where_perturbations_stop_decaying():
-    orbit = settled(0.12, (-0.787, -0.661, -0.869), velocity=(0.0, 0.101, 0.189))
+    orbit = settled_orbit(0.12, (-0.787, -0.661, -0.869), velocity=(0.0, 0.101, 0.189))
     assert (orbit.symmetry, orbit.stop_counts) == (Symmetry.SYMMETRIC, (1, 0, 1))
     bifurcation = segment(orbit, (0.1, 0.16), 4, STEPS).upward.end
     assert bifurcation.kind == BifurcationKind.NEIMARK_SACKER
     assert abs(bifurcation.at.multipliers.whole[0]) == pytest.approx(1.0, abs=1e-9)
     assert abs(bifurcation.at.multipliers.whole[0].imag) > 0.1
     for offset, grows in ((-1e-3, False), (1e-3, True)):
-        beside = at(bifurcation.at.orbit, bifurcation.a + offset)
-        here = beside.reference
+        nearby = at(bifurcation.at.orbit, bifurcation.a + offset)
+        here = nearby.reference
         start = ChainState(here.position + np.array([1e-6, 0.0, 0.0]), here.velocity, here.stuck)
-        end = Runner(beside.model).state_after(start, 3000.0 * beside.period)
+        end = Runner(nearby.model).state_after(start, 3000.0 * nearby.period)
         assert (np.abs(end.vector() - here.vector()).max() > 1e-6) == grows
 
 
@@ -242,7 +242,7 @@ def test_steps_become_longer_or_shorter_and_end(families, monkeypatch, succeeds)
 
 def test_a_branch_ends_where_friction_drops_and_an_orbit_grazes():
     """Even the shortest stick ends with a jump, so that the branch ends at the grazing."""
-    orbit = settled(0.05, law="carlson_langer")
+    orbit = settled_orbit(0.05, law="carlson_langer")
     points = follow(orbit, (0.01, 0.06), STEPS, upward=False)
     assert 0.02 < points[-1].orbit.a < 0.05
     assert not list(locate_bifurcations(points))[:-1]

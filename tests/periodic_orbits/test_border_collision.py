@@ -76,10 +76,12 @@ def test_a_step_keeps_the_stops(monkeypatch, stop_counts, simpler, ahead, made):
         ((0.5, np.inf), (0.4, 0.2), 0.4),
     ],
 )
-def test_a_grazing_is_ahead_where_what_is_0_there_falls(before, here, expected):
+def test_a_decreasing_grazing_distance_predicts_a_grazing(before, here, expected):
     points = [
-        SimpleNamespace(grazing_distances=SimpleNamespace(values=lambda told=told: np.array(told)), length=0.1)
-        for told in (before, here)
+        SimpleNamespace(
+            grazing_distances=SimpleNamespace(values=lambda distances=distances: np.array(distances)), length=0.1
+        )
+        for distances in (before, here)
     ]
     assert border_collision.distance_to_grazing(*points) == pytest.approx(expected)
 
@@ -104,7 +106,7 @@ class Place:
 def approach(monkeypatch):
     """Return the approach to a corner from 0, and the attempted steps; steps beyond the corner fail."""
 
-    def come(length, fails=lambda tried: False, joint=np.inf, **told):
+    def come(length, fails=lambda tried: False, joint=np.inf, **fields):
         tried = []
 
         def step(way, length):
@@ -116,7 +118,7 @@ def approach(monkeypatch):
             return replace(way[-1], orbit=place, length=length, reduced_orbit="simpler" if place > joint else None)
 
         monkeypatch.setattr(border_collision, "smooth_step", step)
-        way = border_collision.approach_grazing([Place(place, **told) for place in (-2e-3, -1e-3, 0.0)], length)
+        way = border_collision.approach_grazing([Place(place, **fields) for place in (-2e-3, -1e-3, 0.0)], length)
         return way, tried
 
     return come
@@ -142,14 +144,14 @@ def test_failed_steps_are_repeated_with_a_shorter_length(approach):
 
 
 @pytest.mark.parametrize(("length", "count"), [(1e-3, 13), (1.0, 15)])
-def test_a_corner_to_which_no_step_leads_is_given_up(approach, length, count):
+def test_the_approach_to_a_corner_ends_if_steps_fail(approach, length, count):
     """The approach ends if steps become shorter than 1e-10, or after fifteen failures."""
     way, tried = approach(length, lambda tried: True)
     assert way == []
     assert tried == pytest.approx([0.01 * length * 0.4**k for k in range(count)], rel=1e-9, abs=0.0)
 
 
-def test_a_corner_that_comes_no_nearer_is_given_up(approach):
+def test_the_approach_to_a_corner_ends_if_it_comes_no_closer(approach):
     """A distance that falls like a fourth power predicts a quarter of the remaining length."""
     way, tried = approach(1e-3, power=4)
     assert len(tried) == len(way) == 32
@@ -162,7 +164,7 @@ def test_no_corner_is_searched_for_beyond_the_given_length(approach):
     assert [point.orbit for point in way] == pytest.approx([1e-5, 1.01e-3])
 
 
-def test_the_way_to_a_corner_ends_where_the_branch_joins_another_one(approach):
+def test_the_approach_to_a_corner_ends_where_the_branch_joins_another_one(approach):
     way, tried = approach(1e-3, joint=5e-4)
     assert [point.reduced_orbit for point in way] == [None, "simpler"]
     assert len(tried) == 2
@@ -208,8 +210,8 @@ def turn(monkeypatch):
     return turned
 
 
-def test_beyond_a_corner_other_stops_follow(turn):
-    """It may lie on either side; it must have stops, other stops, and must not repeat a simpler orbit."""
+def test_beyond_a_corner_the_orbit_has_other_stops(turn):
+    """The orbit may lie on either side; it must have stops that differ from before and not repeat a simpler orbit."""
     none, same, twice = (0, 0), (1, 2), (2, 2)
     found, tried, tangents = turn([None, same, none, twice, (1, 1)], simple=(twice,))
     assert found == (1, 1)
@@ -221,12 +223,12 @@ def test_beyond_a_corner_other_stops_follow(turn):
 
 
 @pytest.mark.parametrize(
-    ("beyond", "goes_on"),
+    ("beyond", "continues"),
     [((3, 2, 3), True), ((2, 2, 2), True), ((3, 2, 2), False), ((2, 2, 3), False), ((0, 0, 0), False)],
 )
-def test_a_branch_does_not_go_on_from_a_corner_in_a_mirror(turn, beyond, goes_on):
-    """It does not continue with its own stops or with none: at such a corner less symmetric orbits begin."""
-    assert turn([beyond] * 24, here=(2, 2, 3))[0] == (beyond if goes_on else None)
+def test_which_branches_continue_from_a_symmetric_corner(turn, beyond, continues):
+    """A branch with its own stops or none does not continue: less symmetric orbits begin at such a corner."""
+    assert turn([beyond] * 24, here=(2, 2, 3))[0] == (beyond if continues else None)
 
 
 def test_a_branch_whose_other_side_is_not_found_ends(turn):

@@ -35,7 +35,7 @@ def places(points):
     return [item.orbit.a for item in points]
 
 
-def test_stable_orbits_end_at_the_first_bifurcation_that_loses_them():
+def test_stable_orbits_end_at_the_first_loss_of_stability():
     """This holds even if the branch is stable again beyond its end; an unknown end does not limit it."""
     downward = half(point(0.09), point(0.07, unstable=1), point(0.05))
     upward = half(point(0.11), point(0.13, unstable=1), point(0.15))
@@ -50,7 +50,7 @@ def test_stable_orbits_end_at_the_first_bifurcation_that_loses_them():
         assert places(BranchSegment(low, high).stable_orbits) == expected
 
 
-def test_orbits_on_the_way_to_a_corner_are_not_shown():
+def test_orbits_of_the_approach_to_a_corner_are_not_drawn():
     near = 0.5 * CLOSE
     whole = BranchSegment(
         half(point(0.09), point(0.089, length=near)),
@@ -72,7 +72,7 @@ def test_orbits_on_the_way_to_a_corner_are_not_shown():
         (0.079, 1.0, (1, 2, 1), False),
     ],
 )
-def test_an_orbit_is_held_by_its_place_its_stops_and_its_period(a, period, stop_counts, expected):
+def test_a_segment_contains_orbits_by_a_stops_and_period(a, period, stop_counts, expected):
     whole = BranchSegment(half(point(0.09), end=0.08), half(point(0.11, period=1.1), end=0.125))
     orbit = an_orbit(a, period, stop_counts)
     assert whole.contains(orbit, 1e-3) is expected
@@ -90,7 +90,7 @@ def test_an_orbit_is_held_by_its_place_its_stops_and_its_period(a, period, stop_
         ({"symmetry": Symmetry.SYMMETRIC}, False),
     ],
 )
-def test_another_orbit_of_the_same_stops_and_period_is_not_held(look, expected):
+def test_a_segment_does_not_contain_another_orbit_of_equal_stops_and_period(look, expected):
     """In a ring the rotated images of two orbits may share stops and period."""
     whole = BranchSegment(half(point(0.09)), half(point(0.11, mean_distance=0.3)))
     assert whole.contains(an_orbit(0.105, **look), 1e-3) is expected
@@ -105,8 +105,8 @@ def test_the_mean_distance_may_be_off_by_a_thousandth_for_v_0_1(off, scale, expe
 
 
 def test_a_half_branch_ends_two_orbits_after_the_first_unstable_one():
-    is_complete, points, told = _stop_after_unstable(2), [], []
+    is_complete, points, complete = _stop_after_unstable(2), [], []
     for unstable in (0, 0, 2, 0, 1):
         points.append(point(0.1, unstable=unstable))
-        told.append(is_complete(points))
-    assert told == [False, False, False, False, True]
+        complete.append(is_complete(points))
+    assert complete == [False, False, False, False, True]

@@ -45,7 +45,7 @@ def grazing():
 
 
 @pytest.mark.parametrize("parameter", ["mass[3]", "coupling[1]", "threshold[1]", "pulling[3]"])
-def test_a_number_of_one_end_breaks_the_symmetry(parameter):
+def test_a_parameter_of_one_end_block_breaks_the_symmetry(parameter):
     branch = follow(synchronized_orbit(MODEL), (0.999, 1.004), WIDE, parameter=parameter)
     assert all(point.orbit.symmetry == Symmetry.ASYMMETRIC for point in branch)
     orbit = branch[-1].orbit
@@ -54,7 +54,7 @@ def test_a_number_of_one_end_breaks_the_symmetry(parameter):
     assert end == pytest.approx(orbit.reference.vector(), abs=1e-8)
 
 
-def test_that_of_the_middle_block_keeps_it():
+def test_a_parameter_of_the_middle_block_keeps_the_symmetry():
     branch = follow(synchronized_orbit(MODEL), (0.9, 1.004), WIDE, parameter="mass[2]")
     assert all(point.orbit.symmetry == Symmetry.SYNCHRONIZED for point in branch)
 
@@ -123,7 +123,7 @@ def test_a_fold_in_the_mass_of_one_end_begins_at_the_pitchfork():
     assert slope == pytest.approx(1.5, abs=0.1)
 
 
-def test_a_pitchfork_is_not_followed_where_there_is_no_symmetry():
+def test_a_pitchfork_is_not_followed_without_symmetry():
     (pitchfork,) = locate_bifurcations(follow(synchronized_orbit(MODEL.at(0.0865)), (0.0865, 0.0875)))
     with refused("parameters", match="two that keep the mirror symmetry"):
         follow_bifurcation(pitchfork, ("a", "mass[3]"))

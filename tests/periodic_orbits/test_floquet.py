@@ -12,7 +12,7 @@ from burridge_knopoff.periodic_orbits.floquet import Multipliers, critical_value
 NONE = np.array([])
 
 
-def test_unstable_is_what_lies_outside_the_unit_circle():
+def test_multipliers_outside_the_unit_circle_are_unstable():
     found = Multipliers(np.array([-1.5, 0.6 + 0.8j, 0.6 - 0.8j, 1.0, 0.1]), np.array([2.0, -0.7]), power=2)
     assert found.unstable_count == 2
     assert np.abs(found.whole) == pytest.approx([4.0, 2.25, 1.0, 1.0, 1.0, 0.49, 0.01])
@@ -43,7 +43,7 @@ def test_mirror_blocks_desynchronize_at_a_pitchfork():
     expected = {
         (BifurcationKind.FOLD, "symmetry_preserving"): -0.5,
         (BifurcationKind.PERIOD_DOUBLING, "symmetry_preserving"): 1.5,
-        # There is no pair.
+        # The chain has no pair of mirror blocks.
         (BifurcationKind.NEIMARK_SACKER, "symmetry_preserving"): 1.0,
         (BifurcationKind.PITCHFORK, "symmetry_breaking"): 2.0 * -0.8,
         (BifurcationKind.PERIOD_DOUBLING, "symmetry_breaking"): 4.0 * 1.2,

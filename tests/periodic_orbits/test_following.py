@@ -1,4 +1,4 @@
-"""How a branch continues, joins a branch of simpler orbits or passes one, and where it ends."""
+"""How a branch continues, joins or passes a branch of simpler orbits, and where it ends."""
 
 from dataclasses import dataclass
 from types import SimpleNamespace
@@ -39,7 +39,7 @@ def test_a_branch_turns_back_without_a_fold_at_a_simpler_orbit(monkeypatch, slop
     assert following._passed_orbit(*points) == ("simpler" if touches else None)
 
 
-def test_repeats_of_another_orbit_do_not_continue_a_branch():
+def test_repetitions_of_another_orbit_do_not_continue_a_branch():
     """At a = 0.11226 an orbit with 29 stops grazes; one with one stop, which ends 3e-5 below, does not continue it."""
     model = Model(Chain(3), law_of("linearized", 0.112265625))
     position = np.array([0.10663254, 0.07868783, 0.06869955])
@@ -57,7 +57,7 @@ def test_repeats_of_another_orbit_do_not_continue_a_branch():
     )
 
 
-def doubled(a):
+def doubled_orbit(a):
     """Return the orbit with (12, 26, 26) stops, which branches off the one with (6, 13, 13) at a = 0.136416."""
     model = Model(Chain(3), law_of("linearized", a))
     position = np.array([-0.01583146, -0.00898694, -0.04390718])
@@ -66,9 +66,9 @@ def doubled(a):
 
 
 @pytest.mark.parametrize("a", [0.135, 0.1355, 0.136])
-def test_no_step_leaps_to_a_simpler_orbit(a):
+def test_no_step_jumps_to_a_simpler_orbit(a):
     """A long step past the grazing must not jump to the simple orbit, which is not nearby."""
-    orbit = doubled(a)
+    orbit = doubled_orbit(a)
     assert orbit.stop_counts == (12, 26, 26)
     branch = follow(orbit, (0.1345, 0.137), upward=False)
     corner = next(point for point in branch if point.is_grazing)
@@ -113,8 +113,8 @@ class Step:
         return self.orbit.a
 
 
-def a_step(a, length=0.0, **told):
-    return Step(SimpleNamespace(a=a), length, **told)
+def a_step(a, length=0.0, **fields):
+    return Step(SimpleNamespace(a=a), length, **fields)
 
 
 @pytest.fixture
@@ -152,8 +152,8 @@ def test_after_a_corner_steps_start_again_with_the_first_length(walk):
     assert points[-1].is_grazing
 
 
-def test_after_a_way_that_met_no_corner_the_next_step_is_as_long_as_its_last(walk):
-    """Otherwise it is a tenth of the length that was too long."""
+def test_after_an_approach_without_a_corner_the_next_step_is_as_long_as_the_last(walk):
+    """Otherwise the next step is a tenth of the length that was too long."""
     points, lengths = walk([None, None, a_step(0.21)], [[a_step(0.11, 3e-5)], [a_step(0.12, 1e-9)]], [])
     assert lengths == pytest.approx([1e-4, 3e-5, 3e-6])
     assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.21]
@@ -166,29 +166,29 @@ def test_a_branch_ends_where_it_joins_another_one(walk):
     assert [point.reduced_orbit for point in points] == [None, None, "simpler"]
 
 
-def test_a_branch_ends_where_it_has_gone_past_another_one(walk, monkeypatch):
+def test_a_branch_ends_where_it_has_passed_another_one(walk, monkeypatch):
     monkeypatch.setattr(following, "_passed_orbit", lambda first, second: "passed" if second.orbit.a == 0.12 else None)
     points, _ = walk([a_step(0.11), a_step(0.12)], [], [])
     assert [point.reduced_orbit for point in points] == [None, None, "passed"]
 
 
 def test_a_branch_ends_when_it_is_complete(walk):
-    told = []
+    counts = []
 
     def enough(points):
-        told.append(len(points))
+        counts.append(len(points))
         return len(points) == 3
 
     assert len(walk([a_step(0.11), a_step(0.12)], [], [], is_complete=enough)[0]) == 3
-    assert told == [1, 2, 3]
+    assert counts == [1, 2, 3]
     # This also applies to the approach to a corner.
-    told.clear()
+    counts.clear()
     assert len(walk([None], [[a_step(0.11), a_step(0.12), a_step(0.13)]], [], is_complete=enough)[0]) == 3
-    assert told == [1, 2, 3]
+    assert counts == [1, 2, 3]
 
 
 @pytest.mark.parametrize(("most", "count"), [(2, 2), (3, 3), (4, 5), (5, 5), (6, 6)])
-def test_a_branch_ends_with_as_many_orbits_as_are_asked_for(walk, most, count):
+def test_a_branch_has_at_most_the_requested_number_of_orbits(walk, most, count):
     """It does not end at a corner, since the other side would be missing."""
     way = [a_step(0.11), a_step(0.12), a_step(0.13, 1e-9, is_grazing=True)]
     settings = ContinuationSettings(max_orbits=most)
@@ -196,6 +196,6 @@ def test_a_branch_ends_with_as_many_orbits_as_are_asked_for(walk, most, count):
     assert [point.orbit.a for point in points] == [0.1, 0.11, 0.12, 0.13, 0.14, 0.15, 0.21][:count]
 
 
-def test_no_orbit_beyond_the_range_is_kept_but_one(walk):
+def test_at_most_one_orbit_beyond_the_range_is_kept(walk):
     points, _ = walk([None], [[a_step(0.11), a_step(0.21), a_step(0.22)]], [])
     assert [point.orbit.a for point in points] == [0.1, 0.11, 0.21]

@@ -39,7 +39,7 @@ def test_the_zero_of_a_cubic_is_found_from_its_ends(coefficients):
     assert cubic(found) == pytest.approx(0.0, abs=1e-12)
 
 
-def sampled(orbit, count=200_000):
+def sample_orbit(orbit, count=200_000):
     """Return position, velocity and whether blocks stick, at equidistant times in a period, from an independent run."""
     runner = Runner(orbit.model)
     runner.begin(orbit.reference)
@@ -60,9 +60,9 @@ def six():
     return orbit
 
 
-def test_contacts_are_what_dense_samples_show(six):
+def test_grazing_distances_agree_with_dense_samples(six):
     found = grazing_distances(six)
-    position, velocity, stuck = sampled(six, 40_000)
+    position, velocity, stuck = sample_orbit(six, 40_000)
     step, model = six.period / 40_000, six.model
     for block in range(3):
         change = np.flatnonzero(np.diff(stuck[:, block].astype(int)))
@@ -80,7 +80,7 @@ def test_contacts_are_what_dense_samples_show(six):
     assert np.isinf(found.deceleration).all()
 
 
-def test_half_an_orbit_that_is_its_own_mirror_image_shows_all():
+def test_half_of_a_symmetric_orbit_gives_all_grazing_distances():
     """The grazing distances of the whole orbit, treated as an asymmetric one."""
     model = Model(Chain(3), law_of("linearized", 0.08))
     half = limit_cycle(
@@ -96,37 +96,37 @@ def test_half_an_orbit_that_is_its_own_mirror_image_shows_all():
 
 
 @pytest.mark.parametrize("share", [0.13, 0.37, 0.62, 0.93])
-def test_contacts_do_not_depend_on_where_the_orbit_begins(six, share):
+def test_grazing_distances_do_not_depend_on_where_the_orbit_begins(six, share):
     """The result does not depend on the position of the last interval that is searched."""
     moved = replace(six, reference=flow(six.model, six.reference, share * six.period)[0].state())
     for name, values in vars(grazing_distances(six)).items():
         assert getattr(grazing_distances(moved), name) == pytest.approx(values, abs=1e-7), name
 
 
-def test_contacts_are_those_of_the_same_motion_in_other_units(six):
+def test_grazing_distances_scale_with_the_units(six):
     """With springs 900 times as stiff, all times and velocities are divided by thirty."""
     chain, start = six.model.chain, six.reference
     stiff = Chain(3, coupling=900.0 * chain.coupling, pulling=tuple(900.0 * chain.driving))
     model = Model(stiff, law_of("linearized", 30.0 * six.a), six.model.v / 30.0)
     moved = ChainState(start.position / 900.0, start.velocity / 30.0, start.stuck)
     found = grazing_distances(find_periodic_orbit(model, moved, six.return_time / 30.0, six.symmetry))
-    told = grazing_distances(six)
+    expected = grazing_distances(six)
     for name, scale in {"stick": 30.0, "slip": 30.0, "speed": 30.0, "force": 1.0}.items():
-        assert scale * getattr(found, name) == pytest.approx(getattr(told, name), rel=1e-5), name
+        assert scale * getattr(found, name) == pytest.approx(getattr(expected, name), rel=1e-5), name
 
 
-def test_all_that_falls_to_0_in_proportion(six):
-    told = [np.array([2.0, 3.0, np.inf]), *(np.full(3, value) for value in (0.5, 0.2, 0.1, 0.3))]
-    assert GrazingDistances(*told).values().tolist() == [4.0, 9.0, np.inf] + 3 * [0.25] + 3 * [0.2] + 3 * [0.1] + 3 * [
-        0.3**2
-    ]
+def test_values_of_grazing_distances_vanish_linearly(six):
+    distances = [np.array([2.0, 3.0, np.inf]), *(np.full(3, value) for value in (0.5, 0.2, 0.1, 0.3))]
+    assert GrazingDistances(*distances).values().tolist() == [4.0, 9.0, np.inf] + 3 * [0.25] + 3 * [0.2] + 3 * [
+        0.1
+    ] + 3 * [0.3**2]
 
 
 BACKWARD = ChainState(np.array([1.7, 0.4, 0.3]), np.array([-0.6, 0.3, 0.0]), np.array([False, False, True]))
 
 
 @pytest.mark.parametrize("law", ["linearized", "nonlinear", "stribeck"])
-def test_friction_pulls_a_block_forward_that_slips_backward(law):
+def test_friction_pushes_a_block_forward_that_slips_backward(law):
     """Compare with finite differences of the motion in the kernel."""
     model = Model(Chain(3, threshold=(1.0, 1.2, 1.0)), law_of(law, 0.2), contact="symmetric")
     step = 1e-4
@@ -177,7 +177,7 @@ def test_where_friction_drops_slips_end_with_a_deceleration(dropping, contact):
     assert found == pytest.approx(least, abs=1e-3)
 
 
-def test_a_reversal_is_no_short_stick():
+def test_a_reversal_is_not_a_short_stick():
     """The block stops and starts at the same time if the springs pull it back beyond its threshold."""
     orbit = two_blocks("symmetric", STATES["symmetric"])
     time, kind = orbit.events_of(1)
@@ -196,18 +196,18 @@ def test_a_deceleration_grows_with_the_threshold(dropping):
 
 
 @pytest.mark.parametrize(
-    ("law", "told"),
+    ("law", "expected"),
     [
         (law_of("linearized", 0.1), False),
-        # Its value at rest rounds to the double below 1.
+        # The friction at rest rounds to the double below 1.
         (FormulaLaw(0.1, "0.7 + 0.2 + 0.1*exp(-a*u)"), False),
         (FormulaLaw(0.1, "0.7 + 0.2 + 0.099999*exp(-a*u)"), True),
         (law_of("carlson_langer", 0.1), True),
     ],
 )
-def test_rounding_is_no_drop_of_friction(law, told):
+def test_rounding_is_not_a_drop_of_friction(law, expected):
     assert float(law(0.0)) < 1.0 or law.name == "linearized"
-    assert has_friction_drop(Model(Chain(3), law)) is told
+    assert has_friction_drop(Model(Chain(3), law)) is expected
 
 
 def peaks(values, among):
@@ -225,12 +225,12 @@ def peaks(values, among):
         ((1.5, 1.0), (0.9, 0.5), (0.0, -2.0), (True, False)),
     ],
 )
-def test_what_slips_backward_or_is_pulled_back_is_as_near_to_grazing(threshold, position, velocity, stuck):
+def test_motion_with_backward_slip_or_pull_has_grazing_distances(threshold, position, velocity, stuck):
     """Any motion has grazing distances, as an orbit does."""
     chain = Chain(len(threshold), threshold=threshold)
     model = Model(chain, law_of("linearized", 0.2), contact="symmetric")
     motion = orbit_of(model, ChainState(*map(np.array, (position, velocity, stuck))), 6.0, Symmetry.ASYMMETRIC)
-    at, rate, still = sampled(motion, 3000)
+    at, rate, still = sample_orbit(motion, 3000)
     force = chain.thresholds * float(model.law(model.v)) - at @ chain.stiffness.T
     found = grazing_distances(motion)
     for k in range(chain.blocks):

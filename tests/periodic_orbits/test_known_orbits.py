@@ -58,7 +58,7 @@ def test_a_lost_orbit_is_an_error_after_the_smallest_step(asymmetric):
     assert 1.0 <= (tried - found[-1]) / orbits_over_a.SMALLEST_STEP < 2.0
 
 
-def test_steps_become_as_short_as_the_stick_is(known, monkeypatch):
+def test_steps_become_as_short_as_the_stick(known, monkeypatch):
     """The stick vanishes with a, and with it the range of convergence of Newton's method."""
     known.known = {1e-4: known.at(1e-4)}
 
@@ -79,7 +79,7 @@ def test_an_orbit_of_another_period_is_not_on_the_branch(known):
         nearby_orbit(orbit, 0.3)
 
 
-def test_orbits_of_any_symmetry_are_continued_to_where_runs_settle(asymmetric):
+def test_continued_orbits_are_those_on_which_runs_settle(asymmetric):
     """At both values of a an independent run ends on the orbit."""
     orbit = KnownOrbits(asymmetric).at(0.121)
     again = limit_cycle(orbit.model, asymmetric.reference, settling=10_000.0)

@@ -15,7 +15,7 @@ UNEQUAL = Chain(2, threshold=(1.0, 1.1))
 
 
 @pytest.mark.parametrize(
-    ("away", "scale", "time", "stops", "told"),
+    ("away", "scale", "time", "stops", "is_repeat"),
     [
         (0.9e-4, 1.0, 1.0, (1, 2), True),
         (1.1e-4, 1.0, 1.0, (1, 2), False),
@@ -30,7 +30,9 @@ UNEQUAL = Chain(2, threshold=(1.0, 1.1))
         (0.0, 1.0, 1.0, (2, 4), False),
     ],
 )
-def test_twice_a_simpler_orbit_is_near_it_with_its_stops_in_its_time(monkeypatch, away, scale, time, stops, told):
+def test_a_repetition_of_a_simpler_orbit_is_recognized_by_place_stops_and_period(
+    monkeypatch, away, scale, time, stops, is_repeat
+):
     model = Model(UNEQUAL, law_of("linearized", 0.05), 0.1 * scale)
     reference, end = (ChainState(np.array([0.3, x]), np.full(2, 0.1), STILL) for x in (0.2, 0.2 + away))
 
@@ -47,4 +49,4 @@ def test_twice_a_simpler_orbit_is_near_it_with_its_stops_in_its_time(monkeypatch
     orbit, single = an_orbit(2.0, (2, 4)), an_orbit(time, stops)
     monkeypatch.setattr(minimal_orbit, "ReturnMap", lambda *_: SimpleNamespace(end=lambda start, after: end))
     monkeypatch.setattr(minimal_orbit, "find_periodic_orbit", lambda *_: single)
-    assert minimal_form(orbit, 1e-4) is (single if told else orbit)
+    assert minimal_form(orbit, 1e-4) is (single if is_repeat else orbit)

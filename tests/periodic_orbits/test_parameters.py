@@ -80,7 +80,7 @@ def test_curves_of_the_synchronized_orbit_under_the_linearized_law(families, par
 @pytest.mark.parametrize(
     ("kind", "a", "accuracy"), [("FOLD", 0.153732155463, 1e-11), ("GRAZING", 0.136770810812, 2e-10)]
 )
-def test_curves_where_orbits_exist_on_one_side_only(seven_stops, parameter, kind, a, accuracy):
+def test_curves_with_orbits_on_one_side_only(seven_stops, parameter, kind, a, accuracy):
     orbit = (
         seven_stops
         if kind == "FOLD"
@@ -127,7 +127,7 @@ def test_under_another_law_positions_depend_on_two_numbers(families):
         assert a * threshold == pytest.approx(critical_a(bifurcations_of(synchronized_orbits(model))), abs=1e-10)
 
 
-def test_at_small_velocities_laws_are_their_slope_at_rest(families):
+def test_at_small_velocities_only_the_slope_of_the_law_at_rest_matters(families):
     pitchfork = bifurcation_near(near(families["nonlinear"], 0.0887), 0.0887172229711765)
     a, v = follow_bifurcation(pitchfork, ("a", "v"), (2e-3, 0.1)).values[0]
     assert v <= 2e-3
@@ -201,7 +201,7 @@ def test_a_branch_in_the_coupling_loses_synchrony_where_a_is_critical():
         ({"interval": (0.2, 0.1)}, "interval: (0.2, 0.1)"),
     ],
 )
-def test_what_is_no_plane_is_refused(families, options, words):
+def test_invalid_planes_are_refused(families, options, words):
     pitchfork = bifurcation_near(near(families["linearized"], CRITICAL), CRITICAL)
     with refused(words, match="expected"):
         follow_bifurcation(pitchfork, **options)

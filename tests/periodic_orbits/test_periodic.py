@@ -40,7 +40,7 @@ def orbits():
     return found
 
 
-def moved(orbit, direction, size):
+def displaced_return(orbit, direction, size):
     """Return the return of a state next to the reference of an orbit."""
     blocks = orbit.model.blocks
     vector = orbit.reference.vector() + size * direction
@@ -49,7 +49,7 @@ def moved(orbit, direction, size):
 
 
 @pytest.mark.parametrize("name", ORBITS)
-def test_a_settled_motion_returns_and_attracts(orbits, name):
+def test_the_orbit_of_a_settled_motion_returns_and_attracts(orbits, name):
     orbit = orbits[name]
     end = Runner(orbit.model).state_after(orbit.reference, orbit.period)
     assert np.abs(end.vector() - orbit.reference.vector()).max() < 1e-11
@@ -61,7 +61,7 @@ def test_a_settled_motion_returns_and_attracts(orbits, name):
     assert len(found.whole) == 2 * orbit.model.blocks - 1
     # The monodromy agrees with finite differences.
     basis = allowed_directions(orbit.reference.stuck, ASYMMETRIC)
-    difference = [(moved(orbit, d, 1e-6) - moved(orbit, d, -1e-6)) / 2e-6 for d in basis.T]
+    difference = [(displaced_return(orbit, d, 1e-6) - displaced_return(orbit, d, -1e-6)) / 2e-6 for d in basis.T]
     assert orbit.monodromy @ basis == pytest.approx(np.stack(difference, axis=1), rel=1e-5, abs=1e-6)
 
 
@@ -106,7 +106,7 @@ def test_a_refined_orbit_is_solved_to_rounding(orbits):
         assert found.period == pytest.approx(orbit.period, abs=1e-10)
 
 
-def test_uniform_sliding_is_no_orbit(families, law):
+def test_uniform_sliding_is_not_an_orbit(families, law):
     """Uniform sliding returns after any time; Newton's method reaches it from a guess that returns too early."""
     model = families[law].at(0.08).model
     nearly = ChainState(np.array([1e-4, -1e-4, 1e-4]), np.full(3, model.v), np.zeros(3, dtype=bool))
@@ -140,7 +140,7 @@ def test_an_orbit_traversed_twice_is_detected(orbits):
 
 
 @pytest.mark.parametrize("name", ["synchronized", "symmetric"])
-def test_a_chain_that_is_not_its_own_mirror_image_has_no_such_orbit(orbits, name):
+def test_an_asymmetric_chain_has_no_symmetric_orbit(orbits, name):
     """This holds even very close to a symmetric orbit."""
     even = orbits[name]
     model = replace(even.model, chain=Chain(3, coupling=(1.0, 1.0 + 1e-7)))
@@ -161,7 +161,7 @@ def test_an_orbit_starts_at_the_first_stop_of_a_block(orbits):
         assert start.velocity[block] == 0.0
 
 
-def test_what_is_no_orbit_is_refused(orbits):
+def test_guesses_that_do_not_lead_to_an_orbit_are_refused(orbits):
     orbit = orbits["asymmetric"]
     with pytest.raises(OrbitError, match=r"a = 0\.12: no periodic orbit found near the guess"):
         find_periodic_orbit(orbit.model, orbit.reference, 0.37 * orbit.period, ASYMMETRIC)

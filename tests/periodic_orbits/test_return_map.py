@@ -29,7 +29,7 @@ def test_the_derivative_by_a_is_taken_from_the_side_that_the_law_allows():
     assert derivative(1.0) == pytest.approx(derivative(1.0 - 1e-6), abs=1e-4)
 
 
-def test_what_a_law_does_not_allow_is_no_orbit():
+def test_there_is_no_orbit_outside_the_range_of_a_law():
     with pytest.raises(OrbitError, match="above 0 and at most 1"):
         model_at(Model(Chain(3), LAW), 1.001)
 
@@ -37,16 +37,16 @@ def test_what_a_law_does_not_allow_is_no_orbit():
 def test_the_derivative_by_a_is_that_of_the_same_events_of_each_block(monkeypatch):
     model = Model(Chain(3), law_of("linearized", 0.1))
     end = ChainState(np.zeros(3), np.zeros(3), np.zeros(3, dtype=bool))
-    told = [
-        (1e-7, [(0.1, 0, 1), (0.2, 0, 0), (0.3, 1, 0)]),  # one more
+    runs = [
+        (1e-7, [(0.1, 0, 1), (0.2, 0, 0), (0.3, 1, 0)]),  # one event more
         (1e-7, [(0.1, 0, 0)]),
         (1e-8, [(0.1, 0, 1), (0.2, 1, 0)]),  # of another kind
         (1e-8, [(0.3, 1, 0), (0.4, 0, 0)]),  # of two blocks, in another order
     ]
-    left = iter(told)
+    left = iter(runs)
 
     def ran(events, after):
-        """Return what stands for a runner that has come to an end with these events."""
+        """Return a stand-in for a runner that has ended with these events."""
         columns = tuple(np.array(events).reshape(-1, 3).T)
         return SimpleNamespace(events=lambda: columns, state_after=lambda start, time: after)
 
@@ -58,7 +58,7 @@ def test_the_derivative_by_a_is_that_of_the_same_events_of_each_block(monkeypatc
     monkeypatch.setattr(return_map, "Runner", runner)
     mapping = ReturnMap(model, Symmetry.ASYMMETRIC)
     found = mapping.parameter_derivative(end, 1.0, end, np.array([[0, 0], [1, 0]]), line_along_a(model.chain))
-    # The last is below: a smaller by 1e-8.
+    # The last run is at an a smaller by 1e-8.
     assert found == pytest.approx([3.0, 3.0, 3.0, 0.0, 0.0, 0.0])
     monkeypatch.setattr(return_map, "Runner", lambda model, keep_events: ran([], end))
     assert (

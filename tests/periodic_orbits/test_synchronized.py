@@ -103,7 +103,7 @@ def test_small_a_is_a_grazing_normal_mode(families, law):
     assert second < min(1e-7, 0.02 * first)
 
 
-def test_the_linearized_law_has_no_scale(families, law):
+def test_the_linearized_law_has_no_intrinsic_velocity(families, law):
     """Divided by v, the linearized equations do not contain v: period and multipliers do not depend on it."""
     orbit = families[law].at(0.1)
     other = synchronized_orbits(replace(orbit.model, v=0.3)).at(0.1)
@@ -112,7 +112,7 @@ def test_the_linearized_law_has_no_scale(families, law):
     assert (abs(transverse(other) - transverse(orbit)) < 1e-11) == same
 
 
-def test_an_orbit_does_not_depend_on_the_way_to_it(families):
+def test_an_orbit_does_not_depend_on_the_path_of_continuation(families):
     fine = synchronized_orbits(families["nonlinear"].model)
     for a in np.arange(0.055, 0.1501, 0.005):
         orbit = fine.at(float(a))
@@ -160,7 +160,7 @@ def test_chains_of_any_length_have_the_orbit(law, blocks):
     assert (parted[1] > parted[0]) == (abs(found.transverse) > 1.0)
 
 
-def test_where_a_law_is_none_there_is_no_orbit():
+def test_there_is_no_orbit_outside_the_range_of_a_law():
     """Φ(0) = 1.2 − 3a is above 1, or not above 0, but in between."""
     with pytest.raises(OrbitError, match="at most 1"):
         synchronized_orbits(Model(Chain(3), FormulaLaw(0.1, "1.2 - 3*a - 0.05*u"))).at(0.05)
@@ -170,7 +170,7 @@ BUILT_IN = [law_of(name, 0.08) for name in ("exponential", "stribeck", "carlson_
 
 
 @pytest.mark.parametrize("law", [*BUILT_IN, FormulaLaw(0.08, "1 - a*c*tanh(u/c)", c=0.5)])
-def test_any_law_has_an_orbit_that_runs_end_on(law):
+def test_runs_end_on_the_orbit_of_any_law(law):
     """Where the multiplier is below 1, runs from slightly asymmetric states synchronize."""
     model = Model(Chain(3, threshold=(1.0, 0.8, 1.0)), law)
     orbit = synchronized_orbit(model)

@@ -39,7 +39,7 @@ def critical(bifurcations):
     return {law: critical_a(bifurcations[law]) for law in PAPER_LAWS}
 
 
-def test_the_changes_of_the_paper_s_orbits(bifurcations, law):
+def test_the_bifurcations_of_the_papers_orbits(bifurcations, law):
     assert [bifurcation.kind for bifurcation in bifurcations[law]] == [
         BifurcationKind.GRAZING,
         BifurcationKind.PITCHFORK,
@@ -47,8 +47,8 @@ def test_the_changes_of_the_paper_s_orbits(bifurcations, law):
     ]
 
 
-def test_critical_a_is_the_known_one(critical):
-    """The digits that `proof` has proved."""
+def test_critical_a_has_the_proved_digits(critical):
+    """The digits are those proved in `proof`."""
     known = {"linearized": 0.0869729046660773, "nonlinear": 0.0887172229711765}
     assert critical == pytest.approx(known, abs=1e-14)
 
@@ -74,12 +74,12 @@ def test_grazing_a_in_exact_arithmetic(families, bifurcations, law):
     assert np.isnan(grazing_a(bifurcations[law], block=0))
 
 
-def test_symmetric_multiplier_at_the_flip(families, bifurcations, law):
+def test_the_symmetric_multiplier_is_minus_1_at_the_period_doubling(families, bifurcations, law):
     a = symmetric_period_doubling_a(bifurcations[law])
     assert multipliers(families[law].at(a)).symmetry_preserving[0] == pytest.approx(-1.0, abs=1e-12)
 
 
-def test_no_change_is_told():
+def test_without_bifurcations_critical_values_are_nan():
     assert np.isnan([critical_a([]), symmetric_period_doubling_a([]), grazing_a([], block=1)]).all()
 
 
@@ -93,7 +93,7 @@ def test_grazing_next_to_an_orbit_that_is_not_found():
 
 @pytest.mark.parametrize("lost", [(0.0, 0.03), (0.05, 0.06), (0.2, 1.0)])
 def test_bifurcations_around_a_gap_of_the_orbit_are_found(families, critical, monkeypatch, lost):
-    """The branch may break off below, above, or on both sides."""
+    """The branch may be interrupted below, above, or on both sides."""
 
     class Partly(KnownOrbits):
         def at(self, a):
@@ -120,7 +120,7 @@ def test_finite_differences_agree_with_the_tangent_map(families, law, a):
     assert finite_difference_multiplier(orbit) == pytest.approx(transverse(orbit), abs=1e-9)
 
 
-def test_differences_of_blocks_1_and_3_fade_below_and_grow_above(families, critical, law):
+def test_differences_of_blocks_1_and_3_decay_below_a_c_and_grow_above(families, critical, law):
     for offset in (-0.002, 0.002):
         orbit = families[law].at(critical[law] + offset)
         start, end = (
@@ -171,7 +171,7 @@ def test_five_blocks_desynchronize_where_the_leading_multiplier_is_1():
     assert [abs(multipliers(orbits.at(a + side)).transverse) > 1.0 for side in (-1e-6, 1e-6)] == [False, True]
 
 
-def test_the_error_of_critical_a_is_how_far_a_multiplier_that_is_off_moves_it(monkeypatch, families):
+def test_the_error_of_critical_a_follows_from_the_error_of_the_multiplier(monkeypatch, families):
     """A multiplier with slope 5 that is too small by 0.01 reaches 1 at an a larger by 0.002."""
     monkeypatch.setattr(
         synchronized_bifurcations, "multipliers", lambda a: SimpleNamespace(transverse=1.0 + 5.0 * (a - 0.2))

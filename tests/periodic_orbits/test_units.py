@@ -39,7 +39,7 @@ def paper(time=1.0, length=1.0, a=0.08, law="linearized"):
     return Model(chain, law_of(law, a * time / length), v=0.1 * length / time)
 
 
-def begun(model, time, length):
+def asymmetric_state(model, time, length):
     """Return a state of no symmetry."""
     position = tuple(length * x for x in (-0.9, -1.15, -1.0))
     return model.begin(InitialState("own", position, 0.1 * length / time))
@@ -104,8 +104,8 @@ def test_a_fast_chain_takes_no_longer(monkeypatch, mass):
 @pytest.mark.parametrize(("time", "length"), UNITS)
 def test_an_orbit_that_a_motion_settles_on_scales(time, length):
     model = paper(time, length)
-    found = limit_cycle(model, begun(model, time, length), settling=4000.0 * time)
-    one = limit_cycle(paper(), begun(paper(), 1.0, 1.0), settling=4000.0)
+    found = limit_cycle(model, asymmetric_state(model, time, length), settling=4000.0 * time)
+    one = limit_cycle(paper(), asymmetric_state(paper(), 1.0, 1.0), settling=4000.0)
     assert (found.symmetry, found.stop_counts) == (one.symmetry, one.stop_counts)
     assert found.period / time == pytest.approx(one.period, abs=1e-11)
 
@@ -148,8 +148,8 @@ def test_bifurcations_of_the_synchronized_orbit_scale(time, length):
 @pytest.mark.parametrize(("time", "length"), UNITS)
 def test_a_transverse_exponent_scales(time, length):
     model = paper(time, length)
-    one = np.array(transverse_exponent(paper(), begun(paper(), 1.0, 1.0)))
-    state = begun(model, time, length)
+    one = np.array(transverse_exponent(paper(), asymmetric_state(paper(), 1.0, 1.0)))
+    state = asymmetric_state(model, time, length)
     for times in ((), (200.0 * time, 2500.0 * time)):
         assert np.array(transverse_exponent(model, state, *times)) * time == pytest.approx(one, abs=1e-10)
     with pytest.raises(ValueError, match="^window: got"):

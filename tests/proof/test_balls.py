@@ -19,7 +19,7 @@ def test_limits_are_the_nearest_doubles_around(numerator, denominator):
     assert (low == high) == (exact == Fraction(float(exact)))
 
 
-def test_limits_hold_both_ends_of_a_wide_ball():
+def test_limits_contain_both_ends_of_a_wide_ball():
     with arithmetic():
         low, high = limits(arb(1, 0.1))
     assert Fraction(low) <= Fraction(1) - Fraction(0.1)
@@ -40,7 +40,7 @@ def test_a_decimal_and_its_double_are_in_one_ball():
     assert 0.0 < width(ball) < 1e-17
 
 
-def test_digits_tell_how_far_they_may_be_off():
+def test_digits_state_their_error():
     with arithmetic():
         text = digits(arb(2).sqrt())
         assert text.startswith("[1.41421356237309504880168872420969807857")
@@ -48,7 +48,7 @@ def test_digits_tell_how_far_they_may_be_off():
         assert width(arb(text)) < 1e-38
 
 
-def test_precision_is_given_back():
+def test_precision_is_restored():
     before = ctx.prec, ctx.cap
     with arithmetic(5):
         assert (ctx.prec, ctx.cap) == (BITS, 5)

@@ -10,7 +10,7 @@ from burridge_knopoff.proof.bounds import bounds, check_positive, jet
 
 
 def touching(height, at=1 / 3):
-    """Return a parabola with a given minimum at a third."""
+    """Return a parabola with a given minimum at t = 1/3."""
     return lambda t: (t - at) * (t - at) + height
 
 
@@ -20,7 +20,7 @@ def test_a_function_that_comes_near_to_0_is_positive():
 
 
 @pytest.mark.parametrize("height", [-1e-9, 0.0, -0.1])
-def test_a_dip_of_any_depth_is_seen(height):
+def test_a_dip_of_any_depth_is_detected(height):
     """1e-9 below 0 for 6e-5 of the time."""
     with pytest.raises(ProofError, match=r"at the time 0\.\d+ of an arc"):
         check_positive(touching(height), arb(1))
@@ -37,7 +37,7 @@ def started(t):
     return t * t * (2 - t)
 
 
-def test_known_roots_at_the_ends_are_no_events():
+def test_known_roots_at_the_ends_are_not_events():
     check_positive(started, arb(2), root_at_start=True, root_at_end=True)
     check_positive(started, arb(1.99), root_at_start=True)
     check_positive(lambda t: 2 - t, arb(2), root_at_end=True)
@@ -64,7 +64,7 @@ def test_known_roots_at_the_ends_are_no_events():
         (lambda t: t * t * ((t - 0.001) * (t - 0.001) - 1e-12), 1.0, {"root_at_start": True}),
     ],
 )
-def test_other_roots_are(function, length, known):
+def test_other_roots_prevent_the_proof(function, length, known):
     with pytest.raises(ProofError):
         check_positive(function, arb(length), **known)
 
@@ -78,7 +78,7 @@ def test_the_proof_is_for_all_lengths_of_a_ball():
         check_positive(touching(-1e-9, 2.4), wide)
 
 
-def test_a_jet_holds_a_function_and_its_derivatives_at_all_times():
+def test_a_jet_encloses_a_function_and_its_derivatives_at_all_times():
     with arithmetic():
         value, slope, curvature = jet(lambda t: (2 * t).sin(), arb(0.5, 0.1))
         for time in (0.4001, 0.5, 0.5999):
@@ -87,7 +87,7 @@ def test_a_jet_holds_a_function_and_its_derivatives_at_all_times():
             assert curvature.contains(-4 * (2 * arb(time)).sin())
 
 
-def test_bounds_hold_all_values_and_little_more():
+def test_bounds_enclose_all_values_tightly():
     with arithmetic():
         ball = bounds(lambda t: t.sin(), arb(math.pi))
         assert ball.contains(1)

@@ -27,7 +27,7 @@ def branch(family):
     return prove_branch(family.at(0.086), fmpq(86, 1000), fmpq(88, 1000))
 
 
-def test_the_interval_holds_a_c_of_50_digits_and_of_the_double_code(found, family):
+def test_the_interval_contains_a_c_of_50_digits_and_of_double_precision(found, family):
     guess = [float(value) for value in (*found.orbit.enclosure.inner, found.a)]
     exact = exact_orbit(guess, None)
     assert holds(found.a, exact.a)
@@ -38,7 +38,7 @@ def test_the_interval_holds_a_c_of_50_digits_and_of_the_double_code(found, famil
     assert abs(critical_a(bifurcations_of(family)) - float(found.a)) < 2e-15
 
 
-def test_the_multiplier_is_1_there_and_passes_it(found, family):
+def test_the_multiplier_passes_1_at_a_c(found, family):
     assert found.orbit.multiplier.contains(1)
     assert width(found.orbit.multiplier) < 1e-45
     for side, below in ((-1e-12, True), (1e-12, False)):
@@ -68,7 +68,7 @@ def test_a_range_is_covered_without_gaps(branch):
             assert left.orbit.a.mid() < right.orbit.a.mid()
 
 
-def test_the_family_holds_the_orbits_of_the_double_code(branch, family):
+def test_the_family_contains_the_orbits_in_double_precision(branch, family):
     for a in (0.08605, 0.0869, 0.08751, 0.08799):
         orbit = family.at(a)
         (piece,) = [piece for piece in branch if piece.orbit.a.contains(arb(a))]
@@ -81,7 +81,7 @@ def test_the_family_holds_the_orbits_of_the_double_code(branch, family):
         assert piece.orbit.slope > 0
 
 
-def test_an_orbit_of_another_a_is_none_of_the_family(branch, family):
+def test_an_orbit_of_another_a_is_not_in_the_family(branch, family):
     for a, piece, at in ((0.09, branch[0], branch[0].orbit.a.mid()), (0.0861, branch[-1], arb(0.0861))):
         other = prove_orbit(family.at(a), arb(a)).enclosure
         with pytest.raises(ProofError, match="not proved to be an orbit of the family"):

@@ -40,7 +40,7 @@ def test_a_solution_is_enclosed_and_the_only_one_in_its_box():
 
 
 @pytest.mark.parametrize(("middle", "radius"), [(1.0, 2.5), (1.5, 0.2), (1.3, 0.2), (1.0, 1.5)])
-def test_a_box_without_a_single_solution_that_can_be_seen_is_refused(middle, radius):
+def test_boxes_without_a_provable_single_solution_are_refused(middle, radius):
     """Boxes with both solutions, with none, with one nearby, and one box too wide for the proof."""
     with pytest.raises(ProofError, match=r"unknown \d: got .*, expected it in the interior of "):
         enclose(circle_and_line, [arb(middle)] * 2, [radius] * 2)

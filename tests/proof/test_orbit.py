@@ -22,16 +22,16 @@ from tests.proof.conftest import changed, holds
 from tests.proof.exact import exact_orbit
 
 
-def proved_at(family, a):
+def prove_at(family, a):
     return prove_orbit(family.at(a), arb(a))
 
 
 @pytest.fixture(scope="module")
 def proved(family):
-    return proved_at(family, 0.08)
+    return prove_at(family, 0.08)
 
 
-def test_enclosures_hold_the_orbit_of_50_digits(proved):
+def test_enclosures_contain_the_orbit_of_50_digits(proved):
     exact = exact_orbit([float(value) for value in proved.enclosure.inner], 0.08)
     for ball, number in zip(proved.enclosure.inner, exact.unknown, strict=True):
         assert holds(ball, number)
@@ -44,8 +44,8 @@ def test_enclosures_hold_the_orbit_of_50_digits(proved):
 
 # Below 0.0757 the end blocks start first.
 @pytest.mark.parametrize("a", [0.05, 0.07, 0.08, 0.0869, 0.15, 0.3])
-def test_enclosures_hold_the_orbit_of_the_double_code(family, a):
-    proved, orbit = proved_at(family, a), family.at(a)
+def test_enclosures_contain_the_orbit_in_double_precision(family, a):
+    proved, orbit = prove_at(family, a), family.at(a)
     assert float(proved.period) == pytest.approx(orbit.period, abs=1e-13)
     slipping = (LATERAL, CENTER)[proved.arcs[-1].event_block]
     first = next(time for time, block, kind in orbit.events if (block, kind) == (slipping, 1))
@@ -73,7 +73,7 @@ def test_an_orbit_is_proved_for_all_a_of_a_ball(family):
 
 def test_the_slope_is_that_of_differences(proved, family):
     step = 1e-6
-    ends = [proved_at(family, 0.08 + side * step).multiplier for side in (-1, 1)]
+    ends = [prove_at(family, 0.08 + side * step).multiplier for side in (-1, 1)]
     with arithmetic():
         assert abs(proved.slope - (ends[1] - ends[0]) / (2 * arb(step))) < 1e-8
 
@@ -81,7 +81,7 @@ def test_the_slope_is_that_of_differences(proved, family):
 @pytest.mark.parametrize("a", [0.07, 0.08, 0.2])
 def test_the_symmetric_multiplier_is_the_derivative_of_the_return_map(family, a):
     """By the implicit function theorem; one eigenvalue is 0, so that the multiplier is the trace."""
-    proved = proved_at(family, a)
+    proved = prove_at(family, a)
     matrix = derivatives(equations(proved.arcs), [*proved.enclosure.inner, proved.a])
     places, times, events, ends = range(2), range(2, 6), range(4), range(4, 6)
     with arithmetic():
@@ -107,7 +107,7 @@ def test_a_shift_along_the_flow_returns(proved):
             assert width(shift) < 1e-45
 
 
-def test_bounds_of_speed_and_force_are_those_of_a_run(proved, family):
+def test_bounds_of_speed_and_force_agree_with_a_run(proved, family):
     state = InitialState("on", *slipping_state(family.at(0.08)))
     run = simulate("linearized", 0.08, state, transient=0.0, window=50.0, batches=2)
     for found, bound in (
@@ -140,7 +140,7 @@ def test_a_ball_of_a_that_is_too_wide_is_refused(family):
         (2, -0.01, "block 2, the arc until block 2 stop: .* no root at its end"),
         # Block 2 would have stopped, and slipped back, before the end of its arc.
         (2, 0.1, "block 2, the arc until block 2 stop: not proved to keep sticking or slipping"),
-        # Blocks 1 and 3 would have started before.
+        # Blocks 1 and 3 would have started earlier.
         (3, 0.1, "blocks 1 and 3, the arc until block 2 start: not proved to keep sticking or slipping"),
     ],
 )

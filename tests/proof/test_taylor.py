@@ -50,7 +50,7 @@ def motion(slips, a=A):
 
 
 @pytest.mark.parametrize("slips", SLIPS)
-def test_an_arc_holds_the_solution_of_mpmath(slips):
+def test_an_arc_encloses_the_solution_of_mpmath(slips):
     with mpmath.workdps(35), arithmetic():
         state, start = state_of(slips)
         exact = mpmath.odefun(motion(slips), 0, start)
@@ -63,7 +63,7 @@ def test_an_arc_holds_the_solution_of_mpmath(slips):
                 assert width(ball) < 1e-20
 
 
-def test_a_ball_of_times_holds_all_states_meanwhile():
+def test_a_ball_of_times_encloses_all_states():
     slips = (True, True)
     with arithmetic():
         path = law().path(slips, state_of(slips)[0], arb(A))
@@ -132,12 +132,12 @@ def test_as_v_falls_to_0_the_law_is_the_linearized_one():
         (arb(0), arb(-1), "time: got -1.*, expected 0 to 100"),
     ],
 )
-def test_what_has_no_bound_is_refused(speed, time, message):
+def test_unbounded_motion_is_refused(speed, time, message):
     with pytest.raises(ProofError, match=message):
         law().path((True, True), State((arb(0), arb(0)), (speed, arb(0))), arb(A))(time)
 
 
-def test_a_step_that_no_box_holds_is_refused(monkeypatch):
+def test_a_step_that_no_box_encloses_is_refused(monkeypatch):
     """Over so long a time Picard's operator maps no box into itself."""
     monkeypatch.setattr(taylor, "STEP", fmpq(3, 2))
     with pytest.raises(ProofError, match=r"step 1 of an arc: found no box|1 \+ aU': got"):
@@ -172,7 +172,7 @@ def test_a_c_of_the_nonlinear_law(found, family):
     )
 
 
-def test_it_is_that_of_an_integration_of_25_digits(found):
+def test_a_c_agrees_with_an_integration_of_25_digits(found):
     """Integrate a period from the enclosed positions with the Taylor series of mpmath."""
     inner = found.orbit.enclosure.inner
     with mpmath.workdps(25):

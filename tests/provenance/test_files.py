@@ -1,4 +1,4 @@
-"""Files are written whole or not at all."""
+"""Files are written completely or not at all."""
 
 import errno
 import os
@@ -18,7 +18,7 @@ from burridge_knopoff.provenance.files import (
 )
 
 
-def test_a_failed_write_leaves_what_was_there(tmp_path):
+def test_a_failed_write_keeps_the_previous_file(tmp_path):
     path = tmp_path / "result.txt"
     write_text(path, "old")
 
@@ -34,11 +34,11 @@ def test_a_failed_write_leaves_what_was_there(tmp_path):
 
 
 @pytest.mark.parametrize("error", [PermissionError(errno.EACCES, "Permission denied"), RuntimeError("HDF error")])
-def test_a_full_disk_is_said_to_be_full(tmp_path, error):
-    """Whatever netCDF4 takes it for."""
+def test_a_full_disk_is_reported(tmp_path, error):
+    """This holds whatever error netCDF4 reports."""
 
     def fail(name):
-        # What is written to it finds no space.
+        # Writing to this device fails for lack of space.
         os.symlink("/dev/full", name)
         raise error
 
@@ -66,15 +66,15 @@ def leftover(path):
 
 
 @pytest.mark.parametrize("name", ["a0.0500.nc", "figure.png", "claims", "[a].txt", "a+b.nc"])
-def test_what_a_killed_writer_left_goes_with_the_next_write(tmp_path, name):
+def test_the_next_write_removes_leftovers_of_a_killed_writer(tmp_path, name):
     (left,) = leftover(tmp_path / name)
     assert re.fullmatch(rf"\.{re.escape(tmp_path.joinpath(name).stem)}\.part-[0-9a-f]{{8}}(\.\w+)?", left)
     write_text(tmp_path / name, "whole")
     assert [item.name for item in tmp_path.iterdir()] == [name]
 
 
-def test_temporary_files_of_others_stay(tmp_path):
-    """Names that begin alike, another suffix, and files that are none of ours."""
+def test_temporary_files_of_others_are_kept(tmp_path):
+    """The files have similar names, another suffix, or another origin."""
     others = {".a0.05.1.part-0123abcd.nc", ".a0.05.part-0123abcd.pdf", ".a0.05.part-notes.nc", ".a0.05.nc"}
     for name in others:
         (tmp_path / name).touch()
@@ -100,7 +100,7 @@ def test_two_writers_of_one_file(tmp_path):
     assert [item.name for item in tmp_path.iterdir()] == ["a.txt"]
 
 
-def test_a_writer_that_never_makes_its_file(tmp_path):
+def test_a_writer_that_makes_no_file(tmp_path):
     with pytest.raises(OSError, match=r"a\.txt: cannot be written: No such file or directory"):
         write_whole(tmp_path / "a.txt", lambda name: None)
 

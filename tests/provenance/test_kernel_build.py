@@ -1,4 +1,4 @@
-"""A kernel that was compiled from other sources than those on disk is refused."""
+"""A kernel compiled from other sources than those on disk is refused."""
 
 import json
 import os
@@ -38,14 +38,14 @@ def refusal(package):
     return done.stderr.strip().splitlines()[-1]
 
 
-def test_the_kernel_here_is_that_of_its_sources():
+def test_the_installed_kernel_matches_its_sources():
     kernel_build.check_kernel(compiled=True)
     recorded = json.loads((kernel_build.KERNEL / kernel_build.RECORD).read_text())
     assert recorded == kernel_build.current_build()
     assert {"kernel/__init__.py", str(MODULE), "provenance/compilation.py"} <= recorded["sources"].keys()
 
 
-def test_as_it_was_built_it_runs(package):
+def test_an_unchanged_kernel_runs(package):
     assert run(package).stdout == "completed\n"
 
 
@@ -60,19 +60,19 @@ def test_changed_code_is_refused_with_the_command_that_rebuilds(package, name):
     assert done.stderr == f"bk simulate: {expected}\n"
 
 
-def test_a_comment_is_no_change(package):
+def test_a_changed_comment_is_ignored(package):
     change(package / "kernel/__init__.py", code=False)
     change(package / MODULE, code=False)
     assert run(package).stdout == "completed\n"
 
 
 @pytest.mark.parametrize("name", ["more.py", "more.h", "more.cpp"])
-def test_a_new_source_is_seen(package, name):
+def test_a_new_source_is_noticed(package, name):
     (package / "kernel" / name).write_text("x = 1\n")
     assert f"kernel/{name}: has changed" in refusal(package)
 
 
-def test_a_missing_source_is_seen(package):
+def test_a_missing_source_is_noticed(package):
     (package / MODULE).unlink()
     assert f"{MODULE}: has changed" in refusal(package)
 
@@ -94,7 +94,7 @@ def test_an_uncompiled_kernel_is_refused(package):
 
 
 def test_a_kernel_for_a_newer_processor_is_refused_before_it_is_loaded(package):
-    """Its first instruction that this machine lacks would end Python by a signal, without a word."""
+    """The first instruction that this machine lacks would end Python by a signal, without a message."""
     path = package / "kernel" / kernel_build.RECORD
     record = json.loads(path.read_text())
     (needed,) = record["instructions"].values()

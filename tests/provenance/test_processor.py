@@ -1,4 +1,4 @@
-"""What a processor has, as Linux tells it, and what is compiled for it."""
+"""The features of a processor, as Linux lists them, and the kernel compiled for it."""
 
 import pytest
 
@@ -11,7 +11,7 @@ NEW = f"{OLD} fma f16c movbe abm bmi1 avx2 bmi2 avx512f avx512dq avx512cd avx512
 
 @pytest.fixture
 def machine(tmp_path, monkeypatch):
-    """A function that makes this machine one with these flags, or one that does not tell them."""
+    """Return a function that gives this machine a processor with these flags, or with unknown flags."""
 
     def becomes(flags):
         path = tmp_path / "cpuinfo"
@@ -24,7 +24,7 @@ def machine(tmp_path, monkeypatch):
     return becomes
 
 
-def test_native_code_moves_to_a_newer_processor_only(machine):
+def test_native_code_runs_only_on_newer_processors(machine):
     machine(OLD)
     for_old = processor.required_instructions(["-O3", "-march=native"])
     machine(NEW)
@@ -37,8 +37,8 @@ def test_native_code_moves_to_a_newer_processor_only(machine):
 
 
 @pytest.mark.parametrize(("lanes", "lacks"), [("2", ""), ("4", "avx2"), ("8", "avx512f")])
-def test_the_lanes_asked_for_decide_and_not_the_machine(machine, lanes, lacks):
-    """x86-64-v2, v3 and v4, wherever they are compiled."""
+def test_the_requested_lanes_decide_and_not_the_machine(machine, lanes, lacks):
+    """The levels are x86-64-v2, v3 and v4, wherever they are compiled."""
     machine(NEW)
     needed = processor.required_instructions([LEVELS[lanes]])
     assert processor.missing_instructions(needed) == []
@@ -50,8 +50,8 @@ def test_the_lanes_asked_for_decide_and_not_the_machine(machine, lanes, lacks):
 
 
 @pytest.mark.parametrize(("flags", "chosen"), [(NEW, "8"), (OLD, "2"), ("sse2", "2"), (None, "2")])
-def test_of_several_builds_the_widest_that_runs_is_chosen(machine, flags, chosen):
-    """Where the processor is not told, the narrowest: a wider one could end Python by a signal."""
+def test_the_widest_build_that_runs_is_chosen(machine, flags, chosen):
+    """On an unknown processor the narrowest is chosen, since a wider one could end Python by a signal."""
     machine(flags)
     assert (
         processor.best_build({lanes: processor.required_instructions([flag]) for lanes, flag in LEVELS.items()})
@@ -60,12 +60,12 @@ def test_of_several_builds_the_widest_that_runs_is_chosen(machine, flags, chosen
 
 
 @pytest.mark.parametrize("flags", [None, ""])
-def test_where_the_processor_is_not_told_nothing_is_refused(machine, flags):
+def test_on_an_unknown_processor_nothing_is_refused(machine, flags):
     machine(flags)
     assert processor.required_instructions(["-march=native"]) == []
     assert processor.missing_instructions(["avx512f"]) == []
 
 
-def test_without_flags_for_a_processor_any_will_do(machine):
+def test_code_without_processor_flags_runs_anywhere(machine):
     machine(NEW)
     assert processor.required_instructions(["-O3", "-g0"]) == []

@@ -1,4 +1,4 @@
-"""Whose results a folder holds, and of which commit; also in a worktree and with packed references."""
+"""The study and the commit of a folder of results, also in a worktree and with packed references."""
 
 import json
 import subprocess
@@ -23,7 +23,7 @@ def recorded(folder):
         ("moved.yaml", GIVEN),
     ],
 )
-def test_an_edited_or_a_moved_config_keeps_its_folder(tmp_path, monkeypatch, config_file, given):
+def test_an_edited_or_moved_config_keeps_its_folder(tmp_path, monkeypatch, config_file, given):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "sub").mkdir()
     recorded(tmp_path)
@@ -44,7 +44,7 @@ def test_another_config_of_the_same_name_is_refused(tmp_path, monkeypatch):
     check_owner(tmp_path, "other.yaml", {})
 
 
-def test_a_damaged_record_refuses_nobody(tmp_path):
+def test_a_damaged_record_refuses_no_config(tmp_path):
     (tmp_path / "study.json").write_text("{")
     check_owner(tmp_path, "other.yaml", GIVEN)
 
@@ -57,7 +57,7 @@ def git(folder, *command):
 
 @pytest.fixture
 def checkout(tmp_path, monkeypatch):
-    """A repository with one commit; its package folder stands in for the real one."""
+    """A repository with one commit, whose package folder replaces the real one."""
 
     def look(folder):
         monkeypatch.setattr(record, "PACKAGE", folder / "src" / "burridge_knopoff")
@@ -87,10 +87,10 @@ def test_the_commit_of_a_checkout_a_worktree_and_a_detached_head(checkout):
     assert look(root) == commit
 
 
-def test_changed_files_are_told(checkout):
+def test_changed_files_are_reported(checkout):
     root, look = checkout
     (root / "one.txt").write_text("1")
-    # What is not under version control, as results, changes no commit.
+    # Files that are not under version control, such as results, do not count as changes.
     assert not look(root).endswith("-dirty")
     git(root, "add", "one.txt")
     git(root, "commit", "-q", "-m", "second")
@@ -101,6 +101,6 @@ def test_changed_files_are_told(checkout):
     assert look(root) == f"{commit}-dirty"
 
 
-def test_no_checkout_has_no_commit(checkout, tmp_path):
+def test_outside_a_checkout_there_is_no_commit(checkout, tmp_path):
     _, look = checkout
     assert look(tmp_path / "elsewhere") == "unknown"

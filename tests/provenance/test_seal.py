@@ -1,4 +1,4 @@
-"""The seal of a file: what it says, and that no netCDF program minds it; tests/fuzzing changes sealed files."""
+"""The seal of a file, and that netCDF programs ignore it; tests/fuzzing changes sealed files."""
 
 import hashlib
 import subprocess
@@ -42,8 +42,8 @@ def test_the_netcdf_library_reads_a_sealed_file(path, tmp_path):
 
 @needs("BK_NCDUMP")
 def test_ncdump_reads_a_sealed_file(path):
-    said = subprocess.run([setting("BK_NCDUMP"), "-v", "status", str(path)], capture_output=True, text=True)
-    assert "status = 0" in said.stdout, said.stderr
+    process = subprocess.run([setting("BK_NCDUMP"), "-v", "status", str(path)], capture_output=True, text=True)
+    assert "status = 0" in process.stdout, process.stderr
 
 
 def test_missing_empty_and_unreadable_files(tmp_path):
@@ -58,8 +58,8 @@ def test_missing_empty_and_unreadable_files(tmp_path):
             read_seal(tmp_path / name)
 
 
-def test_another_seal_is_no_seal(path, tmp_path):
-    """The line is part of what is sealed: nobody's status or command can be written into it."""
+def test_a_changed_seal_is_invalid(path, tmp_path):
+    """The line is itself sealed, so that neither status nor command can be replaced in it."""
     target = tmp_path / "forged.nc"
     for old, new in ((b" completed ", b" diverged "), (b"--a 0.08", b"--a 0.09")):
         target.write_bytes(path.read_bytes().replace(old, new))
@@ -73,8 +73,8 @@ ABOUT = {"file": "summary/x.txt", "motion": {"period": 1.0, "kind": "one"}, "inp
 
 
 @pytest.mark.parametrize("name", ["x.nc", "x.txt", "x.png"])
-def test_what_differs_is_said(tmp_path, name):
-    """The same for a file that holds its seal and for one that has it beside it."""
+def test_differences_are_named(tmp_path, name):
+    """The message is the same for a file that contains its seal and for one with a separate seal."""
     path = tmp_path / name
     write_sealed(path, lambda name: Path(name).write_bytes(b"content"), ABOUT)
     assert path.read_bytes().startswith(b"content")
@@ -108,7 +108,7 @@ def test_what_differs_is_said(tmp_path, name):
         (lambda path: seal_path(path).write_bytes(b"noise"), "has no seal in "),
     ],
 )
-def test_a_damaged_text_or_picture_is_known(tmp_path, suffix, damage, reason):
+def test_a_damaged_text_or_picture_is_recognized(tmp_path, suffix, damage, reason):
     path = tmp_path / f"result.{suffix}"
     write_sealed_text(path, "some text\n", ABOUT)
     assert path.read_text() == "some text\n"
@@ -117,7 +117,7 @@ def test_a_damaged_text_or_picture_is_known(tmp_path, suffix, damage, reason):
         read_seal(path)
 
 
-def test_an_empty_text_is_whole_if_it_was_written_empty(tmp_path):
+def test_an_empty_text_is_valid_if_it_was_written_empty(tmp_path):
     path = tmp_path / "result.txt"
     write_sealed_text(path, "", ABOUT)
     assert read_seal(path) == (ABOUT, "made")
@@ -127,7 +127,7 @@ def test_an_empty_text_is_whole_if_it_was_written_empty(tmp_path):
 
 
 def test_a_seal_of_another_version(tmp_path):
-    """It held 16 digits where what the file is stands now."""
+    """It had 16 digits in place of the description of the file."""
     head = b"\n#seal 0123456789abcdef completed "
     path = tmp_path / "old.nc"
     path.write_bytes(b"data" + head + hashlib.sha256(b"data" + head).hexdigest().encode() + b"\n")

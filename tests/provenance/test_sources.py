@@ -1,4 +1,4 @@
-"""Fingerprints of sources: they see all code that runs, and nothing else."""
+"""Fingerprints of sources: they depend on all code that runs, and on nothing else."""
 
 import io
 import json
@@ -44,7 +44,7 @@ class Empty:
 '''
 
 
-def test_comments_and_docstrings_go_and_code_stays():
+def test_comments_and_docstrings_are_removed_and_code_is_kept():
     assert code_of(TEXT) == 'import os\nx = "not # a comment"\ndef f(a):\n    return a + 1\nclass Empty:'
     assert code_of('x = (\n    """kept"""\n    # gone\n)\n') == 'x = (\n    """kept"""\n)'
 
@@ -62,7 +62,7 @@ def test_comments_and_docstrings_go_and_code_stays():
         ('R"word(a)" /* b */ )word"; // why', 'R"word(a)" /* b */ )word";'),
     ],
 )
-def test_comments_of_cpp_go_and_code_stays(text, code):
+def test_comments_of_cpp_are_removed_and_code_is_kept(text, code):
     assert code_of_cpp(text) == code
 
 
@@ -73,7 +73,7 @@ def test_the_sources_of_the_compiled_module_are_all_of_its_files():
 
 
 def words(text):
-    """Return the words of the code, without the statements that are only a text."""
+    """Return the words of the code, without statements that are only a text."""
     layout = (tokenize.COMMENT, tokenize.NL, tokenize.INDENT, tokenize.DEDENT, tokenize.ENDMARKER)
     tokens = [token for token in tokenize.generate_tokens(io.StringIO(text).readline) if token.type not in layout]
     lines, line = [], []
@@ -81,20 +81,20 @@ def words(text):
         line.append(token)
         if token.type == tokenize.NEWLINE:
             if not (len(line) == 2 and line[0].type == tokenize.STRING):
-                # Empty lines of a text go as well.
+                # Empty lines of a text are removed as well.
                 lines.append([re.sub(r"\s*\n", "\n", item.string) for item in line[:-1]])
             line = []
     return lines
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: path.name)
-def test_no_code_of_ours_is_lost(path):
+def test_no_code_of_the_package_is_lost(path):
     text = path.read_text(encoding="utf-8")
     assert words(code_of(text)) == words(text)
 
 
 @given(st.sampled_from(SOURCES), st.data())
-def test_a_changed_word_of_code_is_seen_and_a_comment_is_not(path, data):
+def test_a_changed_word_of_code_is_noticed_and_a_comment_is_not(path, data):
     text = path.read_text(encoding="utf-8")
     lines = text.splitlines(keepends=True)
     names = [
@@ -109,7 +109,7 @@ def test_a_changed_word_of_code_is_seen_and_a_comment_is_not(path, data):
     changed = [*lines]
     changed[row - 1] = f"{changed[row - 1][:column]}x{changed[row - 1][column:]}"
     assert code_of("".join(changed)) != code_of(text)
-    # At the end of a statement: a line that goes on in brackets or after a backslash may not take a comment.
+    # A comment is allowed at the end of a statement, but not in a line that continues in brackets or after a backslash.
     ends = [t.start for t in tokenize.generate_tokens(io.StringIO(text).readline) if t.type == tokenize.NEWLINE]
     row, column = data.draw(st.sampled_from(ends))
     changed = [*lines]
@@ -123,7 +123,7 @@ RULES = Jobs(load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {
 MAKERS = {name: rule.sources for name, rule in RULES.items() if rule.make}
 
 
-# Imports what is not ours once, and then what each script imports in a process of its own.
+# Third-party modules are imported once; the imports of each script follow in a process of its own.
 LOADED = """
 import json, os, sys
 import matplotlib.figure, netCDF4, scipy.linalg, scipy.optimize, xarray
@@ -138,7 +138,7 @@ for name, imports in json.load(sys.stdin).items():
 
 
 def test_every_module_that_a_rule_loads_is_among_its_sources():
-    """Of what makes its files; the worker that calls it decides nothing in them."""
+    """Only modules that determine its files count; the worker that calls them does not affect these."""
     programs = {name: "\n".join(f"import {module}" for module in modules) for name, modules in MAKERS.items()}
     ran = subprocess.run(
         [sys.executable, "-c", LOADED], input=json.dumps(programs), check=True, capture_output=True, text=True
@@ -147,14 +147,14 @@ def test_every_module_that_a_rule_loads_is_among_its_sources():
     for name, modules in MAKERS.items():
         needed = {file for module in loaded[name] for file in files_of(module)}
         needed = {path for path in needed if not path.relative_to(PACKAGE).as_posix().startswith(PLUMBING)}
-        # A folder's own file is loaded on the way to its modules; where it says something, it is followed. Words of
-        # error messages are loaded by what moves bytes.
+        # The `__init__` of a folder is loaded with its modules and is followed if it contains code. Error messages are
+        # loaded by the module that moves bytes.
         needed = {path for path in needed if path.name not in ("__init__.py", "values.py")}
         assert len(needed) > 3, name
         assert needed <= set(sources_of(*modules)), name
 
 
-def test_results_depend_on_what_makes_them():
+def test_results_depend_on_the_modules_that_make_them():
     def names(rule):
         return {path.relative_to(PACKAGE).as_posix() for path in sources_of(*MAKERS[rule])}
 
@@ -190,7 +190,7 @@ def test_the_fingerprint_is_of_the_code(tmp_path):
         assert (source_fingerprint(other) == one) is same
 
 
-#: Names that are for people and for the display: no script that makes a result uses them.
+#: Names for users and for the display, which no script that makes a result uses.
 LOOKED_UP = ("burridge_knopoff/__init__.py",)
 LOOKED_UP += ("cli/__init__.py", "show/picture.py", "show/summary.py")
 #: Modules of the name that is among their params, and in `Rule.modules`.
@@ -198,8 +198,8 @@ LOOKED_UP += ("jobs/run.py", "summaries/of_points.py", "summaries/of_models.py")
 LOOKED_UP += ("figures/of_summaries.py", "figures/of_runs.py")
 
 
-def test_nothing_is_imported_that_would_not_be_followed():
-    """From the package itself nothing is imported: its names are looked up when they are used."""
+def test_all_imports_can_be_followed():
+    """Nothing is imported from the package itself, whose names are resolved when they are used."""
     for path in [*PACKAGE.rglob("*.py"), *SCRIPTS]:
         lines = path.read_text(encoding="utf-8").splitlines()
         assert not [line for line in lines if re.match(r"\s*from burridge_knopoff import", line)]

@@ -1,4 +1,4 @@
-"""Results that are kept: taken again only where all that decides them is the same."""
+"""Cached results, which are reused only if everything that determines them is unchanged."""
 
 import dataclasses
 import math
@@ -54,7 +54,7 @@ CALLS = [
 ]
 
 
-def test_each_call_is_made_once_and_has_a_file_of_its_own(tmp_path):
+def test_each_call_is_made_once_and_has_its_own_file(tmp_path):
     for call in CALLS:
         result, path, was_read = cached_call(tmp_path, *call)
         again, same, was_read_again = cached_call(tmp_path, *call)
@@ -63,8 +63,8 @@ def test_each_call_is_made_once_and_has_a_file_of_its_own(tmp_path):
     assert len(list(tmp_path.iterdir())) == len(CALLS)
 
 
-def test_what_is_known_of_a_value_besides_does_not_count(tmp_path):
-    """What has been looked up before, or is one object with another, makes no other call."""
+def test_cached_properties_and_identity_of_arguments_do_not_count(tmp_path):
+    """A property computed before, or a shared object, does not make the call a different one."""
     asked = MODEL.at(0.05)
     path = cached_call(tmp_path, first, [asked, asked])[1]
     assert asked.sliding_offset.shape == (3,)
@@ -74,28 +74,28 @@ def test_what_is_known_of_a_value_besides_does_not_count(tmp_path):
 @pytest.mark.parametrize(
     ("place", "name", "other"), [(module, "source_fingerprint", lambda name: "another"), (np, "__version__", "0.1")]
 )
-def test_other_code_is_another_call(tmp_path, monkeypatch, place, name, other):
+def test_a_call_of_changed_code_is_another_call(tmp_path, monkeypatch, place, name, other):
     cached_call(tmp_path, first, 1)
     monkeypatch.setattr(place, name, other)
     assert not cached_call(tmp_path, first, 1)[2]
 
 
 @pytest.mark.parametrize("damage", [b"", b"no line", b"0" * 64 + b"\nother"])
-def test_a_damaged_file_counts_as_none(tmp_path, damage):
+def test_a_damaged_file_is_ignored(tmp_path, damage):
     path = cached_call(tmp_path, first, 7)[1]
     path.write_bytes(damage)
     assert cached_call(tmp_path, first, 7) == (7, path, False)
     assert cached_call(tmp_path, first, 7) == (7, path, True)
 
 
-def test_a_file_of_another_call_counts_as_none(tmp_path):
+def test_a_file_of_another_call_is_ignored(tmp_path):
     one, other = (cached_call(tmp_path, first, number)[1] for number in (7, 8))
     os.replace(one, other)
     assert cached_call(tmp_path, first, 8) == (8, other, False)
 
 
-def test_what_is_read_is_what_was_written():
-    """Types, signs, bits and order in memory included: a later call is known by them."""
+def test_a_written_value_is_read_back():
+    """This includes types, signs, bits and the order in memory, which identify a later call."""
     array = np.asfortranarray(np.arange(6.0).reshape(2, 3))
     scalar = np.float64(0.1)
     value = [None, True, -0.0, 0.1, np.nan, 3, "text", b"\0\xff", (1, [2, ()]), {1: "a", (2,): [array, array]}]
@@ -113,7 +113,7 @@ def test_what_is_read_is_what_was_written():
 
 
 @pytest.mark.parametrize("value", [np.array([None]), {1, 2}, print])
-def test_what_cannot_be_kept_is_refused(value):
+def test_values_that_cannot_be_stored_are_refused(value):
     with pytest.raises(TypeError):
         pack(value)
 
@@ -122,31 +122,31 @@ def test_nothing_is_a_pickle(tmp_path):
     content = cached_call(tmp_path, first, MODEL)[1].read_bytes()
     with pytest.raises(pickle.UnpicklingError):
         pickle.loads(content)
-    # A class whose module has not been imported is not searched for.
+    # A module that has not been imported is not searched for a class.
     with pytest.raises(LookupError):
         unpack(b'[["object",0],[["attributes","antigravity:x",{}]]]\n')
 
 
-def told(number):
+def number_and_process(number):
     return number, os.getpid()
 
 
 @pytest.mark.parametrize("processes", [1, 2])
-def test_what_nothing_asks_for_is_deleted_at_the_end(tmp_path, processes):
-    """Caches of other settings in neighbouring folders too, but nothing if a call failed, and no other files."""
+def test_unused_files_are_deleted_at_the_end(tmp_path, processes):
+    """Caches of other settings in neighbouring folders are deleted too; no file is deleted if a call failed."""
     before, now = tmp_path / (16 * "0"), tmp_path / (16 * "1")
-    others = [tmp_path / "mine", now / "mine", now / "told" / "mine", tmp_path / "kept/told" / (32 * "a")]
+    others = [tmp_path / "mine", now / "mine", now / "numbers" / "mine", tmp_path / "kept/numbers" / (32 * "a")]
     for path in others:
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text("mine")
     for folder, numbers in ((before, [1]), (now, [1, 2])):
         with parallel_map(processes, folder) as each:
-            each("told", told, numbers)
+            each("numbers", number_and_process, numbers)
     assert not any(path.is_file() for path in before.rglob("*"))
     with pytest.raises(ZeroDivisionError), parallel_map(processes, now) as each:
         each("fails", divmod, [1], [0])
     with parallel_map(processes, now) as each:
-        assert [pid != os.getpid() for _, pid in each("told", told, [2])] == [processes == 2]
+        assert [pid != os.getpid() for _, pid in each("numbers", number_and_process, [2])] == [processes == 2]
     left = {path for path in tmp_path.rglob("*") if path.is_file()}
     assert set(others) <= left
     assert len(left) == len(others) + 1

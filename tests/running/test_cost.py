@@ -1,4 +1,4 @@
-"""The estimate of what a run costs."""
+"""The estimate of the cost of a run."""
 
 import pytest
 

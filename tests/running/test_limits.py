@@ -34,7 +34,7 @@ PROGRAMS = {
 
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_ctrl_c_ends_a_long_chain_at_once(program):
-    """It took 151 s when a call of the kernel was bounded by a number of steps."""
+    """It took 151 s when a call of the kernel was limited only by its number of steps."""
     process = subprocess.Popen(
         [sys.executable, "-c", PROGRAMS[program]], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -43,8 +43,8 @@ def test_ctrl_c_ends_a_long_chain_at_once(program):
         process.wait(timeout=2)
     begin = time.monotonic()
     process.send_signal(signal.SIGINT)
-    _, said = process.communicate(timeout=60)
-    assert said.splitlines()[-1] == "KeyboardInterrupt"
+    _, output = process.communicate(timeout=60)
+    assert output.splitlines()[-1] == "KeyboardInterrupt"
     assert time.monotonic() - begin < 10
 
 
@@ -57,8 +57,8 @@ def test_ctrl_c_ends_a_long_chain_at_once(program):
         ("window", 3, {"events": "none"}),
     ],
 )
-def test_a_run_that_keeps_too_much_ends_with_one_line(key, numbers, options, monkeypatch):
-    """Of nine numbers an event with states of three blocks, of three an event without them and a section crossing."""
+def test_a_run_that_stores_too_much_ends_with_one_line(key, numbers, options, monkeypatch):
+    """An event of three blocks has nine numbers with states, three without; a section crossing has three."""
     options = {"transient": 0.0, "window": 100.0, "event_window": 100.0, "lyapunov_exponents": 0, **options}
     run = simulate("linearized", 0.08, "plus", **options)
     kept = {9: len(run.event_time), 3: len(run.earlier_event_time) or len(run.crossing_time)}[numbers]
@@ -66,6 +66,6 @@ def test_a_run_that_keeps_too_much_ends_with_one_line(key, numbers, options, mon
     monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * kept)
     assert simulate("linearized", 0.08, "plus", **options).event_count == run.event_count
     monkeypatch.setattr(runner, "MOST_NUMBERS", numbers * (kept - 1))
-    told = rf"^{key}: got more than \S+ numbers to store by τ = [\d.]+, expected [\w, ]+$"
-    with pytest.raises(ValueError, match=told):
+    pattern = rf"^{key}: got more than \S+ numbers to store by τ = [\d.]+, expected [\w, ]+$"
+    with pytest.raises(ValueError, match=pattern):
         simulate("linearized", 0.08, "plus", **options)

@@ -1,4 +1,4 @@
-"""Work shared out among processes."""
+"""Work divided among processes."""
 
 import logging
 import os
@@ -12,7 +12,7 @@ import pytest
 from burridge_knopoff.running.processes import parallel_map
 
 
-def told(first, second):
+def sum_and_process(first, second):
     return first + second, os.getpid()
 
 
@@ -23,8 +23,8 @@ def refused(number):
 @pytest.mark.parametrize("processes", [1, 3])
 def test_results_come_in_order(processes, caplog):
     with parallel_map(processes) as each, caplog.at_level(logging.INFO):
-        found = each("sums", told, range(30), range(100, 130))
-        assert each("nothing", told, [], []) == []
+        found = each("sums", sum_and_process, range(30), range(100, 130))
+        assert each("nothing", sum_and_process, [], []) == []
     assert [total for total, _ in found] == list(range(100, 160, 2))
     assert ({process for _, process in found} == {os.getpid()}) == (processes == 1)
     assert caplog.messages[0].startswith("sums: 30, 0.0 s, the longest 0.0 s")
@@ -35,7 +35,7 @@ def halves(width):
 
 
 @pytest.mark.parametrize("processes", [1, 3])
-def test_what_results_lead_to_is_carried_out_as_well(processes, caplog):
+def test_calls_that_follow_from_results_are_made_as_well(processes, caplog):
     found = []
 
     def more(name, width, result):
@@ -53,15 +53,15 @@ def test_what_results_lead_to_is_carried_out_as_well(processes, caplog):
 
 
 @pytest.mark.parametrize("processes", [1, 3])
-def test_an_error_on_the_way_ends_all(processes):
+def test_an_error_ends_all_calls(processes):
     with parallel_map(processes) as each, pytest.raises(ValueError, match="1: not allowed"):
         each.work_through("refused", refused, [("a", 1)], lambda *_: [])
 
 
-def test_where_the_system_forbids_fork_this_process_does_all_the_work(monkeypatch):
+def test_without_fork_this_process_does_all_the_work(monkeypatch):
     monkeypatch.setattr("sys.platform", "darwin")
     with parallel_map(3) as each:
-        assert each("sums", told, [1, 2], [10, 20]) == [(11, os.getpid()), (22, os.getpid())]
+        assert each("sums", sum_and_process, [1, 2], [10, 20]) == [(11, os.getpid()), (22, os.getpid())]
 
 
 @pytest.mark.parametrize("processes", [1, 3])

@@ -1,4 +1,4 @@
-"""Runs of any model: against SciPy, symmetries, and that to be observed changes no motion."""
+"""Runs of any model, compared with SciPy; symmetries; and that observation changes no motion."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,7 @@ def test_unequal_chains_and_rings_against_scipy(chain, law):
     assert np.abs(solver.state().vector() - state).max() < 1e-8
 
 
-# The example studies with laws and springs of their own: stiffness, static friction and Φ as their pages say.
+# The example studies with their own laws and springs: stiffness, static friction and Φ as on their pages.
 
 
 def unequal_blocks(a):
@@ -89,8 +89,8 @@ def test_the_distance_of_unequal_chains_is_that_of_the_end_blocks():
 
 @pytest.mark.parametrize("law", [kind(0.26) for kind in LAWS.values()] + [FormulaLaw(0.26, "exp(-a*u)/(1 + a*u)")])
 @pytest.mark.parametrize("blocks", [3, 9])
-def test_what_is_observed_does_not_change_the_motion(law, blocks):
-    """Every event time to the bit, whatever is measured or kept, and however long the run is."""
+def test_observation_does_not_change_the_motion(law, blocks):
+    """Every event time is the same to the bit, whatever is measured or stored, and however long the run."""
     state = PAPER_STATES["minus"] if blocks == 3 else wave(blocks, 0.05)
     model = Model(Chain(blocks), law)
     everything = simulate(model, initial=state, settings=Settings(transient=100.0, window=700.0, events="all"))
@@ -106,8 +106,8 @@ def test_what_is_observed_does_not_change_the_motion(law, blocks):
             assert getattr(other, name).tobytes() == getattr(everything, name)[:count].tobytes()
 
 
-def test_longer_windows_go_on_where_shorter_ones_end():
-    """In chaos a last bit would soon be another trajectory."""
+def test_longer_windows_continue_shorter_ones():
+    """In chaos a difference in the last bit would soon lead to another trajectory."""
     runs = [simulate("nonlinear", 0.26, "minus", window=window, events="all") for window in (900.0, 7000.0)]
     count = len(runs[0].event_time)
     assert runs[0].event_time.tobytes() == runs[1].event_time[:count].tobytes()
@@ -116,7 +116,7 @@ def test_longer_windows_go_on_where_shorter_ones_end():
 @given(st.integers(2, 11), st.sampled_from(sorted(LAWS)), st.sampled_from(["open", "ring"]), st.integers(0, 2**32 - 1))
 @settings(max_examples=40)
 def test_mirror_images_move_as_mirror_images(blocks, law, ends, seed):
-    """To the bit, in chains that are their own image; and shifted in time the motion is the same."""
+    """This holds to the bit in symmetric chains; motion shifted in time is the same as well."""
     generator = np.random.default_rng(seed)
     strength = generator.uniform(0.5, 2.0, blocks)
     chain = Chain(blocks, pulling=strength + strength[::-1], threshold=float(generator.uniform(0.7, 1.3)), ends=ends)
@@ -125,7 +125,7 @@ def test_mirror_images_move_as_mirror_images(blocks, law, ends, seed):
     position, velocity = generator.uniform(-0.4, 0.4, blocks), generator.uniform(0.02, 0.3, blocks)
     start = ChainState(position, velocity, np.zeros(blocks, dtype=bool))
     solver, events = carry(model, start, 12.0)
-    # Which of two events of one instant comes first is nobody's matter.
+    # The order of two simultaneous events is arbitrary.
     assume(all(gap > 1e-12 for gap in np.diff([time for time, _, _ in events])))
     mirror, mirrored = carry(model, start.mirrored(), 12.0)
     assert events == [(time, blocks + 1 - block, kind) for time, block, kind in mirrored]
@@ -137,20 +137,20 @@ def test_mirror_images_move_as_mirror_images(blocks, law, ends, seed):
     assert np.abs(np.subtract(times, [time for time, _, _ in events])).max() < 1e-11 * np.exp(0.5 * 12.0)
 
 
-def test_the_status_is_the_kernels():
+def test_statuses_are_those_of_the_kernel():
     assert {item.name: item.value for item in Status} == STATUS
 
 
 @pytest.mark.parametrize("arguments", [{"until": 5.0}, {"halting_block": 0}])
-def test_the_solver_of_fixed_steps_takes_no_end_but_the_windows(arguments):
-    """The run would never end: without an observer there is no window."""
+def test_the_solver_of_fixed_steps_ends_only_at_the_end_of_a_window(arguments):
+    """Without an observer there is no window, and the run would never end."""
     runner = Runner(Model(Chain(3), law_of("linearized", 0.08)), "rk4")
     runner.begin(runner.model.begin(PAPER_STATES["minus"]))
     with refused("solver: got 'rk4', expected", "series | map"):
         runner.run(**arguments)
 
 
-def test_events_that_were_read_outlive_another_beginning():
+def test_events_that_were_read_survive_another_run():
     model = Model(Chain(3), law_of("linearized", 0.08))
     runner = Runner(model, keep_events=True)
     runner.state_after(model.begin(PAPER_STATES["plus"]), 40.0)
@@ -159,13 +159,13 @@ def test_events_that_were_read_outlive_another_beginning():
     runner.state_after(model.begin(PAPER_STATES["minus"]), 10.0)
     assert len(block) == len(kept) > 10
     assert (time == kept).all()
-    # The log has those of the second run alone.
+    # The log contains only the events of the second run.
     assert runner.events()[0].max() <= 10.0
     assert len(runner.events()[0]) == runner.log.count
 
 
 @pytest.mark.parametrize("solver", ["series", "rk4"])
-def test_a_log_of_stops_has_those_of_the_whole_log_and_their_states(solver):
+def test_a_log_of_stops_has_the_stops_of_the_whole_log_with_states(solver):
     model = Model(Chain(3), law_of("linearized", 0.08))
     asked = Settings(transient=30.0, window=60.0, event_window=60.0, solver=solver)
     whole, stops = (run(model, PAPER_STATES["plus"], asked, stops_only=only) for only in (False, True))
@@ -174,5 +174,5 @@ def test_a_log_of_stops_has_those_of_the_whole_log_and_their_states(solver):
     for name in ("event_time", "event_block", "event_kind", "event_position", "event_velocity"):
         assert np.array_equal(getattr(stops, name), getattr(whole, name)[chosen]), name
     assert len(stops.earlier_event_time) == 0 < len(whole.earlier_event_time)
-    # Nothing else depends on what is kept.
+    # Nothing else depends on what is stored.
     assert (stops.event_count, stops.mean_distance) == (whole.event_count, whole.mean_distance)

@@ -1,4 +1,4 @@
-"""Settings of a run: what is refused, and that their defaults are those of the schema."""
+"""Settings of a run: refused values, and limits on what a run may store."""
 
 import numpy as np
 import pytest
@@ -44,8 +44,8 @@ def test_bad_input_is_refused_in_one_line(options, words):
         ("trajectory_sampling", {"trajectory": 1e5, "trajectory_sampling": 0.02, "events": "none"}),
     ],
 )
-def test_a_run_that_would_keep_too_much_is_refused_by_what_decides_it(key, options):
-    """2N + 1 numbers for each sample of a trajectory: as many as a few GB hold."""
+def test_a_run_that_would_store_too_much_is_refused_by_the_responsible_key(key, options):
+    """A sample of a trajectory has 2N + 1 numbers; the limit corresponds to a few GB."""
     asked = Settings(**{"transient": 0.0, "window": 1e5, **options})
     asked.check_chain(Chain(3))
     with pytest.raises(ValueError, match=f"^{key}: .* numbers to store, not"):
@@ -53,7 +53,7 @@ def test_a_run_that_would_keep_too_much_is_refused_by_what_decides_it(key, optio
 
 
 def test_steps_of_rk4_that_are_too_long_for_the_chain_are_refused():
-    """A step of 1 told that the paper's two states synchronize, where one of them does not."""
+    """With a step of 1 both of the paper's states would synchronize, although one of them does not."""
     stiff = Chain(3, coupling=100.0)
     assert max(np.linalg.eigvalsh(stiff.stiffness)) ** 0.5 <= stiff.highest_frequency
     Settings(solver="rk4", step=0.1).check_chain(Chain(3))
@@ -70,21 +70,21 @@ def test_steps_of_rk4_that_are_too_long_for_the_chain_are_refused():
         ("trajectory_sampling", {"trajectory": 1000.0, "trajectory_sampling": 1e-4}),
     ],
 )
-def test_ten_million_samples_are_as_many_as_a_run_takes(key, options):
+def test_a_run_has_at_most_ten_million_samples(key, options):
     Settings(**options)
     longer = {name: value * (1.001 if value > 1.0 else 1.0) for name, value in options.items()}
     with pytest.raises(ValueError, match=f"^{key}: got 0.0001, expected at most 1e7 samples in a run$"):
         Settings(**longer)
 
 
-def test_a_chain_has_two_exponents_a_block():
+def test_a_chain_has_two_exponents_per_block():
     Settings(lyapunov_exponents=6).check_chain(Chain(3))
     with pytest.raises(ValueError, match="^lyapunov_exponents: got 7, expected at most 6, two per block$"):
         Settings(lyapunov_exponents=7).check_chain(Chain(3))
 
 
-def test_a_run_of_rk4_has_ten_thousand_million_steps_of_blocks_at_most():
-    """Of three blocks a third of that; a step of `series` is none of them."""
+def test_a_run_of_rk4_has_at_most_ten_billion_block_steps():
+    """With three blocks it has at most a third as many steps; steps of `series` do not count."""
     options = {"transient": 1e5, "events": "none", "sampling": 1000.0}
     Settings(solver="rk4", step=1e-3, window=3.2e6, **options).check_chain(Chain(3))
     Settings(solver="series", step=1e-3, window=3.4e6, **options).check_chain(Chain(3))
@@ -95,7 +95,7 @@ def test_a_run_of_rk4_has_ten_thousand_million_steps_of_blocks_at_most():
 @pytest.mark.parametrize(
     ("key", "fits", "too_long"),
     [
-        # 81 for each sample of a trajectory, of the last part of the run or of the whole.
+        # A sample of a trajectory has 81 numbers, in the last part of the run or in the whole run.
         (
             "trajectory_sampling",
             {"trajectory": 1.23e6, "trajectory_sampling": 1.0, "window": 2e6, "events": "none"},
@@ -108,8 +108,8 @@ def test_a_run_of_rk4_has_ten_thousand_million_steps_of_blocks_at_most():
         ),
     ],
 )
-def test_a_run_keeps_a_hundred_million_numbers_of_a_kind_at_most(key, fits, too_long):
-    """For a chain of 40 blocks."""
+def test_a_run_stores_at_most_a_hundred_million_numbers_of_a_kind(key, fits, too_long):
+    """The chain has 40 blocks."""
     usual = {"transient": 0.0, "window": 1e3, "sampling": 1e3, "event_window": 1e3}
     Settings(**{**usual, **fits}).check_chain(Chain(40))
     with pytest.raises(ValueError, match=f"^{key}: .* at most 1e[+]08 numbers to store, not 1.*$"):
@@ -119,10 +119,10 @@ def test_a_run_keeps_a_hundred_million_numbers_of_a_kind_at_most(key, fits, too_
 @pytest.mark.parametrize(
     ("chain", "options"),
     [
-        # A long chain has few events with states if it is driven slowly, and a slow driver few in a long time.
+        # A slowly driven chain has few events with states, even a long chain or in a long time.
         (Chain(1000), {"transient": 0.0, "window": 5e3, "event_window": 5e3}),
         (Chain(2), {"transient": 0.0, "window": 1e9, "sampling": 1e6, "events": "all"}),
     ],
 )
-def test_how_many_events_there_will_be_is_not_guessed(chain, options):
+def test_the_number_of_events_is_not_predicted(chain, options):
     Settings(**options).check_chain(chain)

@@ -1,4 +1,4 @@
-"""What must hold for whole runs: symmetries, synchronization, energy, and how a run ends."""
+"""Properties of whole runs: symmetries, synchronization, energy, and how a run ends."""
 
 import statistics
 from dataclasses import replace
@@ -19,7 +19,7 @@ each_solver = pytest.mark.parametrize(("law", "solver"), EVENT_DRIVEN)
 
 
 @each_solver
-def test_the_synchronous_state_stays_synchronous(law, solver):
+def test_a_synchronous_state_stays_synchronous(law, solver):
     run = simulate(law, 0.08, "minus", solver=solver, transient=9e5, window=1e5, events="none", sampling=500.0)
     assert run.status == "completed"
     assert run.distance[run.time >= 1e4].max() < 1e-13
@@ -46,7 +46,7 @@ def test_time_shift(count, which):
     law, solver = which
     options = {"solver": solver, "events": "all", "transient": 0.0}
     run = simulate(law, 0.1, "plus", window=60.0, **options)
-    # A stop with all other blocks in motion or clearly stuck: `tested` then decides by the force which blocks stick.
+    # At this stop all other blocks move or clearly stick, so that `tested` decides by the force which blocks stick.
     k = count + int(np.argmax(run.event_kind[count:] == 0))
     time, position, velocity = run.event_time[k], run.event_position[k], run.event_velocity[k]
     later = InitialState("later", tuple(position), tuple(velocity))
@@ -75,7 +75,7 @@ def test_energy_balance():
 def test_a_block_exactly_at_its_threshold_starts_stuck(law, a):
     """s = (1, −1, 1) without rounding: `tested` stops all three, whatever Φ(av) rounds to."""
     state = InitialState("threshold", (-0.5, 0.0, -0.5), (0.1, 0.1, 0.1))
-    # Put together: a word that comes from a config is not the object that the code has.
+    # The text is joined, since a text from a config is a different object from that in the code.
     start = "".join(["tes", "ted"])
     run = simulate(law, a, state, start=start, transient=0.0, window=5.0, trajectory=5.0, trajectory_sampling=5.0)
     assert run.velocity[0].tolist() == [0.0, 0.0, 0.0]
@@ -90,7 +90,7 @@ def test_an_exactly_symmetric_state_stays_symmetric(law, solver, a):
 
 
 @pytest.mark.parametrize(("window", "batches", "sampling"), [(0.7, 3, 0.7), (0.3, 2, 0.1), (14.7, 6, 4.9)])
-def test_the_last_samples_are_there_whatever_rounds(window, batches, sampling):
+def test_the_last_samples_are_stored_despite_rounding(window, batches, sampling):
     sampled = {"sampling": sampling, "trajectory": window, "trajectory_sampling": window / 2}
     run = simulate(transient=0.0, window=window, batches=batches, **sampled)
     assert run.status == "completed"
@@ -100,7 +100,7 @@ def test_the_last_samples_are_there_whatever_rounds(window, batches, sampling):
 
 
 def test_least_friction_in_the_window_is_not_that_of_the_transient():
-    """A block that is thrown slows down before the window begins; the least friction is that at the greatest speed."""
+    """A block with a high initial speed slows down before the window begins; friction is least at the highest speed."""
     state = InitialState("thrown", (0.0, 0.0, 0.0), (3.0, 0.1, 0.1))
     run = simulate("nonlinear", 0.2, state, transient=50.0, window=50.0, trajectory=50.0, trajectory_sampling=1e-3)
     assert run.least_friction == pytest.approx(1.0 / 1.6)
@@ -108,7 +108,7 @@ def test_least_friction_in_the_window_is_not_that_of_the_transient():
     assert run.window_least_friction > run.least_friction + 0.05
 
 
-def test_no_sticks_means_no_events():
+def test_without_sticks_there_are_no_events():
     run = simulate("linearized", 0.0, InitialState("uniform", (-5 / 6, -2 / 3, -5 / 6), (0.1,) * 3), window=100.0)
     assert run.event_count == 0
     assert run.mean_distance < 1e-13
@@ -117,7 +117,7 @@ def test_no_sticks_means_no_events():
 
 @pytest.mark.parametrize(("limit", "value"), [("EVENTS_PER_BLOCK_AND_UNIT", 0), ("STEP_LIMIT", 10)])
 def test_a_limit_ends_the_run(monkeypatch, limit, value):
-    """More events in one time unit, or more steps, than the limit: a status, and NaN for the averages."""
+    """More events in one time unit, or more steps, than the limit give a status, and averages of NaN."""
     monkeypatch.setattr(f"burridge_knopoff.running.runner.{limit}", value)
     run = simulate("linearized", 0.08, "minus", transient=0.0, window=50.0, events="all")
     assert run.status == ("step_limit" if value else "accumulating_events")
@@ -135,7 +135,7 @@ def test_motion_without_bound_ends_the_run(solver):
     assert np.isnan(run.mean_distance)
 
 
-def test_states_of_events_are_kept_in_the_window_only():
+def test_states_of_events_are_stored_in_the_window_only():
     run = simulate("linearized", 0.08, "plus", transient=40.0, window=20.0, event_window=1e3)
     assert run.earlier_event_time.max() < 40.0 <= run.event_time.min()
 
@@ -147,7 +147,7 @@ def test_the_error_of_the_mean_is_that_of_independent_batches():
 
 
 def test_perturbations_align_no_longer_than_the_transient_lasts():
-    """An alignment that is longer is one from the beginning, with the same exponents and errors."""
+    """A longer alignment starts at the beginning of the run, with the same exponents and errors."""
     one, other = (
         simulate("linearized", 0.06, "plus", transient=100.0, window=700.0, lyapunov_alignment=alignment)
         for alignment in (100.0, 1e4)
@@ -172,8 +172,8 @@ def test_exponents_are_in_descending_order_with_their_errors_and_batches(law, a,
 
 @pytest.mark.parametrize(("law", "solver"), [("linearized", "series"), ("linearized", "map"), ("nonlinear", "series")])
 @pytest.mark.parametrize("time", [37.0, 50.0, 61.3])
-def test_a_run_that_continues_is_the_whole_run(law, solver, time):
-    """Split between events, within a piece, a run has the events and crossings of the whole run, to the bit."""
+def test_a_continued_run_equals_the_whole_run(law, solver, time):
+    """A run that is split between events, within a piece, has the events and crossings of the whole run, to the bit."""
     settings = {"solver": solver, "transient": 0, "events": "all", "batches": 2}
     whole = simulate(law, 0.08, "plus", window=120.0, **settings)
     first = simulate(law, 0.08, "plus", window=time, **settings)
@@ -195,8 +195,8 @@ def test_a_run_continues_step_by_step_with_a_fixed_step():
     assert np.array_equal(rest.final.vector(), whole.final.vector())
 
 
-def test_a_run_under_another_law_begins_at_the_state_itself():
-    """The step in which the first run ended is repeated under its own model only."""
+def test_a_run_under_another_law_starts_at_the_given_state():
+    """The step in which the first run ended is repeated only with the same model."""
     first = simulate("linearized", 0.08, "plus", transient=0, window=37.0)
     other = first.model.at(0.2)
     bare = replace(first.final)
@@ -206,8 +206,8 @@ def test_a_run_under_another_law_begins_at_the_state_itself():
 
 
 @pytest.mark.parametrize("start", ["moving", "tested"])
-def test_slips_are_those_that_have_begun_at_first_and_those_that_start(start):
-    """Each stop ends a slip: those at the beginning are told apart from sticks."""
+def test_slips_include_those_in_progress_at_the_beginning(start):
+    """Each stop ends a slip, including slips in progress at the beginning."""
     state = {"position": [-0.9, -1.1, 0.5], "velocity": [0.1, 0.1, 0.1]}
     run = simulate("nonlinear", 0.1, state, start=start, transient=0, window=50.0, events="all")
     force = run.model.chain.force(np.array(state["position"]))

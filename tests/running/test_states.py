@@ -1,4 +1,4 @@
-"""States from which a run begins: those that no motion has are refused, those that the program makes are not."""
+"""Initial states: those that cannot occur in a motion are refused, those that the program makes are accepted."""
 
 import math
 
@@ -52,18 +52,18 @@ BEGUN = {
         (ChainState(ZEROS, [0.0, np.nan, 0.0], SLIPPING), ": got nan, expected"),
     ],
 )
-def test_a_state_that_no_motion_has(begin, state, message):
+def test_states_that_cannot_occur_are_refused(begin, state, message):
     with refused(message):
         BEGUN[begin](state)
 
 
 @pytest.mark.parametrize("position", [[0.0, np.nan, 0.0], [0.0, 0.0, np.inf]])
-def test_positions_are_finite(position):
+def test_positions_that_are_not_finite_are_refused(position):
     with refused(f"state.position: got {np.sum(position)}, expected finite numbers"):
         record_events(MODEL, ChainState(np.array(position), ZEROS, STUCK), 5.0)
 
 
-def test_a_clock_is_a_number():
+def test_a_clock_that_is_not_a_number_is_refused():
     with refused("state.time: got 'now', expected a finite number"):
         Runner(MODEL).begin(ChainState(ZEROS, ZEROS, STUCK, "now"))
 
@@ -91,7 +91,7 @@ def test_rounding_may_leave_a_stop_a_velocity_of_either_sign():
 @pytest.mark.parametrize("solver", ["series", "map"])
 @pytest.mark.parametrize("v", [0.1, 100.0])
 def test_runs_continue_from_their_events(solver, v):
-    """Mirror blocks stop together: one of them is left a rounding of velocity in the state at the other one's stop."""
+    """Mirror blocks stop together: at the stop of one, rounding leaves the other a small velocity."""
     model = Model(Chain(5, coupling=100.0), law_of("linearized", 0.3), v)
     offset = np.array([0.01, -0.02, 0.0, -0.02, 0.01])
     run = simulate(

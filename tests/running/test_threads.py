@@ -1,4 +1,4 @@
-"""Work shared among threads."""
+"""Work divided among threads."""
 
 import threading
 import time
@@ -17,7 +17,7 @@ def test_results_come_in_order(threads):
 
 
 def test_an_error_ends_the_other_calls():
-    """The run takes minutes; one that begins later in this thread is not ended."""
+    """The run would take minutes; a later run in this thread is not affected."""
 
     def call(number):
         if number == 0:

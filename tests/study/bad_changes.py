@@ -1,13 +1,13 @@
-"""Bad changes to a good config, and what the one line says.
+"""Bad changes to a good config, with words of the error message.
 
-tests/bad_configs.py has more, as they would stand in a file.
+tests/bad_configs.py has more, as contents of a file.
 """
 
 NAN = float("nan")
 INFINITE = float("inf")
 PAIR = {"position": [-1.0, -1.0], "velocity": [0.1, 0.1]}
 
-# (keys to change, what the one line must say: the key, and the value or what is allowed)
+# (keys to change, required words of the message: the key, and the value or what is allowed)
 BAD_CHANGES = [
     ({"a": None}, ["a: missing"]),
     ({"initial": None}, ["initial: missing"]),

@@ -1,4 +1,4 @@
-"""What --config changes: values as a config file would have them, written so that Snakemake reads the same again."""
+"""Changes by --config: values as in a config file, written so that Snakemake reads them back unchanged."""
 
 import pytest
 from hypothesis import given
@@ -45,20 +45,20 @@ NESTED = st.recursive(PLAIN, lambda inside: st.lists(inside, max_size=3) | st.di
 
 @given(st.dictionaries(st.sampled_from(["window", "basins", "laws"]), NESTED))
 @examples(200)
-def test_what_is_printed_is_read_as_the_same(overrides):
+def test_printed_values_are_read_back(overrides):
     read = {}
     for entry in config_entries(overrides):
         read |= as_snakemake(entry)
     assert of_command_line(read) == overrides
 
 
-def test_a_fault_is_blamed_on_where_it_stands():
+def test_an_error_names_its_place():
     with refused("--config: windows: unknown key"):
         load_study({**GOOD, "windows": 3}, "mine.yaml", GOOD)
     with refused("mine.yaml: windows: unknown key"):
         load_study({**GOOD, "windows": 3}, "mine.yaml", {**GOOD, "windows": 3})
     with refused("mine.yaml: windows: unknown key"):
         load_study({**GOOD, "windows": 3, "v": 0.2}, "mine.yaml", {**GOOD, "windows": 3})
-    # What only both together are wrong in comes with the command line.
+    # Errors that arise only from both together are attributed to the command line.
     with refused("--config: lyapunov_alignment: 90"):
         load_study({**GOOD, "transient": 50, "lyapunov_alignment": 90}, "mine.yaml", {**GOOD, "lyapunov_alignment": 90})

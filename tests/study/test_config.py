@@ -1,4 +1,4 @@
-"""Configs: defaults, grids, and one line for everything that is wrong."""
+"""Configs: defaults, grids, and a one-line message for every error."""
 
 import copy
 import math
@@ -36,8 +36,8 @@ def test_bad_configs_get_one_line(changes, words):
 
 
 @pytest.mark.parametrize("key", RANGE_OF)
-def test_what_is_no_number_of_its_range_gets_one_line(key):
-    """It names the value, the kind of number and both ends."""
+def test_numbers_outside_their_range_get_one_line(key):
+    """The line names the value, the kind of number and both ends."""
     low, high = RANGE_OF[key]
     whole, least = low.isdigit(), float(low.strip(">"))
     above = ">" in low
@@ -66,8 +66,8 @@ def test_bad_files_get_one_line(tmp_path, case):
 
 
 @pytest.mark.parametrize("number", ["1e-6", "1e5", "2E+3", "-3e2", "1.5e3", "+.5e-1", "7.", "0.1"])
-def test_numbers_are_those_of_a_reader(tmp_path, number):
-    """YAML itself takes those with an exponent for text if they have no point, or it has no sign."""
+def test_numbers_with_an_exponent_are_read_as_numbers(tmp_path, number):
+    """YAML itself reads a number with an exponent as text if it has no point, or its exponent no sign."""
     (tmp_path / "file").write_text(f"[{number}]")
     (read,) = read_yaml(tmp_path / "file")
     assert type(read) is float
@@ -75,7 +75,7 @@ def test_numbers_are_those_of_a_reader(tmp_path, number):
 
 
 @pytest.mark.parametrize("text", ["010", "1_0", "1:30", "0x1F", "1e", "e5", "1e5.0", "1_0e5", "."])
-def test_what_may_be_no_number_is_text(tmp_path, text):
+def test_ambiguous_numbers_are_read_as_text(tmp_path, text):
     (tmp_path / "file").write_text(f"[{text}]")
     assert read_yaml(tmp_path / "file") == [text]
 
@@ -111,7 +111,7 @@ def test_laws_in_the_order_of_the_config():
     assert study.laws == ("nonlinear", "linearized", "cl", "soft")
     assert [point["law"] for point in all_points(study)[::8]] == list(study.laws)
     assert study.config["solver"] == dict.fromkeys(study.laws, "series")
-    # Other laws than the paper's have maps where its first one has.
+    # Laws other than the paper's have maps at the values of its first law.
     maps = {"nonlinear": [0.08], "linearized": [0.05, 0.08], "cl": [], "soft": [0.05, 0.08]}
     assert study.config["basins"]["a"] == maps
     assert list(study.config["basins"]["a"]) == list(study.laws)
@@ -122,7 +122,7 @@ def test_laws_in_the_order_of_the_config():
     assert float(study.model("cl", 0.3).law(0.0)) == 0.99
 
 
-def test_the_chain_and_the_driver_of_a_model():
+def test_a_model_has_the_chain_and_driver_of_the_config():
     chain = {"coupling": [1, 2, 3], "pulling": 0.5, "threshold": [1, 2, 1], "ends": "ring"}
     model = load(chain=chain, v=0.2, contact="symmetric").model("nonlinear", 0.08)
     assert model.chain == Chain(3, (1.0, 2.0, 3.0), 0.5, (1.0, 2.0, 1.0), "ring")
@@ -204,7 +204,7 @@ def test_command_of_another_solver():
         ({"a": [1.9, 2.5], "solvers": {"a": [1.9, 2.5]}}, ["rk4"], ["rk4"]),
     ],
 )
-def test_every_solver_that_knows_a_law_is_compared(changes, linearized, nonlinear):
+def test_every_solver_that_accepts_a_law_is_compared(changes, linearized, nonlinear):
     study = load(**changes)
     assert study.other_solvers("linearized") == linearized
     assert study.other_solvers("nonlinear") == nonlinear

@@ -1,4 +1,4 @@
-"""Words that messages share: nouns with their number, and the decimals that an error leaves."""
+"""Parts of messages: numbers with nouns, and values rounded to their errors."""
 
 import pytest
 
@@ -44,6 +44,6 @@ def test_a_value_has_the_decimals_of_its_error(value, error, shown):
     assert with_error(value, error) == shown
 
 
-def test_terminals_read_the_same_digits():
+def test_digits_are_the_same_in_a_terminal():
     assert to_ascii(with_error(-0.25, 0.01)) == "-0.250 +- 0.010"
     assert [to_ascii(with_error(value)) for value in (float("-inf"), float("nan"))] == ["-infinity", "nan"]

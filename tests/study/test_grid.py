@@ -1,4 +1,4 @@
-"""Grids of several parameters: their points, file names and models, and one line for each that is wrong."""
+"""Grids of several parameters: points, file names and models, and a one-line message for each error."""
 
 from itertools import chain, pairwise
 
@@ -24,7 +24,7 @@ def load(**changes):
     return load_study({key: value for key, value in config.items() if value is not None}, "plane.yaml")
 
 
-def test_points_are_named_in_the_order_of_the_config_and_hold_their_parameters():
+def test_points_are_named_in_the_order_of_the_config_and_contain_their_parameters():
     study = load()
     points = all_points(study)
     names = [study.point_file.format(**point) for point in points]
@@ -38,7 +38,7 @@ def test_points_are_named_in_the_order_of_the_config_and_hold_their_parameters()
     assert all(words in command for words in ("--a 0.2", "--v 0.05", "--coupling 0.5"))
 
 
-def test_the_number_of_one_block_is_a_parameter():
+def test_the_value_of_one_block_is_a_parameter():
     study = load(grid={"a": [0.2], "mass[2]": [1.0, 1.5]})
     points = all_points(study)
     assert [study.point_file.format(**point) for point in points[:2]] == [
@@ -50,13 +50,13 @@ def test_the_number_of_one_block_is_a_parameter():
     names = set(Jobs(study).all_files)
     assert not any(letter in name for name in names for letter in "[]")
     assert study.chain_description["mass"] == (1.0, 1.0)
-    # One number for all blocks and that of one of them.
+    # A number for all blocks, and one for a single block.
     both = load(grid={"a": [0.2], "mass[2]": [1.0, 1.5], "mass": [1.0, 2.0]})
     found = {tuple(both.run_of(**point)[0].chain.masses.tolist()) for point in all_points(both)}
     assert found == {(1.0, 1.0), (1.0, 1.5), (2.0, 1.0), (2.0, 1.5)}
 
 
-def test_a_grid_of_a_alone_is_a():
+def test_a_grid_of_a_alone_equals_the_key_a():
     alone, usual = load(grid={"a": [0.1, 0.2]}), load(grid=None, a=[0.1, 0.2])
     assert (alone.config, alone.parameters) == (usual.config, usual.parameters)
     assert not alone.is_plane
@@ -138,7 +138,7 @@ def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_pat
 
 
 def test_a_point_that_fails_is_named_with_its_command_and_the_others_are_made(tmp_path):
-    """At a = 9 there is no closed form, which a checked config would be refused for."""
+    """At a = 9 there is no closed form; a config check would refuse it."""
     run = {"transient": 10, "window": 10, "batches": 2, "solver": "map", "laws": {"linearized": {}}}
     checked = load(grid={"a": [0.1], "v": [0.1, 0.2]}, **run)
     study = Study(checked.config, {"a": {"9.0000": 9.0, "0.1000": 0.1}, "v": checked.parameters["v"]})

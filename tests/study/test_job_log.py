@@ -1,4 +1,4 @@
-"""What a failed job said last."""
+"""The last words of a failed job in its log."""
 
 import shutil
 
@@ -25,7 +25,7 @@ TRACEBACK = """Traceback (most recent call last):
         (TRACEBACK + "KeyError: 'a'\n\nDuring handling:\n\n" + TRACEBACK + "burridge_knopoff.x.Bad: b", "b"),
         ("note: 30 were kept\n", ""),
         ("ValueError: wrong\nnote: 30 were kept\n", "ValueError: wrong"),
-        # Cut off, as on a full disk.
+        # Truncated, as on a full disk.
         (TRACEBACK, ""),
     ],
 )
@@ -37,15 +37,15 @@ def test_logged_error(tmp_path, text, words):
     assert "\n" not in last
 
 
-def test_the_command_that_remakes_a_bad_file_is_no_part_of_the_reason(tmp_path):
-    """Seven jobs may stop at one file: their reasons are listed one by one, the command once."""
+def test_the_command_that_recreates_a_bad_file_is_not_part_of_the_reason(tmp_path):
+    """Seven jobs may stop at one file: each reason is listed, the command only once."""
     (tmp_path / "log").write_text(TRACEBACK + "ValueError: a.nc: is empty; remake it: snakemake -c2 -R a.nc\n")
     (tmp_path / "other").write_text(TRACEBACK + "ValueError: wrong\n")
     assert logged_error(tmp_path / "log") == "ValueError: a.nc: is empty"
     assert remedies([tmp_path / "log"] * 7 + [tmp_path / "other"]) == ["snakemake -c2 -R a.nc"]
 
 
-def test_what_a_long_job_has_done_is_not_why_it_failed(tmp_path, caplog):
+def test_the_progress_of_a_long_job_is_not_the_reason_of_its_failure(tmp_path, caplog):
     caplog.set_level("INFO")
     with parallel_map(1, tmp_path / "kept") as each:
         each("doubled", abs, [1, 2])
@@ -58,7 +58,7 @@ def test_no_log(tmp_path):
 
 
 @pytest.mark.parametrize(("free", "words"), [(0, "no space left on its disk"), (10**9, "it was killed")])
-def test_a_job_that_said_nothing(tmp_path, monkeypatch, free, words):
+def test_a_job_with_an_empty_log(tmp_path, monkeypatch, free, words):
     monkeypatch.setattr(shutil, "disk_usage", lambda path: shutil._ntuple_diskusage(10**9, 10**9 - free, free))
     log = tmp_path / "not there" / "log"
     assert words in failure_line("simulate", [log])

@@ -1,4 +1,4 @@
-"""Studies of grids, networks from a file, masses and drawn numbers: what decides their runs, and who can read them."""
+"""Studies of grids, networks from a file, masses and random numbers: what determines and identifies their runs."""
 
 import json
 import shlex
@@ -22,7 +22,7 @@ def load(chain, initial=ROUGH, **keys):
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    """A folder with a file of springs beside a config; it is where programs run."""
+    """The working folder of programs, with a config and a file of springs."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "config").mkdir()
     (tmp_path / "config" / "faults.txt").write_text("1 2 1.5  # the first fault\n3 2 0.5\n")
@@ -39,7 +39,7 @@ def folder(tmp_path, monkeypatch):
         ({"blocks": 10_000, "coupling": 100, "pulling": 1}, 10_000),
     ],
 )
-def test_the_command_of_a_run_tells_the_chain_and_the_state(folder, chain, blocks):
+def test_the_command_of_a_run_contains_the_chain_and_the_state(folder, chain, blocks):
     study = load(chain, without=["solvers", "attractors"])
     assert study.blocks == study.config["chain"]["blocks"] == blocks
     command = study.command("linearized", "rough", "0.1000")
@@ -50,7 +50,7 @@ def test_the_command_of_a_run_tells_the_chain_and_the_state(folder, chain, block
     assert model_of(options, state) == study.model("linearized", 0.1)
 
 
-def test_a_changed_file_of_springs_is_another_run(folder):
+def test_a_changed_file_of_springs_gives_another_run(folder):
     chain = {"springs": "faults.txt"}
     study = load(chain)
     assert study.config["chain"]["springs"].startswith("config/faults.txt@")
@@ -75,7 +75,7 @@ def test_results_are_read_without_the_file_of_springs(folder, monkeypatch):
     assert again.command("linearized", "rough", "0.1000") == study.command("linearized", "rough", "0.1000")
 
 
-def test_a_study_of_runs_alone_may_be_large():
+def test_a_study_of_runs_alone_may_have_a_large_chain():
     chain = {"grid": [400, 500], "pulling": 1}
     assert load(chain, without=["attractors", "solvers"], trajectory=1).blocks == 200_000
     with refused("attractors.samples: got 1000, expected at most 1e+08 numbers"):
@@ -89,7 +89,7 @@ def test_a_network_has_neither_phases_nor_other_lengths():
     assert not {"proof", "phases", "two_blocks"} & {*Jobs(study).existing}
 
 
-def test_lists_are_as_long_as_a_command_can_be():
+def test_lists_are_limited_by_the_length_of_a_command():
     with refused("chain.mass: got [1.0, 1.0,", "expected at most 1024 numbers in a list, or random numbers"):
         load({"blocks": 2000, "mass": 2000 * [1]})
     assert load({"mass": 2}, {"one": {"position": -0.5, "velocity": 0}}).blocks == 1

@@ -1,6 +1,6 @@
-"""The schema of a config, for editors: current, named by each config, and no looser than the range of each key.
+"""The schema of a config for editors is current, named by each config, and as strict as the range of each key.
 
-That it accepts whatever a study may be is among the checks of tests/fuzzing/test_configs.py.
+tests/fuzzing/test_configs.py checks that it accepts all valid configs.
 """
 
 import contextlib
@@ -22,7 +22,7 @@ from tests.study.test_keys import generator
 ROOT = Path(__file__).parents[2]
 GOOD = {"study": "test", "a": [0.08], "initial": {"minus": {}}}
 #: What only the package refuses: NaN, a line break at the end of a text, the order of two numbers, an unreadable file,
-#: and a key that is no text, which no file can have.
+#: and a key that is not a text, which no file can have.
 BEYOND_A_SCHEMA = ("got nan", r"got 'x\n'", "low < high", "at least low", "cannot be read", "initial: got 1,")
 
 
@@ -48,7 +48,7 @@ def test_a_config_names_the_schema_and_is_valid(path):
     SCHEMA.validate(read_config(path))
 
 
-def test_what_the_range_of_a_key_refuses_is_invalid(tmp_path):
+def test_the_schema_refuses_what_the_ranges_refuse(tmp_path):
     configs = [
         {key: value for key, value in {**GOOD, **changes}.items() if value is not None} for changes, _ in BAD_CHANGES
     ]

@@ -10,9 +10,9 @@ from tests.summaries.continued import SETTINGS, STATES, continuation
 
 @pytest.fixture
 def one_law(monkeypatch):
-    """The summary of a law; of the initial states, under a symmetric contact, the second attractor is reached, or none.
+    """The summary of a law whose initial states reach the second attractor under a symmetric contact, or none.
 
-    With blocks that are tested at the start nothing is reached by the first state.
+    With a tested start the first state reaches no attractor.
     """
 
     def label(model, found, starts, time_limit):

@@ -14,7 +14,7 @@ SETTINGS = SearchSettings(samples=9, fraction_width=0.33, time_limit=123.0, life
 def continuation(law):
     """Return synchrony and a torus, then a mirror pair that the torus becomes, then nothing.
 
-    Between the first two values of the grid one was put in, at which the torus alone was followed.
+    One value is inserted between the first two values of the grid; only the torus was followed there.
     """
     torus = {
         "kind": MotionKind.QUASIPERIODIC,

@@ -34,12 +34,12 @@ def compare(runs, tmp_path):
         for _, (law, initial, a) in grid:
             here = law, grid.a[a]
             write_point(dataclasses.replace(runs[here], **dict(altered).get(here, {})), grid.path(law, initial, a))
-        return grid, summarized(grid, attractors_of(grid, **reached))
+        return grid, summarize_kinds(grid, attractors_of(grid, **reached))
 
     return compared
 
 
-def summarized(grid, *found, kind=None):
+def summarize_kinds(grid, *found, kind=None):
     """Return the comparison, of runs of a given kind if there is one."""
     kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
     if kind is not None:
@@ -47,9 +47,9 @@ def summarized(grid, *found, kind=None):
     return agreement.summarize(grid, kinds, *found, synchronization_threshold=1e-6, agreement=AGREEMENT)
 
 
-def test_without_attractors_nobody_knows_which_runs_settled(compare):
+def test_without_attractors_it_is_undetermined_which_runs_settled(compare):
     grid, known = compare()
-    other = summarized(grid)
+    other = summarize_kinds(grid)
     assert (other["settled"] == -1).all()
     xarray.testing.assert_identical(other.drop_vars("settled"), known.drop_vars("settled"))
 
@@ -89,7 +89,7 @@ def test_two_synchronized_laws_agree(compare, runs):
         assert dataset["section_distance"].values[0, 0, k] == float(f"{wasserstein_distance(*upward):.12g}")
         errors = [first.mean_distance_error, other.mean_distance_error]
         assert dataset["mean_distance_error"].values[:, 0, k].tolist() == errors
-        # Under the two laws events occur at different times, but at first in the same order.
+        # Under the two laws events occur at different times, but initially in the same order.
         count, until = dataset["event_order_count"].values[0, 0, k], dataset["event_order_time"].values[0, 0, k]
         assert 4 < count <= min(first.event_count, other.event_count)
         assert 0.0 < until <= 2400.0
@@ -139,15 +139,15 @@ def test_the_order_of_events_is_compared_until_the_first_run_ends(compare, law):
         (0.1981, 0.0, 4, 1),
         (0.1979, 0.0, 4, 0),
         (0.213, 0.005, 4, 1),
-        (0.23, 0.011, 4, -1),  # with errors as wide as that nobody knows
+        (0.23, 0.011, 4, -1),  # undetermined with such large errors
         (0.23, 0.009, 4, 0),
-        # The attractor that the state reaches is not known.
+        # The attractor that the state reaches is unknown.
         (0.2, 0.0, -1, -1),
     ],
 )
 def test_a_run_may_not_reach_the_attractor_of_its_state(runs, compare, mean, error, branch, settled):
-    told = {key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs}
-    _, found = compare(told, mean=mean, error=error, branch=branch)
+    given = {key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs}
+    _, found = compare(given, mean=mean, error=error, branch=branch)
     assert (found["settled"] == settled).all()
 
 
@@ -177,7 +177,7 @@ def test_a_run_may_not_reach_the_attractor_of_its_state(runs, compare, mean, err
 )
 def test_the_kind_of_a_run_is_that_of_its_attractor(runs, compare, own, of_attractor, mean, kind):
     grid, _ = compare({key: {"mean_distance": mean, "mean_distance_error": 0.0} for key in runs})
-    found = summarized(grid, attractors_of(grid, **of_attractor), kind=own)
+    found = summarize_kinds(grid, attractors_of(grid, **of_attractor), kind=own)
     assert (found["kind"] == kind).all()
     of_attractor_taken = kind != own or (own, kind) == (2, 2)
     assert of_attractor_taken or np.isnan(found["period"]).any() or (found["period"] != 40.0).any()
@@ -188,7 +188,7 @@ def test_the_kind_of_a_run_is_that_of_its_attractor(runs, compare, own, of_attra
 )
 def test_a_run_of_another_kind_is_not_on_the_attractor(runs, compare, own, of_attractor, settled):
     grid, _ = compare({key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs})
-    found = summarized(grid, attractors_of(grid, kind=of_attractor, branch=4, mean=0.2), kind=own)
+    found = summarize_kinds(grid, attractors_of(grid, kind=of_attractor, branch=4, mean=0.2), kind=own)
     assert (found["settled"] == settled).all()
 
 
@@ -216,7 +216,7 @@ def test_a_run_without_result_agrees_with_nothing(compare):
 def of_laws(folder, laws):
     settings = {"transient": 100.0, "window": 100.0, "batches": 2}
     grid = grid_of(folder, ["minus"], {"0.05": 0.05, "0.2": 0.2}, {"laws": laws}, **settings)
-    return summarized(write_points(grid), attractors_of(grid))
+    return summarize_kinds(write_points(grid), attractors_of(grid))
 
 
 def test_each_law_is_compared_with_the_first(tmp_path):
@@ -240,7 +240,7 @@ def test_each_law_is_compared_with_the_first(tmp_path):
     assert [row.count(",") for row in rows] == [head.count(",")] * 2
 
 
-def test_one_law_has_nothing_to_be_compared_with(tmp_path):
+def test_a_single_law_is_not_compared(tmp_path):
     dataset = of_laws(tmp_path, {"linearized": {}})
     assert dataset.sizes["other_law"] == 0
     assert agreement.digest(dataset).startswith("The linearized law is the only one: there is nothing to compare.\n")
@@ -255,7 +255,7 @@ def test_one_law_has_nothing_to_be_compared_with(tmp_path):
 @pytest.mark.parametrize(
     ("means", "errors", "kinds", "agrees"),
     [
-        ((1.0, 1.111), (0.0, 0.0), (2, 2), 1),  # a tenth of the larger one
+        ((1.0, 1.111), (0.0, 0.0), (2, 2), 1),  # a tenth of the larger value
         ((1.111, 1.0), (0.0, 0.0), (2, 2), 1),
         ((1.0, 1.112), (0.0, 0.0), (2, 2), 0),
         # Within three errors of the tolerance, here 0.15, the verdict is undetermined.
@@ -265,7 +265,7 @@ def test_one_law_has_nothing_to_be_compared_with(tmp_path):
         ((2.0, 2.07), (0.03, 0.04), (2, 2), -1),
         ((1.0, 1.0), (0.03, 0.04), (2, 2), -1),
         ((1.0, 1.0), (0.0, np.nan), (2, 2), -1),
-        ((0.0, 1e-6), (0.0, 0.0), (0, 0), 1),  # no more than the threshold of synchrony
+        ((0.0, 1e-6), (0.0, 0.0), (0, 0), 1),  # at most the threshold of synchrony
         ((0.0, 2e-6), (0.0, 0.0), (1, 1), 0),
         ((0.0, 3e-7), (3e-7, 0.0), (0, 0), 1),  # synchrony, however slowly it is approached
         ((0.0, 3e-7), (3e-7, 0.0), (1, 1), -1),
@@ -300,9 +300,9 @@ def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
 
 def test_parting_a_is_the_smallest_a_of_disagreement():
     names = ("mean_distance", "mean_distance_error", "kind")
-    told = np.array([[[[1.0, 1.0, 1.0]], [[1.0, 2.0, 3.0]]], np.zeros((2, 1, 3)), np.ones((2, 1, 3))])
+    given = np.array([[[[1.0, 1.0, 1.0]], [[1.0, 2.0, 3.0]]], np.zeros((2, 1, 3)), np.ones((2, 1, 3))])
     filled = ("difference", "difference_error", "same_kind", "agrees")
-    values = dict(zip(names, told, strict=True)) | {name: np.zeros((1, 3)) for name in filled}
+    values = dict(zip(names, given, strict=True)) | {name: np.zeros((1, 3)) for name in filled}
     values["parting_a"] = np.zeros(1)
     judgement.compare(values, np.array([0.1, 0.2, 0.3]), 1e-6, AGREEMENT)
     assert values["agrees"].tolist() == [[1, 0, 0]]

@@ -14,7 +14,7 @@ from burridge_knopoff.summaries.all_laws import common_branch_names, number_inte
 from tests.summaries.continued import SETTINGS
 
 
-def test_laws_are_put_together_under_common_numbers(one_law):
+def test_laws_are_merged_with_common_branch_numbers(one_law):
     first, second, third = (one_law(law) for law in ("linearized", "nonlinear", "exponential"))
     numbers = [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
     found = all_laws.merge([first.isel(attractor=slice(1, 2)), second, third], numbers)
@@ -68,7 +68,7 @@ def test_numbers_follow_the_order_in_which_branches_appear_under_the_first_law()
     first = ranges((0, 1, 5, 0.0), (1, 1, 9, 0.3), (2, 1, 9, 0.2), (3, 8, 3, 0.1), (4, 5, 2, 0.4))
     second = ranges((0, 0, 5, 0.0), (1, 0, 9, 0.3), (5, 0, 3, 0.1))
     numbers = [{n: n for n in range(5)}, {0: 0, 1: 1, 5: 5}]
-    # Synchrony; 2 before 1, as its <J> is smaller; 3; the one of the second law alone; the short one.
+    # Synchrony; 2 before 1, since its <J> is smaller; 3; the branch of the second law alone; the short branch.
     assert all_laws.number_in_order([first, second], numbers) == {0: 0, 2: 1, 1: 2, 3: 3, 5: 4, 4: 5}
     # Without synchrony no other branch is 0.
     assert all_laws.number_in_order([ranges((3, 0, 4, 0.2), (7, 0, 4, 0.1))], [{3: 3, 7: 7}]) == {7: 1, 3: 2}
@@ -82,7 +82,7 @@ def test_without_synchrony_on_the_grid_its_number_remains_free(one_law):
 
 
 @given(st.lists(st.tuples(st.integers(0, 8), st.integers(1, 2)), max_size=4))
-def test_what_a_deeper_search_finds_in_addition_leaves_the_numbers_of_lasting_branches(short):
+def test_branches_found_by_a_deeper_search_do_not_renumber_long_branches(short):
     lasting = (0, 0, 5, 0.0), (1, 3, 4, 0.2), (2, 1, 9, 0.3), (3, 6, 3, 0.4)
     more = [(10 + k, first, count, 0.05 * k) for k, (first, count) in enumerate(short)]
     numbers = [{number: number for number, *_ in (*lasting, *more)}]
@@ -100,7 +100,7 @@ def test_what_a_deeper_search_finds_in_addition_leaves_the_numbers_of_lasting_br
         ("mirror pair, block 2 never sticks (12)", -1, "mirror pair, block 2 never sticks (12−)"),
     ],
 )
-def test_on_a_side_the_motion_is_one_of_a_mirror_pair(name, side, expected):
+def test_the_name_of_a_motion_on_one_side_is_mirror_pair(name, side, expected):
     assert side_name(name, side) == expected
 
 
@@ -118,7 +118,7 @@ def test_the_digest_describes_each_branch(one_law):
     assert all_laws.digest(found).endswith(f"undetermined; {sliding}")
 
 
-def test_the_largest_basin_fraction_is_one_where_the_branch_exists(one_law):
+def test_the_largest_basin_fraction_is_taken_where_the_branch_exists(one_law):
     found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
     found["basin_fraction"][...] = found["basin_fraction"] * 0.0
     assert all_laws.digest(found).splitlines()[1].endswith("largest basin fraction 0.000 (a = 0.05)")
@@ -126,7 +126,7 @@ def test_the_largest_basin_fraction_is_one_where_the_branch_exists(one_law):
     assert all_laws.digest(found).splitlines()[1].endswith("largest basin fraction 0.000 (a = 0.1)")
 
 
-def test_of_equal_basin_fractions_text_and_report_name_the_first(one_law):
+def test_text_and_report_name_the_first_of_equal_basin_fractions(one_law):
     """0.1 + 0.2 is more than 0.3 in floating point."""
     found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
     found["basin_fraction"][0] = np.array([[0.6, 0.3], [0.1, 0.2], [np.nan, np.nan]])
@@ -136,7 +136,7 @@ def test_of_equal_basin_fractions_text_and_report_name_the_first(one_law):
     assert [row["fraction"] for row in branch_table(found)] == ["0.600 (a = 0.05)", "0.300 (a = 0.05)"]
 
 
-def test_a_branch_between_has_a_number_of_its_own():
+def test_a_branch_at_inserted_values_has_its_own_number():
     numbers = [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
     branches = [[0, 1], [3, -1], [4, 2]], [[0, 2], [3, 1], [-1, 9]]
     parts = [xr.Dataset({"branch": (("value", "attractor"), np.array(part))}) for part in branches]
@@ -147,14 +147,14 @@ def test_a_branch_between_has_a_number_of_its_own():
     assert numbers == [{0: 0, 1: 1, 4: 4}, {0: 0, 2: 1, 3: 5}]
 
 
-def named(names):
-    told = np.array(list(names.values()), dtype=object), {"long_name": "what it is called"}
-    return xr.Dataset({"branch_number": ("number", list(names)), "branch_name": ("number", *told)})
+def named_branches(names):
+    names_variable = np.array(list(names.values()), dtype=object), {"long_name": "what it is called"}
+    return xr.Dataset({"branch_number": ("number", list(names)), "branch_name": ("number", *names_variable)})
 
 
-def test_names_are_those_at_the_values_of_the_grid():
+def test_names_are_determined_at_the_values_of_the_grid():
     found = common_branch_names(
-        named({0: "synchronized", 3: "alternating (3)", 7: "mirror pair (7)"}), named({3: "pair (3)"})
+        named_branches({0: "synchronized", 3: "alternating (3)", 7: "mirror pair (7)"}), named_branches({3: "pair (3)"})
     )
     assert found["branch_name"].values.tolist() == ["synchronized", "pair (3)", "mirror pair (7)"]
     assert found["branch_name"].attrs == {"long_name": "what it is called"}

@@ -33,7 +33,7 @@ def test_a_sweep_ends_on_the_branch(families, law):
     assert sweep(families[law], np.array([orbit.a])) == pytest.approx([1e-2], abs=1e-9)
 
 
-def test_beyond_where_end_blocks_no_longer_stick_together_a_sweep_tells_nothing(families):
+def test_a_sweep_gives_nan_where_end_blocks_do_not_stick_together(families):
     found = sweep(families["linearized"], np.array([0.08, 0.25, 0.08]))
     assert np.isnan(found).tolist() == [False, True, True]
 
@@ -46,5 +46,5 @@ def test_power_law_of_a_power_law():
     noisy = fit_power_law(x, 0.3 * x**0.75 * np.array([1.01, 0.99, 1.01, 0.99]))
     assert 1e-4 < noisy.error < 1e-2
     # The result has ten decimals, on which all machines agree.
-    told = noisy.exponent, noisy.error, noisy.coefficient
-    assert told == tuple(round(value, 10) for value in told)
+    numbers = noisy.exponent, noisy.error, noisy.coefficient
+    assert numbers == tuple(round(value, 10) for value in numbers)

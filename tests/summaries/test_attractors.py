@@ -48,12 +48,12 @@ def test_features_are_sorted_by_branch_and_side(one_law):
     assert found["undetermined_count"].values.tolist() == [1, 0, 4]
     assert found["stop_rate"].values[0].tolist() == [[0.1, 0.2, 0.1], [0.1, 0.0, 0.3]]
     np.testing.assert_array_equal(found["lyapunov_exponent"].values[1], [[0.03, 0.0, nan]] * 2)
-    # U of the last return: its x beside uniform sliding, −5/6, −2/3, −5/6 times the friction 1 − av.
+    # U of the last return: its x plus uniform sliding, −5/6, −2/3, −5/6 times the friction 1 − av.
     assert found["position"].values[1, 0] == pytest.approx([2.0 - 0.98 * 5 / 6, -0.98 * 2 / 3, -0.98 * 5 / 6])
     assert found["velocity"].values[0, 0].tolist() == [0.0, 0.5, 0.25]
     assert found["block"].values.tolist() == [1, 2, 3]
-    told = {"law": "linearized", "v": 0.2, "contact": "one_sided", "start": "tested", "seed": 1}
-    assert {key: found.attrs[key] for key in told} == told
+    given = {"law": "linearized", "v": 0.2, "contact": "one_sided", "start": "tested", "seed": 1}
+    assert {key: found.attrs[key] for key in given} == given
 
 
 def test_there_are_as_many_slots_as_attractors_at_one_a():
@@ -88,7 +88,7 @@ def test_what_initial_states_and_sweeps_reach(one_law):
     np.testing.assert_array_equal(mean.sel(direction="downward"), [[0.14, 0.15, np.nan]] * 2)
 
 
-def test_states_that_round_to_an_initial_state_are_all_corners_of_its_box():
+def test_rounded_states_are_the_corners_of_a_box_around_an_initial_state():
     state = PAPER_STATES["plus"]
     numbers = np.array([*state.position, *state.velocity])
     found = attractors.corners(state, "one_sided", 3)
@@ -126,9 +126,9 @@ def test_chaos_that_is_shown_to_last_is_chaos():
     assert np.isinf(found["lifetime"].values[1]).all()
 
 
-def test_the_values_put_in_between_have_a_file_of_their_own():
-    told = (SETTINGS, MOTION, RefinementSettings(1e-3), "tested")
-    parts = [refined.one_law(continuation(law), *told) for law in ("linearized", "nonlinear")]
+def test_all_values_of_a_are_in_the_refined_file():
+    given = (SETTINGS, MOTION, RefinementSettings(1e-3), "tested")
+    parts = [refined.one_law(continuation(law), *given) for law in ("linearized", "nonlinear")]
     parts[1] = parts[1].isel(value=slice(0, 2))
     found = all_laws.merge(parts, [{0: 0, 1: 1}, {0: 0, 1: 5}], refined.VARIABLES, "Refined")
     np.testing.assert_array_equal(found["a"].values, [[0.05, 0.07, 0.1, 0.2], [0.05, 0.07, np.nan, np.nan]])
@@ -142,7 +142,7 @@ def test_the_values_put_in_between_have_a_file_of_their_own():
     assert found["branch_number"].values.tolist() == [0, 1, 5]
 
 
-def test_branches_have_names_that_say_what_they_are():
+def test_branches_are_named_by_symmetry_and_sticks():
     branch = np.array([[[0, 1], [2, 2]], [[3, 3], [4, -1]]])
     none, symmetric, pair = Symmetry.SYNCHRONIZED, Symmetry.SYMMETRIC, Symmetry.ASYMMETRIC
     symmetry = np.array([[[none, symmetric], [pair, pair]], [[pair, pair], [pair, -1]]])
@@ -160,7 +160,7 @@ def test_branches_have_names_that_say_what_they_are():
     ]
 
 
-def test_one_value_of_a_has_slots_as_well():
+def test_a_single_value_of_a_has_slots_too():
     found = continuation("linearized")
     values = slot_values(found.models[:1], [found.rows(0)], 1e5, "a")
     assert values["stop_rate"].shape == (1, 2, 3)

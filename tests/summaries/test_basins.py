@@ -44,7 +44,7 @@ def rule(position):
 
 def test_a_tile_is_a_band_of_rows(ruled):
     tiles = [basins.tile(KNOWN, number, PLANE, SEARCH.label_limit, "moving") for number in (0, 1)]
-    # Pixels of the first position in the middles of [−1, 3], of the last one in those of [0, 2].
+    # Pixels lie in the middle of equal parts of [−1, 3] for the first position and of [0, 2] for the last.
     for tile, last in zip(tiles, ([0.25, 0.75], [1.25, 1.75]), strict=True):
         assert tile["first_position"].values.tolist() == [-0.5, 0.5, 1.5, 2.5]
         assert tile["last_position"].values.tolist() == last
@@ -118,7 +118,7 @@ def test_maps_are_merged_and_described(ruled):
 
 @pytest.mark.parametrize(("velocity", "alike"), [([0.1, 0.2, 0.1], 2), ([0.1, 0.2, 0.3], 0)])
 def test_undetermined_states_that_are_their_own_mirror_images_are_counted(velocity, alike):
-    """Those of one row are undetermined, and one beyond it: of these two lie where U_1 = U_N."""
+    """The states of one row and another one are undetermined; two of them lie where U_1 = U_N."""
     branch = np.array([[-1, -1, -1], [0, 0, -1], [0, 0, -1]])
     places = {name: [0.5, 1.5, 2.5] for name in ("last_position", "first_position")}
     plane = {"plane_position": np.array([1.0, 3.0, 2.0]), "plane_velocity": np.array(velocity)}

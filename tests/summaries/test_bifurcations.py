@@ -31,7 +31,7 @@ from burridge_knopoff.summaries.bifurcations import _branches_of_segments, _roun
 # Not evenly spaced. Synchrony is lost between the second and third value; its successor becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]
 #: Properties of the attractor at each a.
-TOLD = {
+FEATURES = {
     "branch": [0, 0, 1, 1, 1],
     "side": [0] * 5,
     "kind": [MotionKind[kind] for kind in ("SYNCHRONIZED", "SYNCHRONIZED", "PERIODIC", "PERIODIC", "CHAOTIC")],
@@ -54,7 +54,7 @@ def grid():
         runner.run(8000.0)
         assert runner.run(9000.0, halting_block=0) == Status.HALTED
         states.append((runner.state().position + model.sliding_offset, runner.state().velocity))
-    found = xr.Dataset({name: ("a", values) for name, values in TOLD.items()}, {"a": A, "block": [1, 2, 3]})
+    found = xr.Dataset({name: ("a", values) for name, values in FEATURES.items()}, {"a": A, "block": [1, 2, 3]})
     for name, values in zip(("position", "velocity"), zip(*states, strict=True), strict=True):
         found[name] = ("a", "block"), np.array(values)
     return found.expand_dims("attractor", 1).assign_coords(law="linearized")
@@ -78,17 +78,17 @@ def found(grid):
     return one_law(MODEL, grid, at_all_values(grid))
 
 
-def test_what_branches_do(grid):
+def test_beginnings_ends_and_changes_of_branches(grid):
     expected = [(1, 2, 0, 1, Change.END), (1, 2, 0, 1, Change.BEGINNING), (3, 4, 1, 1, Change.CHANGE)]
-    assert told_of(branch_changes(grid, at_all_values(grid))) == expected
+    assert fields_of(branch_changes(grid, at_all_values(grid))) == expected
 
 
-def told_of(changes):
+def fields_of(changes):
     names = ("low", "high", "from_branch", "to_branch", "change")
     return [tuple(getattr(change, name) for name in names) for change in changes]
 
 
-def told(rows, in_grid):
+def attractors_of(rows, in_grid):
     """Return the attractors at all values of a of one law, and at those of the grid: for each value {branch: kind}."""
     filled = np.array([[*row.items(), (-1, -1), (-1, -1)][:2] for row in rows])
     slots = {"branch": filled[..., 0], "kind": filled[..., 1]}
@@ -117,8 +117,8 @@ def told(rows, in_grid):
         ([{2: 1}, {1: 1}, {2: 1, 1: 1}], [1, 0, 1], [(0, 1, 21, 1, Change.BEGINNING)]),
     ],
 )  # fmt: skip
-def test_what_branches_do_between_values_of_the_grid(rows, in_grid, expected):
-    assert told_of(branch_changes(*told(rows, in_grid))) == expected
+def test_changes_of_branches_between_values_of_the_grid(rows, in_grid, expected):
+    assert fields_of(branch_changes(*attractors_of(rows, in_grid))) == expected
 
 
 def test_every_change_has_an_entry(grid, found):
@@ -166,7 +166,7 @@ def test_a_bifurcation_lies_near_the_values_that_bracket_it(found):
     assert found["motion_before"].values[first] == MotionKind.SYNCHRONIZED
 
 
-def test_a_motion_that_attracts_lies_on_an_orbit_that_attracts():
+def test_a_stable_motion_lies_on_a_stable_orbit():
     """Near unstable synchrony no orbit is found at first; in the end the blocks desynchronize."""
     model = MODEL.at(0.09)
     start = synchronized_orbit(model).reference
@@ -178,7 +178,7 @@ def test_a_motion_that_attracts_lies_on_an_orbit_that_attracts():
     assert orbit.mean_distance == pytest.approx(0.0154, abs=1e-4)
 
 
-def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled():
+def test_an_unstable_orbit_is_not_one_on_which_a_motion_has_settled():
     """Exact synchrony persists, however long the settling time."""
     model = MODEL.at(0.09)
     start = synchronized_orbit(model).reference
@@ -189,15 +189,15 @@ def test_an_orbit_that_does_not_attract_is_none_on_which_a_motion_has_settled():
 def test_the_values_next_to_a_bifurcation_are_those_of_the_attractors(found, grid):
     """They agree to the last bit, so that they can be looked up."""
     for name in ("grid_low", "grid_high"):
-        beside = found[name].values
-        assert np.isin(beside[np.isfinite(beside)], A).all()
+        values = found[name].values
+        assert np.isin(values[np.isfinite(values)], A).all()
     shifted = at_all_values(grid)
     shifted["a"] = shifted["a"] * (1.0 + 1e-15)
     assert np.isin(shifted["a"].values[2], one_law(MODEL, grid, shifted)["grid_high"].values)
 
 
 @pytest.mark.parametrize("change", [-1e-13, 1e-13])
-def test_only_what_is_written_orders_the_rows(grid, found, monkeypatch, change):
+def test_rows_are_ordered_by_the_written_digits(grid, found, monkeypatch, change):
     """Further digits differ between linear-algebra libraries; several bifurcations have the same a."""
     a = found["a"].values
     assert (np.diff(a) >= 0.0).all()
@@ -221,7 +221,7 @@ def test_numbers_are_rounded(found):
 
 
 @pytest.mark.parametrize(("name", "digits"), [("multiplier", 5), ("multiplier_beyond", 5), ("stick_time", 5)])
-def test_what_is_less_well_known_has_fewer_digits(found, name, digits):
+def test_less_accurate_values_have_fewer_digits(found, name, digits):
     values = found[name].values
     values = values[np.abs(values) > 1e-5]
     assert [float(f"{value:.{digits - 1}e}") for value in values] == values.tolist()
@@ -245,7 +245,7 @@ def test_orbits_are_stable_on_one_side_of_the_bifurcation(found):
     assert (found["orbit_period"].values > 0.0).all()
 
 
-def test_a_bifurcation_without_an_orbit_has_no_numbers_of_one(grid, tmp_path):
+def test_a_bifurcation_without_an_orbit_has_no_values_of_an_orbit(grid, tmp_path):
     """With chaos on both sides of every bifurcation none is located; each is only bracketed by two values of a."""
     chaotic = grid.assign(kind=xr.full_like(grid["kind"], MotionKind.CHAOTIC))
     found = one_law(MODEL, chaotic, at_all_values(chaotic))
@@ -263,7 +263,7 @@ def test_a_bifurcation_without_an_orbit_has_no_numbers_of_one(grid, tmp_path):
     assert again["orbit_law"].dtype.kind in "UO"
 
 
-def test_bifurcations_of_laws_come_one_after_the_other(found):
+def test_bifurcations_are_listed_law_by_law(found):
     other = found.isel(bifurcation=[1], orbit=[0, 2]).assign_attrs(laws="mine")
     other = other.assign(law=other["law"].copy(data=["mine"]), orbit_law=other["orbit_law"].copy(data=["mine"] * 2))
     both = merge([found, other])
@@ -319,8 +319,8 @@ def test_no_bifurcation_in_words(found):
     assert digest(found.isel(bifurcation=[])) == "No bifurcation was found between the values of a.\n"
 
 
-def test_a_segment_has_the_branch_of_most_attractors_on_it():
-    """It is not the branch of the first attractor, from which the segment was continued."""
+def test_a_segment_belongs_to_the_branch_of_most_of_its_attractors():
+    """The first attractor, from which the segment was continued, does not decide."""
     places = {(0, 0): 0, (1, 0): 0, (2, 1): 0, (3, 0): 1}
     orbits = FollowedOrbits([None, None], [(0, 0), (3, 0)], places)
     assert _branches_of_segments(orbits, np.array([[10, -1], [3, -1], [4, 3], [7, -1]])) == [3, 7]

@@ -49,7 +49,7 @@ def compared():
     return two_blocks.summarize(models(2, LAWS), STATES, GRID, SETTINGS, SEARCH, MOTION, AGREEMENT)
 
 
-def test_runs_for_the_order_of_events_sample_nothing_before_their_end():
+def test_runs_for_the_order_of_events_store_no_samples_before_their_end():
     assert SETTINGS.sampling == 1900.0
 
 
@@ -77,12 +77,12 @@ def test_fractions_count_outcomes(files):
     assert point["synchronized_high"] == fraction_interval(3, 5)[2]
     assert point["state"].values.tolist() == [1, 2, 3, 4, 5]
     assert point["symmetric_state"].values.tolist() == [1]
-    told = {"confidence": 0.95, "v": 0.1, "contact": "one_sided", "seed": 1, "samples": 5, "start": "moving"}
-    assert {key: point.attrs[key] for key in told} == told
+    given = {"confidence": 0.95, "v": 0.1, "contact": "one_sided", "seed": 1, "samples": 5, "start": "moving"}
+    assert {key: point.attrs[key] for key in given} == given
     assert "blocks" not in point.attrs
 
 
-def test_files_of_other_settings_do_not_mix(files):
+def test_files_of_different_settings_are_not_merged(files):
     path = files[0].with_name("other.nc")
     write_summary(chain_file(3, 200.0), path)
     with pytest.raises(ValueError, match=r"other\.nc: made with settings that differ"):
@@ -99,12 +99,12 @@ def test_two_blocks_agree_where_both_synchronize(compared):
     mean = compared["mean_distance"].values
     assert np.array_equal(compared["difference"].values, mean[:, 1:] - mean[:, :1])
     for chain, other, a in product(range(2), range(2), range(3)):
-        told = [compared[f"agreeing_{name}"].values[chain, other, a] for name in ("fraction", "low", "high")]
-        assert told == pytest.approx(two_blocks.agreeing_fraction(compared["agrees"].values[chain, other, :, a]))
+        given = [compared[f"agreeing_{name}"].values[chain, other, a] for name in ("fraction", "low", "high")]
+        assert given == pytest.approx(two_blocks.agreeing_fraction(compared["agrees"].values[chain, other, :, a]))
     assert len(np.unique(compared["agreeing_fraction"])) > 1
 
 
-def test_states_for_which_it_is_not_known_whether_laws_agree_count_either_way():
+def test_undetermined_agreement_widens_the_interval():
     fraction, low, high = two_blocks.agreeing_fraction(np.array([1, 1, 0, -1, -1, -1, 0, 1]))
     assert fraction == 3 / 8
     assert (low, high) == (fraction_interval(3, 8)[1], fraction_interval(6, 8)[2])
@@ -115,7 +115,7 @@ def train_model(model):
     return replace(model, chain=Chain(2, pulling=(1.0, 0.0)))
 
 
-def test_two_blocks_are_what_their_states_end_on(compared):
+def test_two_blocks_are_described_by_their_asymptotic_motion(compared):
     """Kind and ⟨J⟩ belong to the asymptotic motion, the order of events to the run from the start."""
     chains_of = [train_model, lambda law: law]
     for (c, chain), (j, state), (k, a) in product(enumerate(chains_of), enumerate(STATES), enumerate(GRID)):
@@ -123,27 +123,27 @@ def test_two_blocks_are_what_their_states_end_on(compared):
         assert tuple(compared["initial_velocity"].values[j]) == state.velocity
         both = [chain(model).at(a) for model in models(2, LAWS)]
         for i, model in enumerate(both):
-            told = {name: compared[name].values[c, i, j, k] for name in two_blocks.MOTION_VARIABLES}
-            assert told == asdict(asymptotic_states(model, STATES, SEARCH)[j])
+            given = {name: compared[name].values[c, i, j, k] for name in two_blocks.MOTION_VARIABLES}
+            assert given == asdict(asymptotic_states(model, STATES, SEARCH)[j])
         runs = [simulate(model, initial=state, settings=SETTINGS) for model in both]
         first, *others = [(run.event_time, run.event_block, run.event_kind) for run in runs]
         for i, other in enumerate(others):
             count, until = common_order(first, other)
             assert compared["event_order_count"].values[c, i, j, k] == count
             assert compared["event_order_time"].values[c, i, j, k] == min(until, 1900.0)
-    told = {
+    given = {
         "transient": 1500.0,
         "search_transient": 3000.0,
         "agreement_standard_errors": 3.0,
         "motion_longest_period": 2000.0,
     }
-    assert {name: compared.attrs[name] for name in told} == told
+    assert {name: compared.attrs[name] for name in given} == given
     assert compared["state"].values.tolist() == [1, 2]
 
 
-def test_one_law_has_nothing_to_be_compared_with():
-    told = two_blocks.run_settings(transient=200.0, window=100.0), SEARCH, MOTION, AGREEMENT
-    alone = two_blocks.summarize(models(2, ["exponential"]), STATES[:1], [0.03], *told)
+def test_a_single_law_is_not_compared():
+    given = two_blocks.run_settings(transient=200.0, window=100.0), SEARCH, MOTION, AGREEMENT
+    alone = two_blocks.summarize(models(2, ["exponential"]), STATES[:1], [0.03], *given)
     assert alone["agrees"].shape == (2, 0, 1, 1)
     assert alone["mean_distance"].shape == (2, 1, 1, 1)
 

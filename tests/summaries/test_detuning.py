@@ -10,7 +10,7 @@ from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.summaries.detuning import DetunedMotion, detuned_motion
 
 
-def of_branch_1(law: str, a: float, detuning: float) -> DetunedMotion:
+def frequencies_of_branch_1(law: str, a: float, detuning: float) -> DetunedMotion:
     model = Model(Chain(3), law_of(law, a))
     return detuned_motion(model, Runner(model).state_after(model.begin(PAPER_STATES["plus"]), 3000.0), detuning, 3)
 
@@ -23,7 +23,7 @@ def attracts(found: DetunedMotion) -> bool:
 @pytest.mark.parametrize("detuning", [0.1, 0.3])
 def test_the_end_blocks_stay_locked_with_unequal_masses(law: str, a: float, detuning: float) -> None:
     """Alone, the heavier block would be slower by 5 or 12 %: unlocked frequencies would differ by 0.01 or more."""
-    found = of_branch_1(law, a, detuning)
+    found = frequencies_of_branch_1(law, a, detuning)
     assert found.frequency[2] == pytest.approx(found.frequency[0], abs=1e-8)
     assert found.frequency[1] > 1.5 * found.frequency[0]
     assert (found.frequency_error < 1e-5).all()
@@ -31,7 +31,7 @@ def test_the_end_blocks_stay_locked_with_unequal_masses(law: str, a: float, detu
 
 
 @pytest.mark.parametrize("detuning", [0.1, 0.3])
-def test_blocks_that_the_springs_alone_move_keep_one_frequency_but_do_not_attract(detuning: float) -> None:
+def test_blocks_moved_by_springs_alone_keep_one_frequency_but_are_not_locked(detuning: float) -> None:
     """At a = 0 friction is constant: small oscillations about sliding are those of the springs, without any locking."""
     model = Model(Chain(3), law_of("linearized", 0.0))
     antiphase = ChainState(np.array([0.05, 0.0, -0.05]), np.full(3, model.v), np.zeros(3, bool))
@@ -46,11 +46,11 @@ def test_blocks_that_the_springs_alone_move_keep_one_frequency_but_do_not_attrac
 
 
 def test_beyond_the_range_of_locking_they_have_two_frequencies() -> None:
-    """By an independent integrator 0.2036 and 0.1467."""
-    found = of_branch_1("linearized", 0.06, 0.8)
+    """An independent integrator gives 0.2036 and 0.1467."""
+    found = frequencies_of_branch_1("linearized", 0.06, 0.8)
     assert found.frequency[[0, 2]] == pytest.approx([0.2036, 0.1467], abs=1e-4)
 
 
 def test_at_equal_masses_their_frequencies_are_equal_by_symmetry() -> None:
-    found = of_branch_1("linearized", 0.06, 0.0)
+    found = frequencies_of_branch_1("linearized", 0.06, 0.0)
     assert found.frequency[0] == pytest.approx(found.frequency[2], abs=1e-8)

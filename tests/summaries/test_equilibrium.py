@@ -41,7 +41,7 @@ def test_the_positions_of_the_paper(found):
     ids=["two", "five", "thirty", "ring", "unequal"],
 )
 @pytest.mark.parametrize("law", ["linearized", "nonlinear", "exponential", "stribeck", "carlson_langer"])
-def test_any_chain(chain, law):
+def test_the_equilibrium_of_any_chain(chain, law):
     model = Model(chain, law_of(law, 0.4), 0.7)
     force = -chain.stiffness @ sliding_position(model)
     assert force == pytest.approx(chain.thresholds * float(model.law(0.7)), abs=1e-11)
@@ -78,7 +78,7 @@ def test_masses_and_networks(chain):
     assert np.sort(mine.real) == pytest.approx(np.sort(theirs.real), abs=1e-9)
 
 
-def test_the_modes_of_a_large_chain_are_left_out():
+def test_a_large_chain_has_no_modes_in_the_summary():
     assert np.isnan(summarize([Model(Chain(2000), law_of("linearized", 0.1))], [0.1])["eigenvalue"]).all()
 
 
@@ -93,7 +93,7 @@ def test_eigenvalues_and_growth_rates(found):
     assert (found["equilibrium_drift"] < 1e-13).all()
 
 
-def test_other_positions_are_no_equilibrium():
+def test_other_positions_are_not_an_equilibrium():
     model = Model(Chain(3), law_of("linearized", 0.08))
     drift, _ = simulate_sliding(model, sliding_position(model) + np.array([1e-3, 0.0, 0.0]))
     assert drift > 1e-4
@@ -110,7 +110,7 @@ def growth(model, mode, rate, duration, push):
 
 
 @pytest.mark.parametrize("periods", [1, 3])
-def test_a_small_push_grows_at_that_rate(found, periods):
+def test_a_small_perturbation_grows_at_the_growth_rate(found, periods):
     rate, frequency = found.sel(law="linearized", a=0.3)["eigenvalue"].sel(mode=3).values
     duration = periods * 2 * np.pi / frequency
     # κ = 2: the mode's eigenvector is (1, 0, −1).
@@ -118,7 +118,7 @@ def test_a_small_push_grows_at_that_rate(found, periods):
     assert grown == pytest.approx(np.exp(rate * duration), rel=1e-8)
 
 
-def test_the_same_numbers_again(found):
+def test_the_numbers_are_reproducible(found):
     assert found.identical(summarize(MODELS, [0.0, 0.08, 0.3]))
 
 
@@ -132,8 +132,8 @@ def test_the_same_numbers_again(found):
         (law_of("stribeck", 1.0), 0.5 * (np.exp(-10.0) - 0.2)),
     ],
 )
-def test_the_growth_rate_is_that_of_a_simulated_push(law, rate):
-    """At v = 0.5 the slower mirror-symmetric push grows, or decays, so."""
+def test_the_growth_rate_is_that_of_a_simulated_perturbation(law, rate):
+    """At v = 0.5 the slower mirror-symmetric perturbation grows or decays at this rate."""
     model = Model(Chain(2), law, 0.5)
     found = eigenvalues(model)
     assert found.real == pytest.approx([rate] * 4, abs=1e-12)
@@ -155,7 +155,7 @@ def test_strong_damping_has_modes_that_do_not_oscillate():
 
 @pytest.mark.parametrize("law", PAPER_LAWS)
 def test_the_energy_about_sliding_grows_until_a_block_stops(law):
-    """This holds for any motion under a law that decreases with velocity, so that sticks are unavoidable."""
+    """This holds for any motion under a law that decreases with velocity, so sticks are unavoidable."""
     model = Model(Chain(3), law_of(law, 0.3))
     for seed in range(4):
         shift = 0.02 * np.random.default_rng(seed).uniform(-1.0, 1.0, 6)

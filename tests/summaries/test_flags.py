@@ -1,4 +1,4 @@
-"""Meanings of the flag variables in every file: a change would break programs that read the files."""
+"""Meanings of the flag variables in every file; changing them would break programs that read the files."""
 
 import importlib
 

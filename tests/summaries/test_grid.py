@@ -16,7 +16,7 @@ from tests.summaries.points import write_points
 
 RUN = {"transient": 2000.0, "window": 2000.0, "batches": 4}
 PAIR = InitialState("pair", (-0.9, -1.1), (0.1, 0.1))
-TOLD = {"lyapunov_exponents": 3, "synchronization_threshold": 1e-6, "motion": {}}
+SETTINGS = {"lyapunov_exponents": 3, "synchronization_threshold": 1e-6, "motion": {}}
 
 MASSES = {"mass[2]": [0.999999999, 1.0]}
 
@@ -25,7 +25,7 @@ def summary(folder, law, state=PAIR, **parameters):
     named = {name: {f"{value:.9f}": value for value in values} for name, values in parameters.items()}
     models = {**PAPER_MODELS, "laws": {law: {}}, "chain": {**PAPER_MODELS["chain"], "blocks": state.blocks}}
     grid = Grid(folder, {state.name: state}, named, {law: Settings(**RUN)}, models)
-    return summarize(write_points(grid), **TOLD).squeeze(("law", "initial"))
+    return summarize(write_points(grid), **SETTINGS).squeeze(("law", "initial"))
 
 
 def per_velocity(found):
@@ -33,7 +33,7 @@ def per_velocity(found):
     return (found["mean_distance"] / found["v"]).values
 
 
-def test_each_point_is_the_run_of_its_parameters(tmp_path):
+def test_each_point_has_the_run_of_its_parameters(tmp_path):
     found = summary(tmp_path, "nonlinear", coupling=[0.5, 2.0], a=[0.1, 0.4])
     assert found["lyapunov_exponent"].dims == ("coupling", "a", "exponent")
     for coupling in (0.5, 2.0):
@@ -45,12 +45,12 @@ def test_each_point_is_the_run_of_its_parameters(tmp_path):
 
 
 def test_only_end_blocks_of_one_mass_synchronize(tmp_path):
-    """A chain that is its own mirror image at one of the masses only, in either order."""
+    """The chain is its own mirror image only at one of the masses, in either order."""
     found = summary(tmp_path, "linearized", InitialState("same", (-0.9, -0.9), (0.1, 0.1)), a=[0.01], **MASSES)
     assert found["mean_distance"].dims == ("a", "mass_2")
     assert found["mass_2"].values.tolist() == [0.999999999, 1.0]
     assert found["run_kind"].values[0].tolist() == [MotionKind.PERIODIC, MotionKind.SYNCHRONIZED]
-    assert (found["mean_distance"].values < TOLD["synchronization_threshold"]).all()
+    assert (found["mean_distance"].values < SETTINGS["synchronization_threshold"]).all()
 
 
 def test_v_is_a_scale_of_the_linearized_law(tmp_path):

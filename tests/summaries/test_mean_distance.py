@@ -20,7 +20,7 @@ SHORT = {"transient": 50.0, "window": 50.0, "batches": 2}
     ("distance", "expected"),
     [
         ([1.0, 0.5, 0.05, 0.005], 15.0),
-        ([1.0, 0.005, 0.05, 0.005], 15.0),  # comes back once
+        ([1.0, 0.005, 0.05, 0.005], 15.0),  # rises above the level once
         ([1.0, 0.005, 0.001, 0.0], 5.0),
         ([0.001, 0.001, 0.001, 0.001], 0.0),
         ([0.001, 0.001, 0.001, 0.01], np.nan),  # at the level is not below it
@@ -82,7 +82,7 @@ def same_section(trajectory, **values):
 
 @pytest.mark.parametrize(("thresholds", "synchronized"), [([1.0, 1.1, 1.0], 1), ([1.0, 1.0, 1.1], 0)])
 def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresholds, synchronized):
-    """Whatever J is: here runs of the third block have been given that of synchrony."""
+    """This holds whatever J is: here the runs have been given the J of synchrony."""
     models = {"laws": {"linearized": {}}, "chain": {**PAPER_MODELS["chain"], "threshold": thresholds}}
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, models, **SHORT)
     given = {"mean_distance": 1e-9, "lyapunov_exponent": np.array([0.0, -0.1, -0.2])}
@@ -94,10 +94,10 @@ def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresh
     assert kind.item() == (MotionKind.SYNCHRONIZED if synchronized else MotionKind.PERIODIC)
 
 
-#: {a: exponents, upward section points, status of a run, and the kind, the zero exponents and the period they tell}.
+#: {a: exponents, upward section points, status of a run, and the resulting kind, zero exponents and period}.
 ORBIT = np.random.default_rng(1).random(150)
 GOLDEN = np.cos(np.pi * (np.sqrt(5) - 1) * np.arange(1200))
-TOLD = {
+RUNS = {
     0.1: ((0.0, -0.1, -0.2), np.tile([0.1, 0.3], 10), "completed", MotionKind.PERIODIC, 1, 2),
     0.2: ((1e-4, -1e-4, -0.2), GOLDEN, "completed", MotionKind.QUASIPERIODIC, 2, 0),
     # A long period of section points, though the exponents look like those of a torus.
@@ -108,47 +108,47 @@ TOLD = {
 
 
 @pytest.fixture
-def told(tmp_path):
-    """Points whose every second section point is a downward one, at −1, −2, …"""
+def points(tmp_path):
+    """Points whose section points are alternately upward and downward, the latter at −1, −2, …"""
 
     def alter(trajectory):
-        exponent, upward, status, *_ = TOLD[trajectory.model.a]
+        exponent, upward, status, *_ = RUNS[trajectory.model.a]
         section = np.stack([upward, -1.0 - np.arange(len(upward))], axis=1).ravel()
-        told = {"status": status, "mean_distance": trajectory.model.a}
-        told |= {"lyapunov_exponent": np.array(exponent), "lyapunov_error": np.full(3, 1e-5)}
-        return with_section(trajectory, section, np.tile(np.array([1, -1], np.int8), len(upward)), **told)
+        averages = {"status": status, "mean_distance": trajectory.model.a}
+        averages |= {"lyapunov_exponent": np.array(exponent), "lyapunov_error": np.full(3, 1e-5)}
+        return with_section(trajectory, section, np.tile(np.array([1, -1], np.int8), len(upward)), **averages)
 
-    grid = grid_of(tmp_path, ["minus", "plus"], {f"{a:.4f}": a for a in TOLD}, **SHORT)
+    grid = grid_of(tmp_path, ["minus", "plus"], {f"{a:.4f}": a for a in RUNS}, **SHORT)
     return write_points(grid, alter)
 
 
-def test_kinds_of_motion_of_runs(told):
-    found = lyapunov.summarize(told, 3, 1e-6, MOTION)
+def test_kinds_of_motion_of_runs(points):
+    found = lyapunov.summarize(points, 3, 1e-6, MOTION)
     assert (found.attrs["synchronization_threshold"], found.attrs["longest_period"]) == (1e-6, 2000.0)
     for point in (found.sel(law=law, initial=state) for law in found["law"].values for state in ("minus", "plus")):
-        expected = list(zip(*TOLD.values(), strict=True))
+        expected = list(zip(*RUNS.values(), strict=True))
         assert point["lyapunov_exponent"].values.tolist() == [list(exponent) for exponent in expected[0]]
         assert (point["lyapunov_error"] == 1e-5).all()
         names = ("run_kind", "zero_exponent_count", "section_period")
         assert tuple(tuple(point[name].values.tolist()) for name in names) == tuple(expected[3:])
-        assert point["mean_distance"].values.tolist() == list(TOLD)
+        assert point["mean_distance"].values.tolist() == list(RUNS)
         assert point["status"].values.tolist() == [0, 0, 0, 0, 1]
 
 
-def test_section_points_are_kept_run_by_run(told):
-    found = bifurcation_diagram.summarize(told)
-    counts = [2 * len(upward) for _, upward, *_ in TOLD.values()]
+def test_section_points_are_kept_run_by_run(points):
+    found = bifurcation_diagram.summarize(points)
+    counts = [2 * len(upward) for _, upward, *_ in RUNS.values()]
     assert found["crossing_count"].values.tolist() == 4 * counts
-    assert found["a"].values.tolist() == 4 * list(TOLD)
+    assert found["a"].values.tolist() == 4 * list(RUNS)
     assert found["law"].values.tolist() == ["linearized"] * 10 + ["nonlinear"] * 10
     assert found["initial"].values.tolist() == 2 * (["minus"] * 5 + ["plus"] * 5)
-    # Each run of the second state and law has velocities of its own.
+    # Each run of the second state and law has its own velocities.
     chosen = (found["law"].values == "nonlinear") & (found["initial"].values == "plus")
     chosen = np.repeat(chosen, found["crossing_count"].values)
     found["crossing_velocity"].values[chosen] *= 2.0
-    upward = np.concatenate([item[1] for item in TOLD.values()])
+    upward = np.concatenate([item[1] for item in RUNS.values()])
     for law, initial, factor in (("nonlinear", "plus", 2.0), ("nonlinear", "minus", 1.0), ("linearized", "plus", 1.0)):
         a, velocity = bifurcation_diagram.section_points(found, law, initial, 1)
         assert velocity.tolist() == (factor * upward).tolist()
-        assert a.tolist() == np.repeat(list(TOLD), np.array(counts) // 2).tolist()
+        assert a.tolist() == np.repeat(list(RUNS), np.array(counts) // 2).tolist()
         assert (bifurcation_diagram.section_points(found, law, initial, -1)[1] <= -1.0).all()

@@ -32,7 +32,7 @@ def found():
     return summarize(models(), [0.0, 0.05, 0.1])
 
 
-def test_the_curve_is_that_of_the_orbits(found):
+def test_curves_agree_with_the_orbits(found):
     assert found["status"].values.tolist() == [[1, 0, 0]] * 2
     assert found.attrs["v"] == 0.1
     for law in PAPER_LAWS:
@@ -52,7 +52,7 @@ def test_the_curve_is_that_of_the_orbits(found):
     assert np.isnan(found["period"].sel(a=0.0)).all()
 
 
-def test_the_bifurcation_is_told_from_the_orbits(found):
+def test_the_bifurcation_follows_from_the_orbits(found):
     assert (found["bifurcation_kind"] == BifurcationKind.PITCHFORK).all()
     assert (found["bifurcation_side"] == BifurcationSide.SUPERCRITICAL).all()
     assert (found["branch_offset"] > 0.0).all()
@@ -63,7 +63,7 @@ def test_the_bifurcation_is_told_from_the_orbits(found):
     assert (found["sweep_asymmetry"].sel(sweep_offset=found["sweep_offset"] > 0) > 4e-3).all()
 
 
-def test_the_transition_is_that_of_the_stability_room(found):
+def test_the_transition_is_recomputed(found):
     """Each number is recomputed, the fit with another routine."""
     family, one = synchronized_orbits(models()[1]), found.sel(law="nonlinear")
     edges = bifurcations_of(family)
@@ -98,7 +98,7 @@ def test_the_transition_is_that_of_the_stability_room(found):
     assert one["hysteresis"].item() == np.abs(up - down).max()
 
 
-def test_the_law_at_the_same_slope(found):
+def test_laws_with_the_same_slope_are_compared(found):
     """The stored differences agree with those of independently computed orbits."""
     nonlinear = models()[1]
     scaled = effective_a(nonlinear, 0.1)
@@ -124,9 +124,9 @@ def test_a_missing_orbit_is_a_flag(blocks, v, status):
     assert (none["bifurcation_side"] == -1).all()
 
 
-def test_other_laws_have_their_rows(found, monkeypatch):
+def test_other_laws_are_included(found, monkeypatch):
     """The laws have the order of the study, and the comparison of the paper's laws is missing."""
-    # What branches off is told of the paper's laws.
+    # Branching orbits are computed for the paper's laws only.
     monkeypatch.setattr(orbits, "ASYMMETRIES", orbits.ASYMMETRIES[:2])
     monkeypatch.setattr(orbits, "OFFSETS", orbits.OFFSETS[:1])
     other = summarize(models(("exponential", "nonlinear", "carlson_langer")), [0.0, 0.1])
@@ -154,19 +154,19 @@ def test_an_asymmetric_chain_has_no_synchronized_orbit():
 @pytest.mark.parametrize(
     ("formula", "status"), [("1 + 0*u", 1), ("1 + 0.1*u", 2), ("0.9 + 0*u", 2), ("1 - a*u", 1), ("1 - (1 - a)*u", 2)]
 )
-def test_friction_that_is_the_same_at_every_speed_is_neutral(formula, status):
+def test_constant_friction_is_neutral(formula, status):
     model = Model(Chain(3), FormulaLaw(0.1, formula, name="mine"))
     assert summarize([model], [0.0])["status"].values.tolist() == [[status]]
 
 
-def test_sweeps_are_as_far_from_the_transition_as_the_chain_is_strong(monkeypatch):
+def test_offsets_of_sweeps_scale_with_the_chain(monkeypatch):
     """With thresholds ten times as high, a_c and all other values of a are a tenth."""
-    told = []
-    monkeypatch.setattr(orbits, "sweep", lambda orbits, values: told.append(values) or np.zeros(len(values)))
+    swept = []
+    monkeypatch.setattr(orbits, "sweep", lambda orbits, values: swept.append(values) or np.zeros(len(values)))
     model = Model(Chain(3, threshold=10.0), law_of("linearized", 0.0))
     critical = summarize([model], [0.005])["critical_a"].item()
     assert critical == pytest.approx(0.00869729047, abs=1e-9)
-    assert told[0] - critical == pytest.approx(0.1 * np.array(orbits.OFFSETS), abs=1e-12)
+    assert swept[0] - critical == pytest.approx(0.1 * np.array(orbits.OFFSETS), abs=1e-12)
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0])

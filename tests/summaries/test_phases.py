@@ -71,8 +71,8 @@ def test_states_are_counted_by_what_they_reach(ruled):
             np.testing.assert_array_equal(one["velocity_correlation"].values, correlation)
             for index in np.ndindex(2, 3):
                 hits, unknown = int((x[index] > 0.04).sum()), int((x[index] < -0.4).sum())
-                told = [one[f"synchronized_{name}"].values[index] for name in ("fraction", "low", "high")]
-                assert told == [*fraction_interval(hits, 5)[:2], fraction_interval(hits + unknown, 5)[2]]
+                shares = [one[f"synchronized_{name}"].values[index] for name in ("fraction", "low", "high")]
+                assert shares == [*fraction_interval(hits, 5)[:2], fraction_interval(hits + unknown, 5)[2]]
                 assert one["undetermined_count"].values[index] == unknown
     assert found["undetermined_count"].sum() > 0
     # With A = 0.05 no velocity becomes negative; with A = 0.5 those of most states do.
@@ -82,14 +82,14 @@ def test_states_are_counted_by_what_they_reach(ruled):
     assert found["slipping_amplitude"].values == pytest.approx([0.1 / np.sqrt(2.0)] * 2)
 
 
-def test_a_state_is_the_same_whatever_other_shares_there_are(ruled):
+def test_states_do_not_depend_on_the_other_shares(ruled):
     """The states with uniformly sliding inner blocks do not change when other shares are added."""
     alone = phases.one_law([known(MODELS[0])], replace(PHASES, inner_share=(0.5,)), SEARCH.label_limit)
     both = phases.one_law([known(MODELS[0])], PHASES, SEARCH.label_limit)
     assert both.sel(inner_share=[0.5]).drop_attrs().equals(alone.drop_attrs())
 
 
-def test_a_study_finds_what_its_phases_lead_to(small_studies):
+def test_a_study_determines_the_outcome_of_its_phases(small_studies):
     """The attractors are found with short runs; in synchrony the velocities are identical."""
     found = small_studies("paper").found["phases"]
     assert found["a"].values.tolist() == [0.05]
@@ -106,7 +106,7 @@ def test_a_study_finds_what_its_phases_lead_to(small_studies):
 
 
 @pytest.mark.parametrize(("difference", "least", "most"), [(20.0, 1.0 - 1e-9, 1.0), (180.0, -1.0, -0.99)])
-def test_velocities_go_together_or_against_each_other(difference, least, most):
+def test_velocities_are_correlated_or_anticorrelated(difference, least, most):
     """The states reached from close and from opposite phases after 3000 time units."""
     model = MODELS[0]
     position, velocity, _ = oscillating_states(model, *(np.array([x]) for x in (0.03, difference, 100.0)))
@@ -119,7 +119,7 @@ def test_velocities_go_together_or_against_each_other(difference, least, most):
 def test_inner_blocks_that_oscillate_break_the_rule_of_close_phases(share, least, most):
     """Of phases 30° apart all states synchronize while the inner block slides uniformly, and not all if it does not.
 
-    Integrated until a motion has synchronized or never will: no attractor, and no label, is asked.
+    The motion is integrated until it has synchronized or never will; attractors and labels are not used.
     """
     count = 40
     common, inner = common_phases(0.05, (count,), 7), inner_phases(0.05, (count, 1), 7)

@@ -36,16 +36,16 @@ def test_a_grid_is_its_points_in_order(grid, tmp_path):
     assert other.folder == tmp_path / "other"
     assert (other.initial, other.a, other.models) == (grid.initial, grid.a, grid.models)
     state = grid.initial["plus"]
-    told = {
+    given = {
         "initial": {"plus": {"position": state.position, "velocity": state.velocity}},
         "parameters": grid.parameters,
         "settings": dict.fromkeys(grid.laws, SETTINGS),
         **grid.models,
     }
-    assert Grid.from_points(tmp_path, told) == grid
+    assert Grid.from_points(tmp_path, given) == grid
 
 
-def test_points_are_read(grid):
+def test_points_are_read_back(grid):
     read = read_point(grid, POINT, ["mean_distance", "time", *EVENTS])
     whole = open_point(grid, *POINT)
     for name, values in read.items():

@@ -1,4 +1,4 @@
-"""The summary of the proofs: its numbers, its text, its bytes, and where it does not apply."""
+"""The summary of the proofs: its numbers, text and bytes, and studies to which it does not apply."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from burridge_knopoff.periodic_orbits.synchronized_bifurcations import bifurcati
 from burridge_knopoff.summaries import proof
 
 PAPER, NONLINEAR = (Model(Chain(3), law_of(law, 0.0)) for law in ("linearized", "nonlinear"))
-TOLD = 1e-13
+TOLERANCE = 1e-13
 
 
 @pytest.fixture(scope="module")
@@ -30,26 +30,26 @@ def linearized(found):
 
 
 @pytest.mark.parametrize("model", [PAPER, NONLINEAR], ids=["linearized", "nonlinear"])
-def test_every_interval_is_about_the_number_of_the_double_code(found, model):
+def test_every_interval_agrees_with_double_precision(found, model):
     family, of_law = synchronized_orbits(model), found.sel(law=model.law.name)
     a_c = critical_a(bifurcations_of(family))
     for name, a in (("given", 0.08), ("critical", a_c)):
         orbit, one = family.at(a), of_law.sel(orbit=name)
         assert one["a"].values == pytest.approx([a, a], abs=2e-15)
-        assert one["period"].values == pytest.approx([orbit.period] * 2, abs=TOLD)
+        assert one["period"].values == pytest.approx([orbit.period] * 2, abs=TOLERANCE)
         at = {(block, kind): time for time, block, kind in orbit.events}
         first = at[1, 1]
         state = flow(orbit.model, orbit.reference, first)[0].state().position[:2]
-        assert one["position"].values == pytest.approx(np.stack([state] * 2, axis=1), abs=TOLD)
+        assert one["position"].values == pytest.approx(np.stack([state] * 2, axis=1), abs=TOLERANCE)
         times = [*((at[event] - first) % orbit.period for event in ((0, 1), (0, 0), (1, 0))), orbit.period]
-        assert one["event_time"].values == pytest.approx(np.stack([times] * 2, axis=1), abs=TOLD)
+        assert one["event_time"].values == pytest.approx(np.stack([times] * 2, axis=1), abs=TOLERANCE)
         multiplier = multipliers(orbit)
         expected = [multiplier.transverse.real, multiplier.symmetry_preserving[0].real]
         assert one["multiplier"].values == pytest.approx(np.stack([expected] * 2, axis=1), abs=1e-11)
     assert of_law["critical_a"].values == pytest.approx([a_c] * 2, abs=2e-15)
 
 
-def test_intervals_are_narrow_and_open_to_the_right_sides(found):
+def test_intervals_are_narrow_and_rounded_outward(found):
     for name in ("critical_a", "a", "period", "event_time", "position", "multiplier", "multiplier_slope"):
         low, high = (found[name].sel(end=end).values for end in proof.END)
         assert (low <= high).all()
@@ -85,7 +85,7 @@ def test_the_text_has_the_numbers_and_the_assumptions(found):
     assert max(map(len, text.splitlines())) <= 120
 
 
-def test_the_same_bytes(linearized, tmp_path):
+def test_the_file_is_reproducible(linearized, tmp_path):
     for name in ("one", "other"):
         dataset = proof.summarize([PAPER])
         write_summary(dataset, tmp_path / f"{name}.nc")

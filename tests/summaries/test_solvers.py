@@ -62,11 +62,11 @@ def test_the_runs_are_compared(files, runs):
     assert abs(torus["difference"].sel(solver="series")) < 1e-11
     assert torus["event_order_time"].sel(solver="series") == 500.0
     assert 1e-9 < abs(torus["difference"].sel(solver="rk4")) < 1e-3
-    # In chaos a time-stepping solution soon has another order of events.
+    # In chaos a time-stepping solution soon has a different order of events.
     assert 20.0 < dataset["event_order_time"].sel(law="linearized", solver="rk4", initial="plus", a=0.2) < 500.0
 
 
-def test_a_solver_that_does_not_know_a_law_has_no_numbers(files):
+def test_a_solver_that_does_not_accept_a_law_has_no_numbers(files):
     none = summarize(*files, 0.01).sel(law="nonlinear", solver="map")
     for name in ("status", "step_count", "event_order_count"):
         assert (none[name] == -1).all()

@@ -53,7 +53,7 @@ def test_cycle_time_of_hand_made_lists(stops, batches, mean, error):
         ([2.0, 5.0], [STOP, START], False, 0.0),
         ([], [], True, 1.0),  # never an event
         ([], [], False, 0.0),
-        ([12.0, 12.0], [STOP, START], False, 0.0),  # turns round at once
+        ([12.0, 12.0], [STOP, START], False, 0.0),  # reverses at once
     ],
 )
 def test_stick_fraction_of_hand_made_lists(time, kind, ends_stuck, expected):
@@ -74,7 +74,7 @@ def test_no_frequency_without_a_cycle():
     assert np.isnan(leading_frequency(np.zeros(601), 30.0))
     assert np.isnan(leading_frequency(np.full(601, 0.1) + 1e-17 * np.cos(time), 30.0))
     assert np.isnan(leading_frequency(np.array([0.1]), 0.0))
-    # A trend alone has no cycle, and does not hide one.
+    # A trend alone has no cycle and does not hide one.
     assert leading_frequency(np.exp(-time / 40.0) + 0.5 * np.sin(time), 30.0) == pytest.approx(0.5 / np.pi, abs=3e-3)
 
 
@@ -127,7 +127,7 @@ def test_the_synchronized_orbit(tmp_path):
         assert 0.07 < amplitude[1] < amplitude[0] < 0.12
 
 
-def test_events_before_those_with_states_count_as_well(tmp_path):
+def test_events_stored_without_states_count_too(tmp_path):
     """The stops are the same, whichever events are stored with states."""
     kept = [
         summarize(points(tmp_path / events, "plus", 0.08, events=events, event_window=width), **SETTINGS)
@@ -158,7 +158,7 @@ def test_a_block_that_never_moves_and_one_that_never_stops(tmp_path):
     assert np.isnan(run["cycle_time"]).all()
 
 
-def test_a_run_that_did_not_complete_has_nothing(tmp_path):
+def test_a_run_that_did_not_complete_has_no_values(tmp_path):
     def change(run):
         return dataclasses.replace(run, status="diverged") if run.model.law.name == "linearized" else run
 
@@ -214,18 +214,18 @@ def test_frequencies_are_those_of_the_same_motion_in_other_units():
     stiff = Chain(3, coupling=400.0 * chain.coupling, pulling=tuple(400.0 * chain.driving))
     fast = {"transient": 25.0, "window": 30.0, "batches": 2, "trajectory_sampling": 0.005}
     moved = InitialState("moved", np.array(state.position) / 400.0, np.array(state.velocity) / 20.0)
-    told = []
+    frequencies = []
     for model, initial, scale, settings in (
         (Model(chain, law_of("linearized", 0.08)), state, 1.0, {"transient": 500.0, "window": 600.0, "batches": 2}),
         (Model(stiff, law_of("linearized", 1.6), 0.005), moved, 20.0, fast),
     ):
         run = vars(simulate(model, initial=initial, settings=Settings(trajectory=0.5 / scale, **settings)))
         velocity, duration = long_velocity(run, model, settings["transient"])
-        told.append([leading_frequency(velocity[:, block], duration) / scale for block in range(3)])
-    assert told[1] == pytest.approx(told[0], rel=1e-3)
+        frequencies.append([leading_frequency(velocity[:, block], duration) / scale for block in range(3)])
+    assert frequencies[1] == pytest.approx(frequencies[0], rel=1e-3)
 
 
-def test_events_before_the_window_have_no_part_in_frequencies():
+def test_events_before_the_window_do_not_affect_frequencies():
     _, kept, model = velocities("linearized", 0.0475, "plus", transient=300.0, window=200.0, events="all")
     assert kept["event_time"][0] < 10.0
     found, duration = long_velocity(kept, model, 300.0)

@@ -30,8 +30,9 @@ solvers: {a: [0.2], step: 0.01}
 chains: {two_blocks: {a: [0.02, 0.15], samples: 2}}
 """
 
-#: With points that do not complete: at a = 2.5 the linearized law drives blocks to any speed. Small, and without stages
-#: in which no test provokes anything.
+#: A small study with points that do not complete: at a = 2.5 the linearized law accelerates blocks without limit.
+#: Stages
+#: that no test needs are left out.
 LIMITS = """
 study: limits
 a: [0.05, 2.5]
@@ -97,7 +98,7 @@ class Study:
 
 
 def run_once(factory: pytest.TempPathFactory, name: str, config: str) -> Study:
-    """Return a study that has run to its end, once for all workers, and its `output`."""
+    """Return a study that has run to its end, once for all workers, with its `output`."""
     made = made_once(factory, name, lambda folder: (folder / "output").write_text(Study(folder / "study", config).ok()))
     # Snakemake locks its folder: each worker has a copy.
     study = copied(made / "study", factory.mktemp(name) / "study")
@@ -106,7 +107,7 @@ def run_once(factory: pytest.TempPathFactory, name: str, config: str) -> Study:
 
 
 def copied(study: Path, folder: Path, repository: Path = REPOSITORY) -> Study:
-    """Return a copy of a study to spoil and rerun; modification times are kept."""
+    """Return a copy of a study to damage and rerun; modification times are kept."""
     subprocess.run(["cp", "-a", str(study), str(folder)], check=True)
     return Study(folder, (study / "study.yaml").read_text(), repository)
 

@@ -1,4 +1,4 @@
-"""Faults that a study has to survive: killed, interrupted and broken jobs, full and read-only disks."""
+"""Faults that a study must survive: killed, interrupted and broken jobs, full and read-only disks."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ COMPARED = ("points", "summary", "figures", "attractors", "basins", "phases", "s
 STAGES = ("points", "attractors", "basins", "solvers", "summary", "figures", "claims", "report")
 #: Touched when Snakemake is started.
 BEGUN = "begun"
-#: A snakemake that neither ends nor gets on.
+#: Time after which a snakemake without progress counts as stuck.
 PATIENCE = 300.0
 # Flags of Linux's mount(2) and umount2(2).
 READ_ONLY, REMOUNT, BIND, DETACH = 1, 32, 4096, 2
@@ -41,7 +41,7 @@ def running(study: Study) -> list[str]:
     begun = (study.folder / BEGUN).stat().st_mtime_ns
     found = []
     for path in folder.rglob("*"):
-        # Snakemake may be removing them.
+        # Snakemake may be removing these records.
         with contextlib.suppress(FileNotFoundError):
             if path.is_file() and path.stat().st_mtime_ns > begun:
                 found.append(base64.urlsafe_b64decode(path.name).decode().split("/", 2)[2])
@@ -70,7 +70,7 @@ def processes(study: Study) -> dict[int, str]:
 
 
 def begin(study: Study, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.Popen[bytes]:
-    """Start Snakemake as a process group of its own; what it writes goes to the file `screen`."""
+    """Start Snakemake in its own process group, with its output in the file `screen`."""
     (study.folder / BEGUN).touch()
     with (study.folder / "screen").open("wb") as screen:
         return subprocess.Popen(
@@ -114,7 +114,7 @@ def flag_named(text: str) -> str:
     return named[1]
 
 
-def go_on(study: Study, *arguments: str) -> list[str]:
+def resume(study: Study, *arguments: str) -> list[str]:
     """Run the command again, with the flag that its own error message names, if any; return the flags used."""
     run = study.run(*arguments)
     if run.returncode == 0:
@@ -135,19 +135,19 @@ def failures(text: str) -> dict[str, str]:
 
 
 def remedies(text: str) -> list[str]:
-    """Return the commands of the last words of a run that recreate bad files."""
+    """Return the commands in the closing lines of a run that recreate bad files."""
     return re.findall(r"^this command recreates the bad files and continues: (.+)$", text, re.MULTILINE)
 
 
 def differences(study: Study, other: Study, *folders: str) -> list[str]:
-    """Return the files that the two studies do not have alike, and temporary files."""
+    """Return the files in which two studies differ, and temporary files."""
     mine, theirs = (each.files(*(folders or COMPARED)) for each in (study, other))
     return sorted(name for name in mine.keys() | theirs.keys() if mine.get(name) != theirs.get(name))
 
 
 def check_end(study: Study, other: Study, *targets: str, folders: Collection[str] = ()) -> None:
     """Require that a run resumes without a flag, ends with the files of another study, and leaves no others."""
-    assert go_on(study, *targets) == []
+    assert resume(study, *targets) == []
     assert differences(study, other, *folders) == []
     assert temporaries(study) == []
 
@@ -155,7 +155,7 @@ def check_end(study: Study, other: Study, *targets: str, folders: Collection[str
 def broken(study: Study, faults: Mapping[str, str]) -> dict[str, str]:
     """Return the environment in which each Python process first runs the code of a key that its command contains.
 
-    A script of Snakemake's holds the names of its files itself: its text counts as part of the command.
+    A script of Snakemake contains the names of its files: its text counts as part of the command.
     """
     folder = study.folder / "faults"
     folder.mkdir()
@@ -190,7 +190,7 @@ module.{function} = provoked
 
 
 def out_of_memory(modules: str) -> str:
-    """Return code that leaves a process, all imports done, no memory but what is free in blocks of less than 16 KiB."""
+    """Return code that leaves a process, after its imports, only memory in free blocks of less than 16 KiB."""
     return f"""
 import resource, netCDF4, {modules}
 resource.setrlimit(resource.RLIMIT_AS, (1, 1))
@@ -235,7 +235,7 @@ def small_disk(folder: Path, free: int) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def read_only(folder: Path) -> Iterator[None]:
-    """Let nothing be written into a folder, not even by root."""
+    """Make a folder read-only, even for root."""
     _mount(str(folder), folder, BIND)
     try:
         _mount("", folder, BIND | REMOUNT | READ_ONLY)
@@ -255,6 +255,6 @@ def _unmount(folder: Path) -> None:
 
 
 def _checked(function: str, *arguments: object) -> None:
-    """Call a function of the C library that returns 0 or sets errno: no program has to be installed for it."""
+    """Call a function of the C library that returns 0 or sets errno, so that no program has to be installed."""
     if ctypes.CDLL(None, use_errno=True)[function](*arguments):
         raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))

@@ -19,8 +19,8 @@ from pathlib import Path
 #: Of the package and of the display, in this checkout.
 SOURCES = Path(__file__).parents[2] / "src"
 
-#: Does each call that comes through a socket in a fork, and answers with the number of its process and its exit code.
-#: Several may run at a time: for each there is another fork that waits for it.
+#: Executes each call from a socket in a fork, and answers with the number of the process and its exit code.
+#: Several may run at a time; another fork waits for each of them.
 SERVE = """
 import gc, json, os, signal, socket, sys
 def become(call):
@@ -55,7 +55,7 @@ calls, *others = (socket.socket(fileno=int(number)) for number in sys.argv[1:])
 """
 
 #: Lets each script be run by the other process. A fork that has imported the project serves the runs of this checkout;
-#: what is run with the sources of another one finds nothing imported.
+#: runs with the sources of another one start without imports.
 SNAKEMAKE = f"""{SERVE}
 import subprocess
 import snakemake.cli, snakemake.dag, snakemake.report.html_reporter, snakemake.script
@@ -89,7 +89,7 @@ if not os.fork():
 serve(calls, run)
 """
 
-#: Likewise: scripts of this checkout find the project imported, those of another one only what it needs.
+#: Likewise, scripts of this checkout start with the project imported, those of another one only with its requirements.
 SCRIPTS = f"""{SERVE}
 import importlib, pkgutil, runpy
 import matplotlib.backends.backend_agg, matplotlib.backends.backend_pdf, matplotlib.patches, matplotlib.ticker
@@ -109,10 +109,9 @@ serve(calls, lambda call: runpy.run_path(sys.argv[0], run_name="__main__"))
 
 @cache
 def _servers(seed: str) -> tuple[socket.socket, socket.socket]:
-    """Return where calls of Snakemake are sent to, with the sources of another checkout and with those of this one.
+    """Return the sockets for calls of Snakemake with the sources of another checkout and with those of this one.
 
-    The processes end with this one, which alone has these ends.
-    seed : of the order in which sets are walked
+    The processes end with this one, which alone holds these sockets. seed : of the order of iteration over sets
     """
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": seed}
     pairs = (socket.socketpair(type=socket.SOCK_SEQPACKET) for _ in range(4))
@@ -136,7 +135,7 @@ class Fork:
 
         environment : of the run; PYTHONPATH leads to the package
         written : files of standard output and error
-        own_group : whether it begins a group of processes, to which its jobs will belong
+        own_group : whether it starts a process group, to which its jobs will belong
         """
         call = {"command": command, "folder": str(folder), "environment": dict(environment), "own_group": own_group}
         call |= {"written": [*map(str, written)], "group": os.getpgrp()}
@@ -150,9 +149,9 @@ class Fork:
         self.pid = int(self._said[0])
 
     def _listen(self) -> None:
-        said = os.read(self._answers, 64).split()
-        assert said, "the server of Snakemake has died"
-        self._said += said
+        answers = os.read(self._answers, 64).split()
+        assert answers, "the server of Snakemake has died"
+        self._said += answers
 
     def poll(self) -> int | None:
         """Return the exit code, None if it still runs."""
@@ -171,7 +170,7 @@ class Fork:
 def run_snakemake(
     command: Sequence[str], folder: Path, environment: Mapping[str, str]
 ) -> subprocess.CompletedProcess[str]:
-    """Do what the command line does, in a folder, to its end; standard output and error are captured.
+    """Execute a command line in a folder; standard output and error are captured.
 
     environment : of the run; PYTHONPATH leads to the package
     """

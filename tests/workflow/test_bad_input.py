@@ -17,17 +17,17 @@ from tests.workflow.snakemake import run_snakemake
 # Snakemake's own first lines.
 ANNOUNCED = ("Using workflow specific profile", "Assuming unrestricted shared filesystem", "Building DAG of jobs")
 
-# What Snakemake makes before it reads the Snakefile: empty folders, and its log.
+# Snakemake makes empty folders and its log before it reads the Snakefile.
 OF_SNAKEMAKE = ".snakemake"
 
 
 def some(cases: Iterable[str], count: int) -> list[Any]:
-    """Return cases that a study refuses in the same place, all but the first few of them marked as slow."""
+    """Return cases that a study refuses in the same place, all except the first few marked as slow."""
     return [pytest.param(case, marks=pytest.mark.slow if n >= count else ()) for n, case in enumerate(cases)]
 
 
 def check(run: subprocess.CompletedProcess[str], folder: Path, files: list[str], words: list[str]) -> None:
-    """Require one line with these words, an exit code, and no other files than those that were there."""
+    """Require one line with these words, an exit code, and no new files."""
     lines = [line for line in run.stderr.splitlines() if not line.startswith(ANNOUNCED)]
     assert run.returncode in (1, 2)
     assert run.stdout == ""
@@ -41,7 +41,7 @@ def check(run: subprocess.CompletedProcess[str], folder: Path, files: list[str],
     assert kept == []
 
 
-# Those that Snakemake reads before the Snakefile does, and some others: tests/study/test_config.py tries them all.
+# Cases that Snakemake reads before the Snakefile does, and some others; tests/study/test_config.py has all cases.
 FILES, KEYS = (list(BAD_FILES)[part] for part in (slice(FIRST_OF_KEYS), slice(FIRST_OF_KEYS, None, 9)))
 
 
@@ -78,7 +78,7 @@ TARGETS = {
 
 
 @pytest.mark.parametrize("target", some(TARGETS, 5))
-def test_a_target_that_is_not_of_the_study(tmp_path, target):
+def test_a_target_that_does_not_belong_to_the_study(tmp_path, target):
     check(Study(tmp_path, TINY).run(target), tmp_path, ["study.yaml"], TARGETS[target])
 
 
@@ -124,8 +124,8 @@ def test_a_bad_command_line(tmp_path, case):
     check(run, tmp_path, ["study.yaml"], words)
 
 
-def test_the_folder_of_the_workflow_is_none_of_a_study(tmp_path, repository):
-    """It has a Snakefile, which Snakemake would find there, and plan a second study."""
+def test_the_folder_of_the_workflow_is_not_the_folder_of_a_study(tmp_path, repository):
+    """Snakemake would find the Snakefile there and plan a second study."""
     shutil.copytree(repository / "workflow", tmp_path / "workflow")
     (tmp_path / "config").symlink_to(repository / "config")
     shutil.copy(repository / "Snakefile", tmp_path)
@@ -137,7 +137,7 @@ def test_the_folder_of_the_workflow_is_none_of_a_study(tmp_path, repository):
 
 
 def test_a_folder_of_results_belongs_to_its_config(tmp_path):
-    """The same file may be edited; another one of the same name is refused, with what to do, and nothing is written."""
+    """The same file may be edited; another one of the same name is refused with a remedy, and nothing is written."""
     study = Study(tmp_path, TINY)
     results = tmp_path / "results" / "tiny"
     record = {"software": "", "git_commit": "", "arguments": "", "given": {}, "config": {}, "grid": {}}
@@ -151,10 +151,10 @@ def test_a_folder_of_results_belongs_to_its_config(tmp_path):
 
 
 def test_a_cluster_that_does_not_answer_gets_no_job(tmp_path):
-    said = "slurm_load_jobs error: Unable to contact slurm controller (connect failure)"
+    message = "slurm_load_jobs error: Unable to contact slurm controller (connect failure)"
     squeue = tmp_path / "bin" / "squeue"
     squeue.parent.mkdir()
-    squeue.write_text(f"#!/bin/sh\necho '{said}' >&2\nexit 1\n")
+    squeue.write_text(f"#!/bin/sh\necho '{message}' >&2\nexit 1\n")
     squeue.chmod(0o755)
     study = Study(tmp_path / "study", TINY)
     environment = study.environment()
@@ -164,20 +164,20 @@ def test_a_cluster_that_does_not_answer_gets_no_job(tmp_path):
     )
     run = run_snakemake(command, study.folder, environment)
     assert run.returncode == 1
-    assert f"no job is submitted, Slurm does not answer: squeue: {said}" in run.stderr.splitlines()
+    assert f"no job is submitted, Slurm does not answer: squeue: {message}" in run.stderr.splitlines()
     assert not (study.folder / "results").exists()
 
 
 def test_a_config_with_any_name_is_read(tmp_path):
-    """And what the bad ones are made from has nothing wrong of its own."""
+    """The config from which the bad ones are made is itself valid."""
     for name in ("my study.yaml", "Größe.yaml", "study.json", "study"):
         study = Study(tmp_path, GOOD)
         study.config = study.config.rename(tmp_path / name)
         assert "simulate" in study.ok("-n", "-p")
 
 
-def test_what_is_refused_before_snakemake_looks_is_refused_by_the_snakefile_too(tmp_path):
-    """Another display, and with it another reader of the command line, must let nothing pass."""
+def test_input_refused_before_snakemake_is_refused_by_the_snakefile_too(tmp_path):
+    """With another display, and so another parser of the command line, nothing invalid must be accepted."""
     study = Study(tmp_path, "__use_yte__: true\n" + GOOD)
     run = study.run("--workflow-profile", "none")
     assert run.returncode == 1

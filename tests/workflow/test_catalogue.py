@@ -1,4 +1,4 @@
-"""The stage of slip events: its files, their content, and what changes of the config make again."""
+"""The stage of slip events: its files, their content, and what a change of the config recomputes."""
 
 import re
 import subprocess
@@ -42,7 +42,7 @@ def study(tmp_path_factory):
     return study
 
 
-def opened(study, name):
+def open_result(study, name):
     return xr.load_dataset(study.folder / "results/quakes" / name)
 
 
@@ -56,16 +56,16 @@ def test_the_stage_makes_its_files(study):
         assert imread(study.folder / f"results/quakes/figures/{name}.png").shape[1] > 1500
 
 
-def test_the_sum_of_moments_is_what_the_driver_supplies(study):
-    """Springs and driver are at rest at both ends, so what is supplied and not slipped is strain of the springs."""
+def test_the_sum_of_moments_is_supplied_by_the_driver(study):
+    """All blocks are at rest at both times, so the difference between supply and slip is strain of the springs."""
     known = load_study(read_yaml(study.config), "study.yaml")
     for a in (2.0, 3.0):
-        events = opened(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
+        events = open_result(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
         model = known.model("carlson_langer", a)
         start = model.begin(known.state("rough"), "tested")
         assert start.stuck.all()
         time, stop = events["time"].values, (events["time"] + events["duration"]).values
-        # At a late moment without a slipping block.
+        # A late time at which no block slips.
         latest = np.maximum.accumulate(stop)[:-1]
         rests = latest[latest + 1e-3 < time[1:]] + 1e-3
         end, final = next(
@@ -76,14 +76,14 @@ def test_the_sum_of_moments_is_what_the_driver_supplies(study):
         strain = np.sum(start.position - final.position)
         assert events["moment"].values[time < end].sum() == pytest.approx(supplied - strain, rel=1e-12)
         assert (events["status"] == 0).all()
-        # As in two runs, of which the second continues the first.
+        # This is as in two runs, the second of which continues the first.
         parts = [record_events(model, start, 300.0)]
         parts.append(record_events(model, parts[0].final, 800.0))
         assert np.array_equal(np.sort(np.concatenate([part.time for part in parts])), time)
 
 
-def test_the_columns_fit_each_other(study):
-    events = opened(study, "catalogues/carlson_langer/a3.0000.nc")
+def test_the_columns_are_consistent(study):
+    events = open_result(study, "catalogues/carlson_langer/a3.0000.nc")
     assert all(variable.attrs["long_name"] for variable in events.variables.values())
     assert events["blocks"].attrs["sample_dimension"] == "slip"
     ends = np.cumsum(events["blocks"].values)
@@ -99,9 +99,9 @@ def test_the_columns_fit_each_other(study):
 
 
 def test_the_statistics_are_those_of_the_events(study):
-    found = opened(study, "summary/catalogue.nc").sel(law="carlson_langer")
+    found = open_result(study, "summary/catalogue.nc").sel(law="carlson_langer")
     for a in (2.0, 3.0):
-        one, events = found.sel(a=a), opened(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
+        one, events = found.sel(a=a), open_result(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
         magnitude = events["magnitude"].values
         assert one["event_count"] == len(magnitude) == one["magnitude_count"].sum()
         assert one["event_rate"] == len(magnitude) / 800.0
@@ -114,8 +114,8 @@ def test_the_statistics_are_those_of_the_events(study):
 
 
 @pytest.mark.slow
-def test_a_picture_is_the_same_under_a_users_own_settings_of_matplotlib(study):
-    """As of a matplotlibrc, and of a notebook that starts snakemake. It is the program itself that is started."""
+def test_a_picture_does_not_depend_on_the_users_settings_of_matplotlib(study):
+    """Settings come from a matplotlibrc or from a notebook that starts snakemake. The program itself is started."""
     before = study.files("figures")
     own = study.folder / "matplotlibrc"
     own.write_text("text.usetex: True\nsavefig.bbox: tight\naxes.spines.top: False\nfigure.autolayout: True\n")
@@ -128,11 +128,11 @@ def test_a_picture_is_the_same_under_a_users_own_settings_of_matplotlib(study):
     assert study.files("figures") == before
 
 
-def test_a_change_makes_again_what_depends_on_it(study, capsys):
+def test_a_change_recomputes_what_depends_on_it(study, capsys):
     results = study.folder / "results/quakes"
     assert main(["check", str(results)]) == 1
-    said = capsys.readouterr().out
-    assert f"{results}: 3 points and 7 other files: 3 missing, 0 corrupt, 0 stale, 0 failed\n" in said
+    output = capsys.readouterr().out
+    assert f"{results}: 3 points and 7 other files: 3 missing, 0 corrupt, 0 stale, 0 failed\n" in output
     plans = {
         "low: -4.0": {"catalogue": 1, "figure_catalogue": 1, "figure_slip_map": 1},
         "window: 900": {"catalogue_of_run": 2, "catalogue": 1, "figure_catalogue": 1, "figure_slip_map": 1},
@@ -157,7 +157,8 @@ def test_without_the_section_there_is_no_stage(study):
     study.config.write_text(CATALOGUE)
 
 
-#: At a = 1.9 friction turns into a push, and the blocks reach any speed; two units of time are too few for an event.
+#: At a = 1.9 friction becomes negative, and blocks accelerate without limit; two units of time are too few for an
+#: event.
 RUNAWAY = """
 study: runaway
 a: [0.1, 1.9]
@@ -176,10 +177,10 @@ catalogue: {transient: 0, window: 300}
 @pytest.mark.slow
 def test_a_catalogue_whose_run_diverged_is_a_failure(tmp_path, capsys):
     study = Study(tmp_path / "study", RUNAWAY)
-    said = study.ok()
+    output = study.ok()
     summary = "results/runaway/summary/catalogue.nc"
-    assert f"catalogues: 1 of 2 did not complete: diverged 1 (status in {summary})\n" in said
-    assert "no slip event" not in said
+    assert f"catalogues: 1 of 2 did not complete: diverged 1 (status in {summary})\n" in output
+    assert "no slip event" not in output
     results = study.folder / "results/runaway"
     assert main(["check", str(results)]) == 3
     path = results / "catalogues/linearized/a1.9000.nc"

@@ -1,4 +1,4 @@
-"""Longer chains: their target, their files and bytes, and studies that have them as a part."""
+"""Longer chains: their target, files and bytes, and studies that include them."""
 
 import re
 
@@ -47,7 +47,7 @@ def test_the_target_makes_its_files_and_no_points(study):
     assert {log.read_text() for log in (results / "logs").rglob("*.log")} == {""}
 
 
-def test_they_are_a_part_of_a_study_that_says_their_lengths(study):
+def test_a_study_that_lists_their_lengths_includes_them(study):
     with_them = re.compile(r"^(watch_chain|chains_summary|figure_chains) ", re.MULTILINE)
     assert len(set(with_them.findall(study.ok("-n", "-p", "-F")))) == 3
     study.config.write_text(CHAINS.replace("  blocks: [3, 2]\n", ""))
@@ -65,7 +65,7 @@ def test_the_same_bytes_on_one_core_and_in_another_folder(study, tmp_path):
     assert len(mine) == 5
 
 
-def test_the_model_reruns_them_and_the_points_do_not(study):
+def test_the_model_reruns_them_but_not_the_settings_of_points(study):
     planned = study.ok("chains", "-n")
     assert "Nothing to be done" in planned
     study.config.write_text(CHAINS + "sampling: 2\n")

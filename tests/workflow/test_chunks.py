@@ -51,7 +51,7 @@ def times(study):
     return {path.relative_to(study.folder).as_posix(): path.stat().st_mtime_ns for path in found}
 
 
-def test_the_whole_study_is_made_and_read(plane):
+def test_the_whole_study_is_computed_and_read(plane):
     assert "points: all 8 completed" in plane.output
     # Its figures over the parameters are not those of the paper.
     assert "paper" not in plane.output
@@ -75,7 +75,7 @@ def test_the_whole_study_is_made_and_read(plane):
     assert bk(plane, "prune", "--dry-run", RESULTS).stdout.count("/") == RESULTS.count("/")
 
 
-def test_nothing_is_made_twice(copy):
+def test_no_point_is_computed_twice(copy):
     before = times(copy)
     assert "Nothing to be done" in copy.ok()
     assert times(copy) == before
@@ -85,7 +85,7 @@ def test_nothing_is_made_twice(copy):
     "damage",
     [Path.unlink, pytest.param(lambda path: path.write_bytes(path.read_bytes()[:-5]), marks=pytest.mark.slow)],
 )
-def test_a_point_that_is_gone_or_damaged_is_made_again_alone(copy, damage):
+def test_only_a_missing_or_damaged_point_is_recomputed(copy, damage):
     before, content = times(copy), (copy.folder / POINT).read_bytes()
     damage(copy.folder / POINT)
     assert f"{MARK}: a point of this chunk is missing or was changed: it is recreated" in copy.ok()
@@ -94,14 +94,14 @@ def test_a_point_that_is_gone_or_damaged_is_made_again_alone(copy, damage):
     assert (copy.folder / POINT).read_bytes() == content
 
 
-def test_one_point_is_made_alone(tmp_path, plane):
+def test_a_single_point_can_be_computed(tmp_path, plane):
     alone = Study(tmp_path / "alone", PLANE)
     alone.ok(POINT)
     assert [*times(alone)] == [POINT]
     assert (alone.folder / POINT).read_bytes() == (plane.folder / POINT).read_bytes()
 
 
-def test_another_value_makes_its_points_only(copy):
+def test_another_value_computes_its_points_only(copy):
     before = times(copy)
     copy.config.write_text(PLANE.replace("v: [0.05, 0.1]", "v: [0.05, 0.1, 0.2]"))
     copy.ok(f"{RESULTS}/summary/grid.nc")

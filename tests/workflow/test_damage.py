@@ -25,7 +25,7 @@ from tests.workflow.conftest import TINY, copied
 from tests.workflow.faults import check_end, failures, remedies
 from tests.workflow.snakemake import run_snakemake
 
-#: A point that every stage reads which reads points.
+#: A point read by every stage that reads points.
 POINT = "points/linearized/minus/a0.2000.nc"
 RUN = {"transient": 100, "window": 200, "batches": 4}
 
@@ -48,17 +48,17 @@ def noise_inside(content: bytes) -> bytes:
 
 def other_version(content: bytes) -> bytes:
     """Return the content with a seal as an earlier version wrote it."""
-    sealed = unsealed(content) + b"\n#seal 0123456789abcdef completed "
+    sealed = remove_seal(content) + b"\n#seal 0123456789abcdef completed "
     return sealed + hashlib.sha256(sealed).hexdigest().encode() + b"\n"
 
 
-def unsealed(content: bytes) -> bytes:
+def remove_seal(content: bytes) -> bytes:
     """Return the bare netCDF file, as a version without seals, or another program, writes it."""
     return content[: content.rindex(b"\n#seal ")]
 
 
 def rewrite(path: Path, change) -> None:
-    """Replace a file by what `change` makes of its bytes."""
+    """Replace the bytes of a file by the result of `change`."""
     path.write_bytes(change(path.read_bytes()))
 
 
@@ -67,7 +67,7 @@ def other_run(path: Path, a: float = 0.2, initial: str = "minus", **settings) ->
     write_point(simulate("linearized", a, initial, **{**RUN, **settings}), path)
 
 
-#: {damage: (what does it to a point file, words of the reason)}
+#: {damage: (function that damages a point file, words of the reason)}
 DAMAGES = {
     "missing": (Path.unlink, "is missing"),
     "emptied": (lambda path: path.write_bytes(b""), "is empty"),
@@ -76,7 +76,7 @@ DAMAGES = {
     "noise": (lambda path: path.write_bytes(noise(5000)), "not written by this program"),
     "noise inside": (lambda path: rewrite(path, noise_inside), "was changed"),
     "appended": (lambda path: rewrite(path, lambda content: content + b"\0"), "not written by this program"),
-    "unsealed": (lambda path: rewrite(path, unsealed), "not written by this program"),
+    "unsealed": (lambda path: rewrite(path, remove_seal), "not written by this program"),
     "a text": (lambda path: path.write_text("no netCDF file\n"), "not written by this program"),
     "another a": (lambda path: shutil.copy(path.with_name("a0.2200.nc"), path), "another run"),
     "another initial state": (lambda path: shutil.copy(path.parents[1] / "plus" / path.name, path), "another run"),
@@ -98,7 +98,7 @@ def grids():
 
 
 def readers(results: Path):
-    """Return {stage: function of a grid} of all that reads points."""
+    """Return {stage: function of a grid} for all stages that read points."""
     motion = {
         "zero_exponent": 5e-4,
         "chaotic_exponent": 1e-3,
@@ -122,7 +122,7 @@ def readers(results: Path):
 
 
 @pytest.mark.parametrize("damage", DAMAGES)
-def test_no_stage_takes_in_a_bad_point(finished, grids, tmp_path, damage):
+def test_no_stage_accepts_a_bad_point(finished, grids, tmp_path, damage):
     results = tmp_path / "results" / "tiny"
     shutil.copytree(finished.folder / "results" / "tiny" / "points", results / "points")
     shutil.copy(finished.folder / "results" / "tiny" / "study.json", results)
@@ -139,7 +139,7 @@ def test_no_stage_takes_in_a_bad_point(finished, grids, tmp_path, damage):
 
 
 def remade(study, text, *targets):
-    """Run exactly the command that a run named at its end, for these targets or, without any, as it is; return it."""
+    """Run the command that a run named at its end, for these targets or, without any, unchanged; return it."""
     (command,) = remedies(text)
     program, *arguments = shlex.split(command)
     run = run_snakemake([program, *targets, *arguments], study.folder, study.environment())
@@ -149,7 +149,7 @@ def remade(study, text, *targets):
 
 @pytest.mark.slow
 def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
-    """The files are newer than what was made of them: the next run reads them. The command that it names mends all."""
+    """The files are newer than the results made from them, so the next run reads them. Its command repairs them all."""
     study = copied(limited.folder, tmp_path / "study")
     results = study.folder / "results" / "limits"
     spoiled = {
@@ -160,7 +160,7 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
     for path, spoil in spoiled.items():
         spoil(results / path)
         os.utime(results / path)
-    # All that reads such files, and claims; of figures from summaries and of the report the test below has some.
+    # All stages that read such files, and the claims; the test below covers figures and the report.
     targets = ["summary", *(f"results/limits/figures/{name}.png" for name in ("distance", "motion_minus"))]
     run = study.run(*targets)
     assert run.returncode == 1
@@ -192,8 +192,8 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
         ("summary/orbits.nc", "report"),
     ],
 )
-def test_a_bad_file_as_old_as_it_was(copy, path, rule):
-    """Snakemake does not notice the change: the next job that reads the file does."""
+def test_a_bad_file_with_its_old_modification_time(copy, path, rule):
+    """Snakemake does not notice the change; the next job that reads the file does."""
     target = copy.folder / "results" / "tiny" / path
     times = target.stat()
     rewrite(target, noise_inside)
@@ -209,7 +209,7 @@ def test_a_bad_file_as_old_as_it_was(copy, path, rule):
 
 
 @pytest.mark.slow
-def test_a_bad_summary_is_remade(finished, copy):
+def test_a_bad_summary_is_recomputed(finished, copy):
     target = copy.folder / "results" / "tiny" / "summary" / "stick_slip.nc"
     times = target.stat()
     rewrite(target, cut)
@@ -229,7 +229,7 @@ def as_old_as(path: Path, change) -> None:
 
 @pytest.mark.slow
 def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
-    """Of another tile, of another law, of a study with another v, and of one of another shape: four in one run."""
+    """The files are of another tile, another law, a study with another v, and one of another shape, all in one run."""
     results = copy.folder / "results" / "tiny"
     points = read_sealed(results / "summary/mean_distance.nc")[1]["points"]
     foreign = {
@@ -247,35 +247,35 @@ def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
     run = copy.run("-R", *rules, "--until", *rules)
     assert run.returncode == 1
     reasons = failures(run.stderr)
-    said = "\n".join(reasons.values())
+    output = "\n".join(reasons.values())
     tiles = "got basins/linearized/a0.0800/tile0.nc, expected basins/linearized/a0.0800/tile1.nc"
-    assert f"tile1.nc: is another file: {tiles}" in said
-    assert "nonlinear.nc: is another file: got bifurcations/linearized.nc, expected bifurcations/nonlinear.nc" in said
-    assert "mean_distance.nc: was made with points.v: got 0.3, expected 0.1" in said
-    assert re.search(r"stick_slip\.nc: was made with \S+: got .*, expected .*", said)
+    assert f"tile1.nc: is another file: {tiles}" in output
+    assert "nonlinear.nc: is another file: got bifurcations/linearized.nc, expected bifurcations/nonlinear.nc" in output
+    assert "mean_distance.nc: was made with points.v: got 0.3, expected 0.1" in output
+    assert re.search(r"stick_slip\.nc: was made with \S+: got .*, expected .*", output)
     remade(copy, run.stderr)
     assert not check_study(results).findings
     check_end(copy, finished)
 
 
 @pytest.mark.slow
-def test_damaged_texts_and_pictures_are_made_again(copy, finished):
-    """No job needs to read them: the next run looks at them itself."""
+def test_damaged_texts_and_pictures_are_recreated(copy, finished):
+    """No job needs to read them; the next run checks them itself."""
     results = copy.folder / "results" / "tiny"
     for name in ("summary/claims.json", "figures/orbits.png"):
         as_old_as(results / name, lambda path: rewrite(path, cut))
     as_old_as(results / "summary/agreement.txt", lambda path: path.write_bytes(b""))
-    said = copy.ok("-n")
-    assert "results/tiny/summary/agreement.txt: is empty: it would be recreated" in said
+    output = copy.ok("-n")
+    assert "results/tiny/summary/agreement.txt: is empty: it would be recreated" in output
     found = {finding.path.name: finding.kind for finding in check_study(results).findings}
     assert found == dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt")
-    said = copy.ok()
-    assert "results/tiny/figures/orbits.png: was changed after it was written: it is recreated" in said
+    output = copy.ok()
+    assert "results/tiny/figures/orbits.png: was changed after it was written: it is recreated" in output
     assert not check_study(results).findings
     check_end(copy, finished)
 
 
-def test_touching_hides_nothing(copy):
+def test_touching_files_does_not_hide_changes(copy):
     """A file records what it was made from, even if Snakemake's own records call it up to date."""
     results = copy.folder / "results" / "tiny"
     copy.config.write_text(f"{TINY}synchronization_threshold: 0.2\n")

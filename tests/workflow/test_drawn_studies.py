@@ -1,6 +1,6 @@
-"""Small studies drawn from the ends of what config/README.md allows, each run to its report or refused at once.
+"""Small random studies at the limits of the ranges in config/README.md, each run to its report or refused at once.
 
-`BK_FUZZ=10` draws ten times as many; `BK_KEEP` names a folder in which the studies stay, to look at their figures.
+`BK_FUZZ=10` draws ten times as many; `BK_KEEP` names a folder in which the studies are kept for inspection.
 """
 
 import os
@@ -15,7 +15,7 @@ from tests.workflow.conftest import Study
 
 pytestmark = pytest.mark.slow
 
-#: So little of everything that a study takes half a minute.
+#: Settings with which a study takes half a minute.
 BASE = {
     "a": [0.08],
     "initial": {"minus": {}},
@@ -43,7 +43,7 @@ def states(count):
     return {f"s{k}": {"position": [-0.9, -1.0 - 0.02 * k, -1.0], "velocity": 0.1} for k in range(count)}
 
 
-#: Laws, of which a study has the first few.
+#: Laws; a study has the first few of them.
 LAWS = {"linearized": {}, "nonlinear": {}, "own": {"formula": "exp(-a*u)"}, "stribeck": {}}
 
 
@@ -51,7 +51,7 @@ def laws(count):
     return dict(list(LAWS.items())[:count])
 
 
-#: What a key may be instead: values at an end of its range, and what changes most in a study.
+#: Other values of a key: the ends of its range, and those that change most in a study.
 ENDS = {
     "a": [[0.0], [0.05, 0.2], [0.3]],
     "initial": [{"minus": {}, "plus": {}}, blocks(2), blocks(3), blocks(4), blocks(6), *map(states, (3, 4, 5, 8))],
@@ -74,7 +74,7 @@ ENDS = {
     "basins": [{"pixels": 1, "pairs": 0, "tiles": 1}, {"a": {}}],
 }
 
-#: Each found a fault once: without exponents, with few events, of chains of other lengths, of many states.
+#: Each has found a fault: no exponents, few events, chains of other lengths, many states.
 KNOWN = [
     {"lyapunov_exponents": 0, "batches": 3, "contact": "symmetric"},
     {"event_window": 0, "trajectory": 0, "initial": blocks(6), "chain": {"ends": "ring"}, "start": "tested"},
@@ -82,18 +82,18 @@ KNOWN = [
 ]
 
 
-def drawn(number):
-    """Return a study in which four keys, and the stages that it goes without, are drawn."""
+def draw_study(number):
+    """Return a study in which four keys and the omitted stages are drawn at random."""
     generator = random.Random(number)
     keys = generator.sample(sorted(ENDS), 4)
     return {key: generator.choice(ENDS[key]) for key in keys}
 
 
-STUDIES = [*KNOWN, *map(drawn, range(2 * TIMES))]
+STUDIES = [*KNOWN, *map(draw_study, range(2 * TIMES))]
 
 
 @pytest.mark.parametrize(("number", "changes"), list(enumerate(STUDIES)))
-def test_a_drawn_study_ends_with_its_report(number, changes, tmp_path):
+def test_a_random_study_ends_with_its_report(number, changes, tmp_path):
     name = f"drawn_{number}"
     config = {"study": name, **BASE, **{"without": ["proof"]}, **changes}
     folder = Path(os.environ["BK_KEEP"]) / name if "BK_KEEP" in os.environ else tmp_path / name
@@ -102,8 +102,8 @@ def test_a_drawn_study_ends_with_its_report(number, changes, tmp_path):
     results = study.folder / "results" / name
     if run.returncode and not results.exists():
         # Invalid configs are refused before anything is written.
-        said = [line for line in run.stderr.strip().splitlines() if not line.startswith("Using workflow specific")]
-        assert [line.startswith("study.yaml: ") for line in said] == [True], run.stderr
+        lines = [line for line in run.stderr.strip().splitlines() if not line.startswith("Using workflow specific")]
+        assert [line.startswith("study.yaml: ") for line in lines] == [True], run.stderr
         return
     assert run.returncode == 0, run.stderr
     assert (results / "report.html").stat().st_size > 10_000

@@ -1,7 +1,6 @@
 """The example studies of docs/studies.md and docs/published.md through the real Snakefile.
 
-What they print, and the physics that they show. Only what the pages read is made; figures of studies are tested
-elsewhere.
+The tests check their outputs and the physics. Only results that the pages read are made; figures are tested elsewhere.
 """
 
 import numpy as np
@@ -33,15 +32,15 @@ def finished_example(name, folder):
     return study.folder
 
 
-def opened(folder, name):
+def open_result(folder, name):
     return xr.load_dataset(next(folder.glob(f"results/*/summary/{name}.nc")))
 
 
 def check_page(page, heading):
     results = outputs((REPOSITORY / "docs" / page).read_text(), page, {heading})
     assert results
-    for _, said, printed in results:
-        assert printed == said
+    for _, expected, printed in results:
+        assert printed == expected
 
 
 def test_every_example_is_tested():
@@ -49,16 +48,16 @@ def test_every_example_is_tested():
     assert names == set(TARGETS)
 
 
-def test_velocity_is_a_scale_of_the_linearized_law_only(tmp_path, monkeypatch):
+def test_velocity_is_a_scale_only_under_the_linearized_law(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("velocity", tmp_path))
     check_page("studies.md", "Another velocity of the driver")
-    mean = opened(tmp_path, "mean_distance")["mean_distance"]
+    mean = open_result(tmp_path, "mean_distance")["mean_distance"]
     for initial in ("minus", "plus"):
         run = simulate("linearized", 0.089, initial, transient=9000.0, window=3000.0)
         assert mean.sel(law="linearized", initial=initial, a=0.089).item() == pytest.approx(
             2.0 * run.mean_distance, rel=1e-6
         )
-    linearized, nonlinear = opened(tmp_path, "orbits")["critical_a"].values
+    linearized, nonlinear = open_result(tmp_path, "orbits")["critical_a"].values
     assert linearized == pytest.approx(0.0869729046661, abs=1e-11)
     # At v = 0.1 the laws lose synchrony 0.0017443 apart; the difference is in proportion to v to first order.
     assert nonlinear - linearized == pytest.approx(2 * 0.0017443, rel=0.05)
@@ -66,15 +65,15 @@ def test_velocity_is_a_scale_of_the_linearized_law_only(tmp_path, monkeypatch):
     assert synchronized.values.tolist() == [False, True]
 
 
-def test_history_is_more_than_a_distance(tmp_path, monkeypatch):
+def test_outcomes_alternate_along_a_line_of_initial_states(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("history", tmp_path))
     check_page("studies.md", "Other initial states")
     check_page("tutorial.md", FROM_FILES)
-    mean = opened(tmp_path, "mean_distance")["mean_distance"].sel(law="linearized")
+    mean = open_result(tmp_path, "mean_distance")["mean_distance"].sel(law="linearized")
     line = ["minus", "first_m06", "first_0", "plus"]
     assert (mean.sel(a=0.08, initial=line) < 1e-6).values.tolist() == [True, False, True, False]
     assert (mean.sel(initial="symmetric") == 0.0).all()
-    exponent = opened(tmp_path, "lyapunov")["lyapunov_exponent"].sel(initial="symmetric")
+    exponent = open_result(tmp_path, "lyapunov")["lyapunov_exponent"].sel(initial="symmetric")
     assert (exponent.sel(a=0.2).max("exponent") > 0.05).all()
     assert (np.abs(exponent.sel(a=0.08).max("exponent")) < 1e-3).all()
 
@@ -82,7 +81,7 @@ def test_history_is_more_than_a_distance(tmp_path, monkeypatch):
 def test_five_blocks_synchronize_in_two_windows(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("five_blocks", tmp_path))
     check_page("studies.md", "Five blocks")
-    chains = opened(tmp_path, "chains").sel(law="linearized", blocks=5)
+    chains = open_result(tmp_path, "chains").sel(law="linearized", blocks=5)
     reached = (chains["outcome"] == 1).any("state").values.tolist()
     assert reached == [True, False, True, False]
     assert (chains["symmetric_exponent"].max("symmetric_state") < 0.0).values.tolist() == reached
@@ -91,21 +90,21 @@ def test_five_blocks_synchronize_in_two_windows(tmp_path, monkeypatch):
 def test_slips_of_a_carlson_langer_chain_are_small_and_large(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("carlson_langer", tmp_path))
     check_page("studies.md", "A Carlson-Langer chain")
-    runs = opened(tmp_path, "lyapunov")
+    runs = open_result(tmp_path, "lyapunov")
     assert (runs["lyapunov_exponent"] > 5.0 * runs["lyapunov_error"]).all()
 
 
 def test_unequal_blocks_are_periodic_or_chaotic(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("unequal_blocks", tmp_path))
     check_page("studies.md", "Two unequal blocks")
-    kind = opened(tmp_path, "agreement")["kind"]
+    kind = open_result(tmp_path, "agreement")["kind"]
     assert decode_flags(kind).sel(law="coulomb").values.tolist() == 2 * [["periodic", "periodic", "chaotic"]]
 
 
 def test_small_and_large_slip_events_of_a_fault(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("fault", tmp_path))
     check_page("published.md", "Carlson and Langer: small and large events")
-    rate = opened(tmp_path, "catalogue")["magnitude_rate"].isel(law=0).sel(a=1.0)
+    rate = open_result(tmp_path, "catalogue")["magnitude_rate"].isel(law=0).sel(a=1.0)
     # A gap separates the small events from the large ones, in which all blocks slip sooner or later.
     gap = rate.sel(magnitude=slice(-2.0, 0.0)).max()
     assert rate.sel(magnitude=slice(2.0, 5.0)).min() > 3.0 * gap
@@ -114,7 +113,7 @@ def test_small_and_large_slip_events_of_a_fault(tmp_path, monkeypatch):
 def test_two_blocks_synchronize_only_where_the_synchronized_orbit_is_stable(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("two_parameters", tmp_path))
     check_page("studies.md", "Two parameters")
-    grid = opened(tmp_path, "grid").sel(law="nonlinear", initial="pair")
+    grid = open_result(tmp_path, "grid").sel(law="nonlinear", initial="pair")
     synchronized = grid["run_kind"] == MotionKind.SYNCHRONIZED
     for coupling in (1.75, 2.5, 3.25, 4.0):
         row = synchronized.sel(coupling=coupling)

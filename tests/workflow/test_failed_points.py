@@ -1,4 +1,4 @@
-"""Points that stop at a limit are results: the study continues, and all pages show what is undetermined."""
+"""Points that stop at a limit are results: the study continues, and all pages mark them as undetermined."""
 
 import subprocess
 import sys
@@ -16,7 +16,7 @@ from tests.workflow.conftest import LIMITS
 
 @pytest.fixture(scope="module")
 def summaries(tmp_path_factory):
-    """Those that know of it, made by the jobs of the study in this process."""
+    """The summaries with a status, made by the jobs of the study in this process."""
     folder = tmp_path_factory.mktemp("limits")
     return run_study(
         folder, yaml.safe_load(LIMITS), ("points", "attractors", "mean_distance", "lyapunov", "agreement")
@@ -30,7 +30,7 @@ def test_the_study_ends_and_its_last_lines_count_them(limited):
     assert "study limits: done in" in limited.output
 
 
-def test_summaries_carry_the_status_and_have_no_value(summaries):
+def test_summaries_contain_the_status_and_no_value(summaries):
     found, agreement = summaries["mean_distance"], summaries["agreement"]
     failed = decode_flags(found["status"]) == "diverged"
     assert failed.sel(law="linearized").values.tolist() == [[False, True], [False, True]]
@@ -50,7 +50,7 @@ def test_a_figure_leaves_a_gap(summaries):
 
 
 @pytest.mark.slow
-def test_the_check_tells_them_from_errors(limited):
+def test_the_check_distinguishes_them_from_errors(limited):
     command = [str(Path(sys.executable).parent / "bk"), "check", "results/limits"]
     run = subprocess.run(command, cwd=limited.folder, capture_output=True, text=True)
     lines = run.stdout.splitlines()

@@ -22,12 +22,12 @@ from tests.workflow.faults import (
     differences,
     failures,
     flag_named,
-    go_on,
     killed_at_the_move,
     no_mounts,
     out_of_memory,
     processes,
     read_only,
+    resume,
     running,
     small_disk,
     stages_running,
@@ -44,7 +44,7 @@ ATTRACTORS = "results/tiny/attractors/linearized.nc"
 
 
 def test_killed_in_every_stage(limited, tmp_path):
-    """SIGKILL of the whole process group, again and again in one study, so that none gets away with a fault."""
+    """SIGKILL of the whole process group, repeatedly in one study, so that every stage is hit."""
     study = Study(tmp_path / "study", LIMITS)
     chance = random.Random(1)
     left = set(STAGES)
@@ -64,7 +64,7 @@ def test_killed_in_every_stage(limited, tmp_path):
 
 
 def test_interrupted_and_terminated(finished, study):
-    """Neither leaves a job running, nor a lock, nor half a file."""
+    """Neither leaves a running job, a lock or an incomplete file."""
     for number, group in (
         (signal.SIGINT, False),
         (signal.SIGTERM, True),
@@ -80,13 +80,13 @@ def test_interrupted_and_terminated(finished, study):
         made = study.folder / ATTRACTORS
         assert not made.exists() or made.read_bytes() == (finished.folder / ATTRACTORS).read_bytes()
         made.unlink(missing_ok=True)
-    assert go_on(study, ATTRACTORS) == []
+    assert resume(study, ATTRACTORS) == []
     assert (study.folder / ATTRACTORS).read_bytes() == (finished.folder / ATTRACTORS).read_bytes()
     assert temporaries(study) == []
 
 
 def test_points_that_die(finished, study):
-    """One is killed, one breaks, one runs out of memory: each is named with reason and log, and the others are made."""
+    """One is killed, one crashes, one runs out of memory: all are named with reason and log; the others are made."""
     faults = {
         "points/linearized/plus/a0.0800.nc": killed_at_the_move("a0.0800.nc"),
         "points/linearized/minus/a0.0500.nc": crash("burridge_knopoff.running.simulation", "run"),
@@ -99,7 +99,7 @@ def test_points_that_die(finished, study):
     logs = {
         "linearized/plus/a0.0800": "killed",
         "linearized/minus/a0.0500": "RuntimeError: provoked in two lines",
-        # In what words depends on where memory ends: in Python, in a compiled module, in the C library.
+        # The message depends on where memory ends: in Python, in a compiled module or in the C library.
         "nonlinear/plus/a0.2000": "",
     }
     assert reasons.keys() == {f"simulate/{name}.log" for name in logs}
@@ -111,13 +111,13 @@ def test_points_that_die(finished, study):
     assert "Traceback" in log
     assert "Traceback" not in screen
     assert len([name for name in study.files("points") if "/." not in name]) == 13
-    # The killed one left its file; so may the one without memory, if the C library ended it.
+    # The killed job left its temporary file, as may the one without memory if the C library ended it.
     assert len(temporaries(study)) in (1, 2)
     check_end(study, finished, "points", folders=["points"])
 
 
 def test_scripts_that_die(finished, copy):
-    """The same of a summary and two figures; one of them is killed between its two files."""
+    """The same happens to a summary and two figures, one of which is killed between its two files."""
     results = copy.folder / "results" / "tiny"
     for name in ("figures/equilibrium.pdf", "figures/distance.png", "summary/stick_slip.nc"):
         (results / name).unlink()
@@ -146,7 +146,7 @@ def test_scripts_that_die(finished, copy):
     [
         ("points/linearized/plus/a0.0800.nc", 16384, "simulate/linearized/plus/a0.0800.log"),
         ("summary/equilibrium.nc", 8192, "equilibrium.log"),
-        # The first of the two files of the figure still finds room.
+        # The first of the two files of the figure still fits.
         ("figures/distance.png", 40960, "figure_distance.log"),
     ],
 )
@@ -163,8 +163,8 @@ def test_a_full_disk(finished, copy, path, free, log):
         assert not (copy.folder / target).exists()
         assert temporaries(copy) == []
         ballast.unlink()
-        assert go_on(copy, target) == []
-        assert go_on(copy, folder.name) == []
+        assert resume(copy, target) == []
+        assert resume(copy, folder.name) == []
         assert differences(copy, finished) == []
 
 
@@ -183,7 +183,7 @@ SNAKEMAKE_SAYS = ("Using ", "Assuming ", "Building ", "Singularity ", "Failed to
 
 
 def stops_at_once(study, line):
-    """Require that a run ends with one line and that nothing has been made."""
+    """Require that a run ends with one line and has written nothing."""
     run = study.run()
     lines = [line for line in run.stderr.splitlines() if not line.startswith(SNAKEMAKE_SAYS)]
     assert run.returncode == 1

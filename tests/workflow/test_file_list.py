@@ -1,4 +1,4 @@
-"""The files of a study: those that rules make are recorded and checked, and a job waits for what it reads."""
+"""The files of a study: those that rules make are recorded and checked, and a job waits for its inputs."""
 
 import re
 import shutil
@@ -66,8 +66,8 @@ def test_a_summary_that_no_figure_shows_is_checked(with_unseen):
     assert f"missing  results/one/{UNSEEN}: not made yet\n" in check(study)
 
 
-def test_what_rules_make_is_what_is_checked(study):
-    """Of the whole study, and of its optional stage."""
+def test_all_files_of_rules_are_checked(study):
+    """This covers the whole study and its optional stage."""
     made = study.ok("--summary", "all", "chains")
     paths = set(re.findall(r"^results/tiny/(\S+)\t", made, re.MULTILINE))
     of_points = {path for path in paths if path.startswith(("points/", "solvers/"))}
@@ -75,7 +75,7 @@ def test_what_rules_make_is_what_is_checked(study):
     assert paths - of_points == Jobs(load_study(read_yaml(study.config), "study.yaml")).all_files.keys()
 
 
-def test_verdicts_wait_for_what_judges_read(study):
+def test_verdicts_wait_for_the_inputs_of_judges(study):
     """No statement of the paper is about maps of basins: the longest jobs of a study."""
     found = jobs(study.ok("-n", "-p", "results/tiny/summary/claims.json"))
     assert {"attractors", "phases", "two_blocks", "stick_slip"} <= found.keys()

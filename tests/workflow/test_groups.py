@@ -1,4 +1,4 @@
-"""Groups of points for a cluster, without one: the program that submits only takes note of them, and fails."""
+"""Groups of points for a cluster, tested without one: the submitting program only records them and fails."""
 
 import json
 import subprocess
@@ -11,7 +11,7 @@ from tests.workflow.conftest import Study
 
 pytestmark = pytest.mark.slow
 
-# With nothing but a shell.
+# The program needs only a shell.
 NOTE = """#!/bin/sh
 while read -r line; do
     case $line in "# properties = "*) printf '%s\\n' "${line#"# properties = "}" >> groups.txt ;; esac
@@ -26,7 +26,7 @@ def groups(study, group, seed, rule):
     note.write_text(NOTE)
     note.chmod(0o755)
     cluster = ("--executor", "cluster-generic", "--cluster-generic-submit-cmd", str(note), "--jobs", "20")
-    # It waits so long before it sees that the submissions have failed.
+    # Snakemake waits this long before it checks that the submissions have failed.
     cluster += ("--seconds-between-status-checks", "1")
     command = study.command("--until", rule, *cluster, "--group-components", group)
     environment = {**study.environment(), "PYTHONHASHSEED": str(seed)}
@@ -37,9 +37,9 @@ def groups(study, group, seed, rule):
 
 
 def test_groups_of_points_are_the_same_in_every_run(tmp_path):
-    """So that a run finds the submissions of an earlier one that was killed; `fixed_group` of study.smk."""
+    """A run can then find the submissions of an earlier one that was killed; see `fixed_group` of study.smk."""
     studies = [Study(tmp_path / str(number)) for number in range(3)]
-    # Most of the time they wait.
+    # Most of their time is waiting.
     with ThreadPoolExecutor() as pool:
         one, other, single = pool.map(
             partial(groups, rule="points"), studies, ("points=6", "points=6", "points=1"), (1, 2, 1)

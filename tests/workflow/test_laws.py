@@ -1,4 +1,4 @@
-"""Studies with laws and springs of their own through the real Snakefile: their points are what Python simulates."""
+"""Studies with other laws and springs through the real Snakefile: their points equal those simulated in Python."""
 
 import json
 import shlex
@@ -79,12 +79,12 @@ def test_a_summary_has_the_laws_in_the_order_of_the_config(laws):
     with xr.open_dataset(laws / "summary" / "mean_distance.nc") as summary:
         assert summary["law"].values.tolist() == list(DESCRIPTIONS)
         assert np.isfinite(summary["mean_distance"].sel(a=0.2)).all()
-        # Far beyond the closed form the linearized friction turns negative and drives the blocks without bound.
+        # At such a the linearized friction becomes negative and accelerates the blocks without limit.
         failed = np.isnan(summary["mean_distance"].sel(a=2.5)).any("initial")
         assert summary["law"].values[failed].tolist() == ["linearized"]
 
 
-def test_another_number_of_one_law_remakes_its_points_only(laws):
+def test_another_parameter_of_one_law_recomputes_its_points_only(laws):
     study = Study(laws.parent.parent, FOUR_LAWS.replace('"sigma": 0.01', '"sigma": 0.02'))
     planned = study.ok("-n", "-p", "points")
     assert planned.count("simulate drop law") == 2

@@ -13,7 +13,7 @@ POINTS = [f"results/tiny/points/{law}/plus/a0.0{a}00.nc" for law in ("linearized
 
 
 def on_a_terminal(command, folder, until=None):
-    """Run a command on a pseudo terminal; return its exit code and what it wrote, after Ctrl-C once `until` matches."""
+    """Run a command on a pseudo terminal, with Ctrl-C once `until` matches; return its exit code and output."""
     main, side = pty.openpty()
     environment = {key: value for key, value in os.environ.items() if not key.startswith(("PYTEST", "NO_COLOR"))}
     process = subprocess.Popen(
@@ -37,7 +37,7 @@ def on_a_terminal(command, folder, until=None):
         written += chunk
         if until and re.search(until, written):
             until = None
-            # As the terminal does it: to all of its foreground processes.
+            # Like a terminal, send it to all foreground processes.
             os.killpg(process.pid, signal.SIGINT)
     os.close(main)
     return process.wait(), written.decode()
@@ -61,13 +61,13 @@ def test_a_terminal_shows_stages_and_time_left(study):
     assert re.search(r"^16 jobs: points 16; (about .*|a few seconds) on 2 cores$", text, re.MULTILINE)
     assert "files made in results/tiny: points 16" in text
     assert "Select jobs to execute" not in text
-    # The cursor is given back.
+    # The cursor is restored.
     assert written.rfind("\x1b[?25h") > written.rfind("\x1b[?25l") > 0
 
 
 @pytest.mark.slow
 def test_interrupted_on_a_terminal(study):
-    # Points that take minutes, and the time in which two of them have started: it is their runs that are interrupted.
+    # Points that take minutes, and time for two of them to start, so that their runs are interrupted.
     command = study.command("points", "--config", "window=1e7")
     code, written = on_a_terminal(command, study.folder, until=rb" ([6-9]|\d\d) s so far")
     text = plain(written)
@@ -91,10 +91,10 @@ def test_without_a_terminal(finished):
     assert sum(int(count) for count in re.findall(r"\d+", stages)) == int(total)
     progress = [line for line in lines if re.search(rf"all \d+ of {total} jobs; \d+ % done", line)]
     # Snakemake's own last lines come before those of the study.
-    told = [line.split(":")[0] for line in lines[begin + 1 : end]]
-    told.remove("the figures of the paper are in results/tiny/figures")
-    assert told == [*progress, "Complete log(s)"]
-    # Of which there is none in the first ten seconds.
+    closing = [line.split(":")[0] for line in lines[begin + 1 : end]]
+    closing.remove("the figures of the paper are in results/tiny/figures")
+    assert closing == [*progress, "Complete log(s)"]
+    # There is no estimate in the first ten seconds.
     minutes, seconds = re.search(r"done in (?:(\d+) min )?(\d+) s", lines[end]).groups(default="0")
     if 60 * int(minutes) + int(seconds) > 20:
         assert progress
@@ -142,17 +142,17 @@ def test_failed_jobs_are_named_with_their_logs(copy):
     assert run.returncode != 0
     end = next(n for n, line in enumerate(lines) if line.startswith("study tiny: stopped"))
     assert re.fullmatch(r"study tiny: stopped after [\d min]+ s: 1 job failed, 1 job did not run", lines[end])
-    told, path = lines[end + 1], point.relative_to(copy.folder)
-    assert told == f"failed: mean_distance: {path}: is empty (log results/tiny/logs/mean_distance.log)"
+    closing, path = lines[end + 1], point.relative_to(copy.folder)
+    assert closing == f"failed: mean_distance: {path}: is empty (log results/tiny/logs/mean_distance.log)"
     assert lines[end + 2] == "made: nothing"
     remake = rf"this command recreates the bad files and continues: snakemake -c2 .* -R {path}"
     assert re.fullmatch(remake, lines[end + 3])
     # The same line was written when the job failed, without Snakemake's block of all input files.
-    assert lines.count(told) == 2
+    assert lines.count(closing) == 2
     assert "Error in rule" not in run.stderr
 
 
-def test_no_defect_of_the_last_lines_fails_a_run(copy):
+def test_an_error_in_the_closing_lines_does_not_fail_a_run(copy):
     summary = copy.folder / "results" / "tiny" / "summary" / "mean_distance.nc"
     times = summary.stat()
     summary.write_text("damaged")
@@ -178,13 +178,18 @@ def test_a_dry_run_ends_with_a_table_of_its_stages(study):
 
 
 def test_values_that_change_results_in_place_are_announced(study):
-    """Until the results are theirs; not if they are of a study of their own."""
-    said = "--config window: results/tiny will hold the results of the changed config in place of those of "
+    """They are announced until the results have these values, but not for a study of another name."""
+    line = "--config window: results/tiny will hold the results of the changed config in place of those of "
     target = "results/tiny/figures/sketch.png"
     changed = target, "--config", "window=300"
-    for run, is_said in ((["-n", *changed], True), (changed, True), (["-n", *changed], False), (["-n", target], False)):
-        assert (said in study.ok(*run)) is is_said, run
-    assert said not in study.ok("-n", "results/other/figures/sketch.png", "--config", "window=300", "study=other")
+    for run, is_announced in (
+        (["-n", *changed], True),
+        (changed, True),
+        (["-n", *changed], False),
+        (["-n", target], False),
+    ):
+        assert (line in study.ok(*run)) is is_announced, run
+    assert line not in study.ok("-n", "results/other/figures/sketch.png", "--config", "window=300", "study=other")
 
 
 def test_a_report_before_a_run_is_refused_in_a_line(study):

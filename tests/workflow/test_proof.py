@@ -1,4 +1,4 @@
-"""The stage that proves: its target, its files, and studies in which there is nothing to prove."""
+"""The stage of the proofs: its target, its files, and studies to which the proofs do not apply."""
 
 import re
 
@@ -50,7 +50,7 @@ def test_it_depends_on_the_model_alone(copy):
         "contact: symmetric\nv: 2.0\n",
     ],
 )
-def test_a_study_without_what_is_proved_is_told_so_and_goes_on(tmp_path, other):
+def test_a_study_to_which_no_proof_applies_says_so_and_continues(tmp_path, other):
     study = Study(tmp_path / "other", TINY + other)
     run = study.run("proof")
     assert run.returncode != 0
@@ -64,6 +64,6 @@ def test_a_study_without_what_is_proved_is_told_so_and_goes_on(tmp_path, other):
     assert not re.search(r"^proof +1$", planned, re.MULTILINE)
 
 
-def test_claims_and_summaries_ask_for_it(study):
+def test_claims_and_summaries_request_the_proof(study):
     for target in ("summary", "results/tiny/summary/claims.json"):
         assert re.search(r"^proof +1$", study.ok(target, "-n", "-p", "--quiet", "rules"), re.MULTILINE)

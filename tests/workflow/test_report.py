@@ -26,7 +26,7 @@ CATEGORIES = {
 }
 
 
-def embedded(page, name):
+def embedded_variable(page, name):
     """Return a variable of the page's script."""
     start = re.search(rf"^ *var {name} = (?=[\"{{])", page, re.MULTILINE)
     return json.JSONDecoder().raw_decode(page, start.end())[0]
@@ -43,10 +43,10 @@ def report(finished, tmp_path_factory):
 
 def test_every_figure_and_text_has_its_category_and_caption(report, finished, repository):
     page = report.read_text()
-    results = embedded(page, "results")
+    results = embedded_variable(page, "results")
     listed = {
         category: sorted(path.rsplit("/", 1)[1] for paths in parts.values() for path in paths)
-        for category, parts in embedded(page, "categories").items()
+        for category, parts in embedded_variable(page, "categories").items()
     }
     assert listed == CATEGORIES
     made = {path.name for path in (finished.folder / "results" / "tiny" / "figures").glob("*.png")}
@@ -61,7 +61,7 @@ def test_every_figure_and_text_has_its_category_and_caption(report, finished, re
         assert entry["labels"]["result"]
         content = base64.b64decode(entry["data_uri"].partition("base64,")[2])
         assert content == (finished.folder / path).read_bytes()
-    assert "Study <strong>tiny</strong>" in embedded(page, "workflow_desc")
+    assert "Study <strong>tiny</strong>" in embedded_variable(page, "workflow_desc")
     shown = " ".join(re.sub(r"<[^>]+>", "", html.unescape(" ".join(captions))).split())
     written = {path.stem: path.read_text() for path in (repository / "workflow" / "report").glob("*.rst")}
     unused = {name for name, text in written.items() if " ".join(text.split()[:6]) not in shown}
@@ -69,14 +69,14 @@ def test_every_figure_and_text_has_its_category_and_caption(report, finished, re
     assert unused == {"figure", "workflow", "edges_txt"}
 
 
-def test_every_caption_is_sound(repository):
-    """Also those of optional stages."""
+def test_every_caption_is_valid(repository):
+    """This includes captions of optional stages."""
     texts = [path.read_text() for path in (repository / "workflow" / "report").glob("*.rst")]
     for text in (*texts, *(figure.caption_of({"initial": "minus"}) for figure in figure_descriptions())):
         assert publish_doctree(text, settings_overrides={"halt_level": 2}).astext()
 
 
-def test_the_zip_holds_the_same_files(finished, tmp_path):
+def test_the_zip_contains_the_same_files(finished, tmp_path):
     finished.ok("--report", str(tmp_path / "report.zip"))
     with zipfile.ZipFile(tmp_path / "report.zip") as archive:
         names = [name.rsplit("/", 1)[1] for name in archive.namelist()]

@@ -1,4 +1,4 @@
-"""What a study leaves: points, summaries and figures, opened and held against the package."""
+"""The results of a study: points, summaries and figures, compared with the package."""
 
 import csv
 import re
@@ -29,8 +29,8 @@ def results(finished):
     return finished.folder / "results" / "tiny"
 
 
-def test_every_point_is_there(results):
-    """And no other: what a config leaves out is not taken from config/paper.yaml."""
+def test_exactly_the_points_of_the_config_exist(results):
+    """There is no other point: omitted keys of a config are not taken from config/paper.yaml."""
     found = sorted(str(path.relative_to(results / "points")) for path in (results / "points").rglob("*.nc"))
     assert found == sorted(
         f"{law}/{initial}/a{a}.nc"
@@ -43,8 +43,8 @@ def test_every_point_is_there(results):
     assert hidden <= {f".{name}.seal" for name in sealed}
 
 
-def test_every_file_says_what_it_is(results):
-    """What the ACDD conventions recommend highly, and which its name claims: of points, parts and summaries."""
+def test_every_file_has_its_metadata(results):
+    """Points, parts and summaries have the attributes that the ACDD conventions highly recommend."""
     folders = set()
     for path in results.rglob("[!.]*.nc"):
         folders.add(path.relative_to(results).parts[0])
@@ -104,12 +104,12 @@ def test_attractors_and_basins(results):
         assert there["mean_distance"].values[0] < 1e-6
         counted = there["basin_count"].sum() + there["undetermined_count"]
         assert counted == there["sample_count"] > 0
-        # Both runs are on an attractor that is known.
+        # Both runs are on a known attractor.
         assert (there["initial_branch"].sel(contact="one_sided", start="moving") >= 0).all()
         branches = set(there["branch"].values.tolist())
         known = set(attractors["branch_number"].values.tolist())
     with xr.open_dataset(results / "summary" / "refined.nc") as refined:
-        # The study puts no values in between.
+        # The study inserts no values.
         assert refined["a"].values.tolist() == [GRID, GRID]
         assert (refined["in_grid"] == 1).all()
         assert set(refined["branch"].values.ravel().tolist()) <= known | {-1}
@@ -237,7 +237,7 @@ def test_figures_are_pictures(results, name):
     assert picture.shape[0] > 600
     assert picture.shape[1] > 900
     ink = (picture[..., :3].min(axis=2) < 0.9).mean()
-    # Maps are coloured all over.
+    # Maps are coloured everywhere.
     assert 0.005 < ink < 0.7
     assert (results / "figures" / f"{name}.pdf").read_bytes().startswith(b"%PDF")
 
@@ -251,8 +251,8 @@ def test_logs_and_benchmarks(results):
 
 
 @pytest.mark.parametrize(("key", "name"), [("initial", "plus"), ("laws", "nonlinear"), ("grid", "0.0800")])
-def test_what_a_smaller_study_leaves_over_is_known_by_its_names(results, key, name):
-    """`bk prune` knows all that the rules have written of a state, a law or an a that is no more."""
+def test_leftovers_of_a_larger_study_are_recognized_by_name(results, key, name):
+    """`bk prune` recognizes all files of a state, a law or an a that is no longer in the config."""
     record, study = recorded_study(results)
     assert leftovers(results, Jobs(study)) == []
     config, grid = record["config"], record["grid"]
@@ -282,7 +282,7 @@ def test_what_a_smaller_study_leaves_over_is_known_by_its_names(results, key, na
         ("claims", "claims"),
     ],
 )
-def test_what_a_stage_that_is_left_out_leaves_over_is_known_by_its_names(results, stage, names):
+def test_leftovers_of_an_omitted_stage_are_recognized_by_name(results, stage, names):
     record, _ = recorded_study(results)
     study = load_study({**record["given"], "without": [stage]}, "tiny.yaml")
     named = re.compile(rf"(.*/)?({names})(/.*|\.[a-z]+)")

@@ -19,7 +19,7 @@ def jobs(output):
 
 @pytest.mark.parametrize("other", ["Snakefile", pytest.param("workflow/Snakefile", marks=pytest.mark.slow)])
 def test_nothing_to_do_with_the_snakefile_by_another_path(finished, other):
-    """As the commands of messages name it, relative to the current folder; and with that of the catalog."""
+    """Messages name the Snakefile relative to the current folder; the other path is that of the workflow catalog."""
     snakefile = str(finished.repository / "Snakefile")
     relative = os.path.relpath(finished.repository / other, finished.folder)
     command = [relative if word == snakefile else word for word in finished.command("-n")]
@@ -30,7 +30,7 @@ def test_nothing_to_do_with_the_snakefile_by_another_path(finished, other):
 @pytest.mark.slow
 def test_the_same_bytes_on_one_core_and_in_a_second_checkout(limited, tmp_path, repository, monkeypatch):
     """Points, summaries, and figures of both kinds; the kernel is copied (benchmarks/faults.py compiles it)."""
-    # Sets are walked in another order.
+    # The order of iteration over sets differs.
     monkeypatch.setenv("PYTHONHASHSEED", "1")
     checkout = tmp_path / "checkout"
     skipped = shutil.ignore_patterns(".venv*", "results", ".git", ".*cache", ".hypothesis", ".snakemake", "build")
@@ -41,7 +41,7 @@ def test_the_same_bytes_on_one_core_and_in_a_second_checkout(limited, tmp_path, 
     study = Study(tmp_path / "study", LIMITS, checkout)
     figures = [f"results/limits/figures/{name}.png" for name in ("distance", "basins")]
     output = study.ok("points", "summary", *figures, "--verbose", cores=1)
-    # The scheduler looks at the jobs that are ready where one has ended, and not more and more often.
+    # The scheduler checks for ready jobs when one has ended, and not more and more often.
     assert 0 < output.count("Resources before job selection") <= output.count("Finished jobid") + 5
     mine, other = (each.files("points", "summary", "figures") for each in (study, limited))
     assert len(mine) == 8 + 20 + 4
@@ -81,7 +81,7 @@ rule mine:
 
 
 def test_another_workflow_imports_the_study(tmp_path):
-    """With a config that holds other things too."""
+    """Its config contains other keys too."""
     study = Study(tmp_path, "mine: 3\nstick_slip:\n" + "".join(f"  {line}\n" for line in TINY.splitlines()))
     point = "results/tiny/points/linearized/plus/a0.0800.nc"
     (tmp_path / "Snakefile").write_text(MODULE.format(repository=study.repository, point=point))
@@ -126,7 +126,7 @@ def test_stage_targets(study):
     assert "figure_agreement" in jobs(study.ok("figures", "-n", "-p"))
 
 
-def test_every_rule_says_what_it_is_for(study):
+def test_every_rule_has_a_description(study):
     lines = study.ok("--list-rules").splitlines()
     listed = dict(line.split(" ", 1) if " " in line else (line, "") for line in lines if not line.startswith("Using "))
     assert {"all", "basin_pairs", "mean_distance", "figure_lyapunov"} <= listed.keys()
@@ -152,14 +152,14 @@ def test_a_key_of_the_simulations_reruns_them(copy):
     assert jobs(copy.ok("-n", "-p"))["simulate"] == 16
 
 
-def test_a_wider_grid_keeps_the_points_that_are_there(copy):
+def test_a_wider_grid_keeps_existing_points(copy):
     copy.config.write_text(TINY.replace("[0.05,", "[0.05, 0.06,"))
     assert jobs(copy.ok("-n", "-p"))["simulate"] == 4
 
 
 @pytest.mark.slow
-def test_a_wider_grid_is_searched_where_it_is_new(copy):
-    """What the first run has kept is taken again, and what no value needs any more goes."""
+def test_only_new_values_of_a_wider_grid_are_searched(copy):
+    """Cached results of the first run are reused, and those that no value needs are deleted."""
     law, values = "linearized", 4
     folder = copy.folder / f".snakemake/study_cache/tiny/attractors {law}"
     copy.config.write_text(TINY.replace("[0.05,", "[0.05, 0.06,"))

@@ -1,4 +1,4 @@
-"""A study on a Slurm cluster of one node: killed, cancelled and cut off in the middle, it ends with the same bytes."""
+"""A study on a Slurm cluster of one node: after kills, cancellations and time limits it ends with the same bytes."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class Cluster:
 
     def do(self, action: str) -> None:
         """Let the script start or stop the cluster, or restart its node daemon."""
-        # Daemons keep what they inherit open: a pipe would never end.
+        # Daemons keep inherited files open, so that a pipe would never end.
         with (self.folder.parent / "cluster.txt").open("a") as log:
             subprocess.run([SCRIPT, action, self.folder], check=True, stdout=log, stderr=log, stdin=subprocess.DEVNULL)
 
@@ -70,7 +70,7 @@ def cluster() -> Iterator[Cluster]:
 
 
 class Run:
-    """A Snakemake on the cluster; what each of its jobs makes is noted while their folders are there."""
+    """A Snakemake on the cluster; the files of each job are recorded while its folder exists."""
 
     def __init__(self, study: Study, *arguments: str) -> None:
         self.study = study
@@ -92,7 +92,7 @@ class Run:
         while self.process.poll() is None:
             for path in self.study.folder.glob(".snakemake/slurm/*/record.json"):
                 if path.parent.name not in self.makes:
-                    # It may be half written, or removed meanwhile.
+                    # The file may be incomplete, or have been removed.
                     with contextlib.suppress(OSError, ValueError):
                         self.makes[path.parent.name] = json.loads(path.read_text())["targets"]
             time.sleep(0.25)
@@ -102,7 +102,7 @@ class Run:
         end = time.monotonic() + seconds
         while not reached():
             assert time.monotonic() < end, self.log.read_text()
-            # To ask Slurm takes time from its jobs.
+            # Queries of Slurm take time from its jobs.
             time.sleep(0.25)
 
     def kill(self) -> None:
@@ -143,7 +143,7 @@ def made_twice_at_a_time(runs: dict[str, list[tuple[float, float, str]]]) -> dic
     }
 
 
-def test_killed_cancelled_and_cut_off(finished, cluster, tmp_path):
+def test_a_study_survives_kills_cancellations_and_time_limits(finished, cluster, tmp_path):
     study = Study(tmp_path / "study")
     first = Run(study)
     # Some jobs run, others wait.
@@ -151,7 +151,7 @@ def test_killed_cancelled_and_cut_off(finished, cluster, tmp_path):
     first.kill()
     cluster.do("node")
     before = cluster.queue()
-    # A job ends while there is no Snakemake, and another begins.
+    # One job ends and another begins while no Snakemake runs.
     first.until(lambda: len(cluster.queue()) < len(before))
 
     second = Run(study)
@@ -169,7 +169,7 @@ def test_killed_cancelled_and_cut_off(finished, cluster, tmp_path):
     again = {target: [state for _, _, state in several] for target, several in runs.items() if len(several) > 1}
     assert list(again.values()) == [["CANCELLED", "COMPLETED"]]
     assert re.search(rf"Slurm job {cancelled} \S+: CANCELLED, ", log)
-    # Of the long jobs each has the cores that the profile asks for, of all others one.
+    # Each long job has the cores that the profile requests, all others one.
     cores = {job["Name"].rpartition("-")[0]: job["ProcCnt"] for job in cluster.ended()}
     shared = {"attractors_of_law", "bifurcations_of_law", "two_blocks", "phases_of_law"}
     assert {name for name, count in cores.items() if count == "8"} == shared
@@ -177,8 +177,8 @@ def test_killed_cancelled_and_cut_off(finished, cluster, tmp_path):
     assert "Nothing to be done" in study.ok("-n")
 
 
-def test_what_runs_for_another_config_is_cancelled(cluster, tmp_path):
-    """A job that was begun for values that have changed since must not count as the one that is wanted."""
+def test_jobs_for_another_config_are_cancelled(cluster, tmp_path):
+    """A job started for values that have since changed must not count as the requested one."""
     # The first runs would take minutes: they are still there when the second Snakemake comes.
     study = Study(tmp_path / "study", TINY.replace("\ntransient: 100\n", "\ntransient: 300000\n"))
     local = Study(tmp_path / "local", TINY + "sampling: 2\n")
@@ -195,7 +195,7 @@ def test_what_runs_for_another_config_is_cancelled(cluster, tmp_path):
     assert {"CANCELLED", "COMPLETED"} <= {state for several in runs.values() for _, _, state in several}
 
 
-def test_a_job_that_slurm_refuses_is_told(cluster, tmp_path):
+def test_a_job_that_slurm_refuses_is_reported(cluster, tmp_path):
     study = Study(tmp_path / "study")
     target = "results/tiny/points/linearized/plus/a0.0800.nc"
     run = Run(study, "--retries", "0", "--set-resources", "simulate:slurm_partition=nowhere", "--", target)
@@ -227,11 +227,11 @@ def test_submit_finds_what_another_snakemake_submitted(cluster, tmp_path):
 
     first = call("submit.py", script)
     assert call("submit.py", script) == first
-    # The other study is another matter.
+    # The other study is independent.
     other = call("submit.py", script, study="other")
     assert other != first
     assert [call("status.py", job) for job in (first, other)] == ["running"] * 2
-    # With newer input the old job is of no use.
+    # With newer input the old job is useless.
     (tmp_path / "input.txt").touch()
     second = call("submit.py", script)
     assert second.partition(":")[2] != first.partition(":")[2]
@@ -245,8 +245,8 @@ def test_submit_finds_what_another_snakemake_submitted(cluster, tmp_path):
     name = third.partition(":")[2]
     while name in cluster.queue():
         time.sleep(0.1)
-    # It ended well, and no Snakemake knows.
+    # The job succeeded without any Snakemake noticing.
     assert call("submit.py", script) == f"0:{name}"
     assert call("status.py", f"0:{name}") == "success"
-    # Now one does: a second request recomputes it.
+    # Now one has noticed: a second request recomputes it.
     assert call("submit.py", script).partition(":")[2] != name

@@ -1,4 +1,4 @@
-"""What an edit makes out of date in Snakemake's plan: the same as in `jobs`, which tests/jobs check key by key."""
+"""The jobs that Snakemake plans after an edit are those of `jobs`, which tests/jobs check key by key."""
 
 import contextlib
 import subprocess
@@ -17,7 +17,7 @@ CODE, COMMENT, DOCSTRING = "\n_MORE = 1\n", "\n# More words.\n", '"""More words.
 _PLANS = {}
 
 
-def planned(study, *roots):
+def planned_jobs(study, *roots):
     """Return the jobs of a run in which these rules are forced."""
     key = (study.folder, study.repository, roots)
     if key not in _PLANS:
@@ -69,7 +69,7 @@ NOTHING = (
 )
 
 
-def test_comments_docstrings_and_plumbing_remake_nothing(studied):
+def test_comments_docstrings_and_plumbing_invalidate_nothing(studied):
     with contextlib.ExitStack() as edits:
         for name, text in NOTHING:
             edits.enter_context(Edit(studied.repository / PACKAGE / name, text))
@@ -84,12 +84,12 @@ def test_comments_docstrings_and_plumbing_remake_nothing(studied):
         ("figures/lyapunov.py", ("figure_lyapunov",)),
     ],
 )
-def test_code_remakes_what_depends_on_it(studied, name, roots):
-    """The roots run again; nothing does that does not need them."""
+def test_code_invalidates_what_depends_on_it(studied, name, roots):
+    """Only the roots and the jobs that need them run again."""
     with Edit(studied.repository / PACKAGE / name, CODE):
         found = jobs(studied.ok("-n", "-p"))
     assert set(roots) <= set(found)
-    assert found == planned(studied, *roots)
+    assert found == planned_jobs(studied, *roots)
 
 
 def test_an_edited_kernel_is_refused_until_it_is_built(studied):
@@ -110,7 +110,7 @@ def uncompiled(studied, tmp_path_factory):
     return Study(folder / "study", studied.config.read_text(), folder)
 
 
-def test_an_edited_kernel_that_is_not_built_yet_remakes_what_depends_on_it(uncompiled):
+def test_an_edited_kernel_that_is_not_built_invalidates_what_depends_on_it(uncompiled):
     with Edit(uncompiled.repository / PACKAGE / "kernel/module.cpp", "\nint more;\n"):
         found = jobs(uncompiled.ok("-n", "-p"))
     assert {"simulate", "attractors_of_law", "orbits", "two_blocks", "proof", "claims", "report"} <= set(found)
@@ -128,27 +128,27 @@ def edited(finished, tmp_path_factory):
     return copied(finished.folder, tmp_path_factory.mktemp("edited") / "study")
 
 
-def changed(edited, changes):
+def change_config(edited, changes):
     """Return the study with some keys of its config changed."""
     edited.config.write_text(yaml.safe_dump(changed_config(changes)))
     return edited
 
 
 @pytest.mark.parametrize("changes", [{"v": 0.11}, {"basins.pixels": 9}, {"a": [0.05, 0.06, 0.08, 0.2, 0.22]}])
-def test_a_key_remakes_only_what_uses_it(edited, changes):
-    found = jobs(changed(edited, changes).ok("-n", "-p"))
+def test_a_key_invalidates_only_what_uses_it(edited, changes):
+    found = jobs(change_config(edited, changes).ok("-n", "-p"))
     del found["all"]
     assert found == counts(jobs_of(changes))
 
 
-def test_maps_of_basins_leave_the_verdicts_up_to_date(edited):
-    """No statement of the paper is about them."""
-    found = jobs(changed(edited, {"basins.pixels": 9, "basins.pairs": 21}).ok("-n", "-p"))
+def test_maps_of_basins_do_not_invalidate_the_verdicts(edited):
+    """No statement of the paper depends on them."""
+    found = jobs(change_config(edited, {"basins.pixels": 9, "basins.pairs": 21}).ok("-n", "-p"))
     assert {"basins", "figure_basins", "report"} <= found.keys()
     assert "claims" not in found
 
 
-def test_neither_words_nor_order_nor_notation_of_a_config_count(edited):
+def test_comments_order_and_notation_of_a_config_do_not_count(edited):
     config = yaml.safe_load(TINY)
     for name, text in (
         ("order", yaml.safe_dump(config, sort_keys=True)),
@@ -160,7 +160,7 @@ def test_neither_words_nor_order_nor_notation_of_a_config_count(edited):
         assert set(jobs(edited.ok("-n", "-p"))) <= {"report", "all"}, name
 
 
-def test_results_know_their_sources(finished):
+def test_results_record_their_sources(finished):
     from burridge_knopoff.dataset.summary import open_summary
     from burridge_knopoff.provenance.sources import source_fingerprint
 

@@ -1,4 +1,4 @@
-"""The programs that submit jobs, with prepared answers of Slurm: none, a lost one, or a refusal."""
+"""The programs that submit jobs, with scripted answers of Slurm: none, a lost one, or a refusal."""
 
 import importlib
 import json
@@ -31,8 +31,8 @@ def slurm(monkeypatch, tmp_path):
     (tmp_path / "script.sh").write_text(SCRIPT)
     monkeypatch.setattr(modules["jobs"], "PAUSE", 0.0)
 
-    def told(**answers):
-        """Let each program of Slurm give its answers in turn; return the commands that come."""
+    def script_answers(**answers):
+        """Let each program of Slurm give its answers in turn; return the list of commands."""
         left, asked = {name: iter(each) for name, each in answers.items()}, []
 
         def ask(*command, **_):
@@ -44,12 +44,12 @@ def slurm(monkeypatch, tmp_path):
             monkeypatch.setattr(module, "ask", ask)
         return asked
 
-    yield modules, told
+    yield modules, script_answers
     for name in PROGRAMS:
         del sys.modules[name]
 
 
-def submitted(modules, monkeypatch, capsys):
+def submit_script(modules, monkeypatch, capsys):
     """Submit the script; return the exit code, and what was written."""
     monkeypatch.setattr(sys, "argv", ["submit.py", "script.sh"])
     code = modules["submit"].main()
@@ -57,10 +57,10 @@ def submitted(modules, monkeypatch, capsys):
 
 
 def test_a_silent_controller_is_asked_again(slurm, monkeypatch, capsys):
-    modules, told = slurm
+    modules, script_answers = slurm
     none = (0, "", "")
-    asked = told(squeue=[SILENT, none, none], sbatch=[SILENT, (0, "17;cluster\n", "")])
-    code, output, _ = submitted(modules, monkeypatch, capsys)
+    asked = script_answers(squeue=[SILENT, none, none], sbatch=[SILENT, (0, "17;cluster\n", "")])
+    code, output, _ = submit_script(modules, monkeypatch, capsys)
     number, _, name = output.strip().partition(":")
     assert (code, number) == (0, "17")
     assert [command[0] for command in asked] == ["squeue", "squeue", "sbatch", "squeue", "sbatch"]
@@ -69,15 +69,15 @@ def test_a_silent_controller_is_asked_again(slurm, monkeypatch, capsys):
 
 
 def test_a_job_whose_answer_was_lost_is_not_submitted_twice(slurm, monkeypatch, capsys):
-    modules, told = slurm
+    modules, script_answers = slurm
     names = []
 
     def lost(command):
         names.extend(word.partition("=")[2] for word in command if word.startswith("--job-name="))
         return 1, "", "sbatch: error: Socket timed out on send/recv operation\n"
 
-    asked = told(squeue=[(0, "3|other\n", ""), lambda _: (0, f"3|other\n18|{names[0]}\n", "")], sbatch=[lost])
-    code, output, _ = submitted(modules, monkeypatch, capsys)
+    asked = script_answers(squeue=[(0, "3|other\n", ""), lambda _: (0, f"3|other\n18|{names[0]}\n", "")], sbatch=[lost])
+    code, output, _ = submit_script(modules, monkeypatch, capsys)
     assert (code, output) == (0, f"18:{names[0]}\n")
     assert [command[0] for command in asked] == ["squeue", "sbatch", "squeue"]
 
@@ -90,11 +90,11 @@ def test_a_job_whose_answer_was_lost_is_not_submitted_twice(slurm, monkeypatch, 
     ],
     ids=["refused", "silent for good"],
 )
-def test_what_is_refused_or_never_answered_ends_with_one_line(slurm, monkeypatch, capsys, answer, patience, words):
-    modules, told = slurm
+def test_a_refused_or_unanswered_submission_ends_with_one_line(slurm, monkeypatch, capsys, answer, patience, words):
+    modules, script_answers = slurm
     monkeypatch.setattr(modules["jobs"], "PATIENCE", patience)
-    asked = told(squeue=[(0, "", "")], sbatch=[answer])
-    code, output, error = submitted(modules, monkeypatch, capsys)
+    asked = script_answers(squeue=[(0, "", "")], sbatch=[answer])
+    code, output, error = submit_script(modules, monkeypatch, capsys)
     assert (code, output, len(error.splitlines())) == (1, "", 1)
     assert error.startswith("submit.py: sbatch: error: ")
     assert words in error
@@ -106,23 +106,23 @@ def test_what_is_refused_or_never_answered_ends_with_one_line(slurm, monkeypatch
     [
         (SILENT, None, 60.0, "running"),
         ((0, "JobName=wait-1 JobState=PENDING\n", ""), None, 60.0, "running"),
-        # Its files may not be seen yet.
+        # Its files may not be visible yet.
         ((1, "", "slurm_load_jobs error: Invalid job id specified\n"), None, 60.0, "running"),
         ((1, "", "slurm_load_jobs error: Invalid job id specified\n"), None, 0.0, "failed"),
         ((0, "JobName=wait-1 JobState=TIMEOUT\n", ""), None, 60.0, "failed"),
         ((0, "JobName=wait-1 JobState=COMPLETED\n", ""), "3", 60.0, "failed"),
         ((0, "JobName=wait-1 JobState=COMPLETED\n", ""), "0", 60.0, "success"),
-        # Slurm counts from 1 again: the number is that of another job.
+        # Slurm has restarted its numbering: the number is that of another job.
         ((0, "JobName=other JobState=RUNNING\n", ""), "0", 60.0, "success"),
     ],
 )
 def test_the_status_of_a_job(slurm, monkeypatch, capsys, tmp_path, answer, left, latency, status):
-    modules, told = slurm
+    modules, script_answers = slurm
     job = tmp_path / ".snakemake/slurm/wait-1"
     job.mkdir(parents=True)
     if left is not None:
         (job / "exit").write_text(left)
-    told(scontrol=[answer])
+    script_answers(scontrol=[answer])
     monkeypatch.setattr(modules["status"], "LATENCY", latency)
     monkeypatch.setattr(sys, "argv", ["status.py", "5:wait-1"])
     assert modules["status"].main() == 0

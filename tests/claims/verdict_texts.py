@@ -1,6 +1,6 @@
-"""The texts and numbers of each verdict, word for word, in all cases of `alterations.py`.
+"""The exact text and numbers of each verdict, in all cases of `alterations.py`.
 
-`python -m tests.claims.said` rewrites said.json; read what has changed there before you keep it.
+`python -m tests.claims.verdict_texts` rewrites verdict_texts.json; check the changes before you keep them.
 """
 
 from __future__ import annotations
@@ -19,25 +19,25 @@ from tests.claims.alterations import CASES, Alteration
 from tests.claims.worlds import evidence, paper_world
 
 ROOT = Path(__file__).parents[2]
-FILE = Path(__file__).with_name("said.json")
+FILE = Path(__file__).with_name("verdict_texts.json")
 PICTURES = picture_names(PAPER_STATES)
 CLAIMS: dict[str, Claim] = {claim.name: claim for claim in read_claims(PICTURES)}
 
 
-def altered(name: str, alteration: Alteration) -> Verdict:
-    """Return the verdict on a claim in the world in which the paper is right, except for an alteration."""
+def judge_altered(name: str, alteration: Alteration) -> Verdict:
+    """Return the verdict on a claim from altered data for which the paper would otherwise be right."""
     world = paper_world()
     alteration(world)
-    return judged(name, evidence(world))
+    return judge_claim(name, evidence(world))
 
 
-def judged(name: str, known: Evidence) -> Verdict:
+def judge_claim(name: str, known: Evidence) -> Verdict:
     """Return the verdict on a claim; a claim about other claims is judged by their verdicts."""
     verdicts = {other: judge(CLAIMS[other], known) for other in CLAIMS[name].parameters.get("claims", ())}
     return judge(CLAIMS[name], replace(known, verdicts=verdicts))
 
 
-def said(verdict: Verdict) -> str:
+def format_verdict(verdict: Verdict) -> str:
     """Return a verdict, with its texts and numbers, as a line."""
     errors = ["" if item.error is None else f" ± {item.error:.3g}" for item in verdict.measured]
     measured = [f"{item.quantity}: {item.value:.7g}{end}" for item, end in zip(verdict.measured, errors, strict=True)]
@@ -45,11 +45,11 @@ def said(verdict: Verdict) -> str:
 
 
 def write() -> None:
-    """Write the lines of each claim: first where the paper is right, then in the order of the cases."""
+    """Write the lines of each claim, first for data for which the paper is right, then in the order of the cases."""
     cases = [(name, lambda world: None) for name in CLAIMS] + [(name, alteration) for name, _, alteration in CASES]
     found: dict[str, list[str]] = {name: [] for name in CLAIMS}
     for name, alteration in cases:
-        found[name].append(said(altered(name, alteration)))
+        found[name].append(format_verdict(judge_altered(name, alteration)))
     FILE.write_text(json.dumps(found, ensure_ascii=False, indent=1) + "\n", encoding="utf-8")
 
 
