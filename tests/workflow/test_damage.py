@@ -267,6 +267,9 @@ def test_damaged_texts_and_pictures_are_recreated(copy, finished):
     as_old_as(results / "summary/agreement.txt", lambda path: path.write_bytes(b""))
     output = copy.ok("-n")
     assert "results/tiny/summary/agreement.txt: is empty: it would be recreated" in output
+    # These do not run the study either.
+    for flag in ("--rulegraph", "--summary"):
+        copy.ok(flag)
     found = {finding.path.name: finding.kind for finding in check_study(results).findings}
     assert found == dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt")
     output = copy.ok()

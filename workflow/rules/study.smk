@@ -158,11 +158,23 @@ def remove_damaged():
             path.unlink()
 
 
-# Only in the main process, not in jobs. In a dry run no hook is called.
+def prepared(execute):
+    """Return a function that removes damaged files before Snakemake decides which jobs to run."""
+
+    def execute_prepared(*args, **kwargs):
+        remove_damaged()
+        # A dry run calls no hook.
+        if workflow.output_settings.dryrun:
+            print_remarks()
+        return execute(*args, **kwargs)
+
+    return execute_prepared
+
+
+# Snakemake has no hook before it decides, and does not execute for --rulegraph, --summary or --report. Only in the main
+# process, not in jobs.
 if workflow.is_main_process:
-    remove_damaged()
-    if workflow.output_settings.dryrun:
-        print_remarks()
+    workflow.execute = prepared(workflow.execute)
 
 
 def paths(names):
