@@ -27,7 +27,8 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]], width: int = UNLIM
     head : header line; none if it is empty
     """
     cells = [head, *rows] if head else list(rows)
-    widths, least = [], []
+    widths: list[int] = []
+    least: list[int] = []
     for column in zip(*cells, strict=True):
         widths.append(max(map(len, column)))
         # The indent of a cell belongs to its first word.
