@@ -380,7 +380,10 @@ def test_files_of_stages_that_are_left_out_are_left_over(results, capsys):
     shown = [name for name in OF_STAGES.split() if not name.startswith(("logs", "benchmarks"))]
     assert said.count("leftover ") == len(shown)
     assert all(f"leftover {results / name}: not part of this study\n" in said for name in shown)
-    assert f"{results}: 4 points, 3 runs of other solvers, 4 other files: 0 missing, 0 corrupt, 0 stale, 0 failed\n" in said
+    assert (
+        f"{results}: 4 points, 3 runs of other solvers, 4 other files: 0 missing, 0 corrupt, 0 stale, 0 failed\n"
+        in said
+    )
     assert set(open_study(results)["summary"].children) == {"mean_distance"}
     assert main(["prune", str(results)]) == 0
     assert not any((results / name).exists() for name in OF_STAGES.split())
