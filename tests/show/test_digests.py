@@ -9,7 +9,15 @@ from burridge_knopoff.dataset.variables import flag
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.running.status import STATUS_WORDS, Status
 from burridge_knopoff.show import digests, orbit_digests
-from burridge_knopoff.show.digests import NO_EVENT, catalogue, lyapunov, mean_distance, slip_events, values_where
+from burridge_knopoff.show.digests import (
+    NO_EVENT,
+    catalogue,
+    empty_catalogues,
+    lyapunov,
+    mean_distance,
+    slip_events,
+    values_where,
+)
 from burridge_knopoff.show.formatting import wrap_lines
 from burridge_knopoff.summaries import bifurcation_diagram, orbits, rotation, solvers, two_blocks
 from burridge_knopoff.summaries.text_table import table
@@ -65,12 +73,25 @@ def test_catalogues_without_events():
     """Those of runs that did not complete count as failed, not as empty."""
     status = (("law", "a"), np.array([[0, 3, 0]], "i1"), flag("i1", STATUS_WORDS))
     data = xarray.Dataset({"status": status, "event_count": (("law", "a"), [[7, 0, 0]])})
-    assert catalogue(data) == f"no slip event at 1 of 3 values: {NO_EVENT}"
-    assert catalogue(data.isel(a=[0, 1])) == ""
+    assert empty_catalogues(data) == f"no slip event at 1 of 3 values: {NO_EVENT}"
+    assert empty_catalogues(data.isel(a=[0, 1])) == ""
     for events, state, words in ((0, 0, f"no slip event: {NO_EVENT}"), (0, 3, ""), (2, 0, "")):
         one = xarray.Dataset({"status": ((), np.int8(state), STATUS_FLAG), "time": ("event", np.zeros(events))})
         assert slip_events(one) == words
     assert Status.COMPLETED == 0
+
+
+def test_slip_events_and_their_slopes():
+    status = (("law", "a"), np.array([[0, 3, 0], [0, 0, 0]], "i1"), flag("i1", STATUS_WORDS))
+    values = {"event_count": [[7, 1, 0], [0, 0, 0]], "slope": [[0.5, 0.25, np.nan], [np.nan] * 3]}
+    variables = {name: (("law", "a"), np.array(value)) for name, value in values.items()}
+    data = xarray.Dataset({"status": status, **variables}, {"law": ["x", "y"], "a": [1.0, 2.0, 3.0]})
+    assert catalogue(data).splitlines() == [
+        "x: 8 slip events at 3 values of a; slope b of the magnitudes 0.25 to 0.5 (rates decrease as exp(-b "
+        "magnitude)); 1 of 3 runs did not complete",
+        "y: 0 slip events at 3 values of a",
+        f"no slip event at 4 of 6 values: {NO_EVENT}",
+    ]
 
 
 def test_a_table_is_wrapped_to_a_width():
@@ -241,3 +262,10 @@ def test_values_of_a_inserted_where_attractors_change():
         "x: 2 branches of attractors at 3 values of a, 1 of them inserted where the attractors change",
         "y: 1 branch of attractors at 2 values of a, 0 of them inserted where the attractors change",
     ]
+
+
+def test_chains_that_synchronize():
+    fraction = ("blocks", "law", "a"), np.array([[[1.0, 1.0, 0.5, 0.0]]])
+    data = xarray.Dataset({"synchronized_fraction": fraction}, {"blocks": [5], "law": ["x"], "a": A})
+    words = "all sampled states synchronize up to a = 0.05; none is known to synchronize at a = 0.15"
+    assert orbit_digests.chains(data) == f"x, 5 blocks: {words}"

@@ -168,6 +168,21 @@ def grid(data: xarray.Dataset) -> str:
 
 
 def catalogue(data: xarray.Dataset) -> str:
+    """Return the number of slip events under each law, the range of their slopes, and how many catalogues are empty."""
+    lines = []
+    for law in data["law"].values:
+        one = data.sel(law=law)
+        events = format_count(int(np.maximum(one["event_count"].values, 0).sum()), "slip event")
+        words = f"{law}: {events} at {format_count(one.sizes['a'], 'value')} of a"
+        slope = one["slope"].values
+        if np.isfinite(slope).any():
+            ends = span(f"{np.nanmin(slope):.3g}", f"{np.nanmax(slope):.3g}")
+            words += f"; slope b of the magnitudes {ends} (rates decrease as exp(-b magnitude))"
+        lines.append("; ".join([words, *_incomplete(one["status"].values == Status.COMPLETED)]))
+    return "\n".join([*lines, *filter(None, [empty_catalogues(data)])])
+
+
+def empty_catalogues(data: xarray.Dataset) -> str:
     """Return at how many values of a catalogues of completed runs are empty, and why; empty if none is."""
     is_empty = (data["event_count"].values == 0) & (data["status"].values == Status.COMPLETED)
     return f"no slip event at {is_empty.sum()} of {is_empty.size} values: {NO_EVENT}" if is_empty.any() else ""

@@ -109,6 +109,17 @@ def phases(data: xarray.Dataset) -> str:
     return "\n".join(lines)
 
 
+def chains(data: xarray.Dataset) -> str:
+    """Return where all sampled states of a chain synchronize, and where none is known to, for each number of blocks."""
+    lines, a = [], data["a"].values
+    for law in data["law"].values:
+        for blocks in data["blocks"].values:
+            share = data["synchronized_fraction"].sel(law=law, blocks=blocks).values
+            words = f"all sampled states synchronize {values_where(share == 1.0, a)}; none is known to synchronize "
+            lines.append(f"{law}, {blocks} blocks: {words}{values_where(share == 0.0, a)}")
+    return "\n".join(lines)
+
+
 def refined(data: xarray.Dataset) -> str:
     """Return how many values of a were inserted between those of the grid, and the number of branches."""
     lines = []
@@ -162,5 +173,5 @@ def basin_part(data: xarray.Dataset) -> str:
 #: {name of a result: function that returns its digest}
 DIGESTS: dict[str, Callable[[xarray.Dataset], str]] = {
     function.__name__: function
-    for function in (equilibrium, orbits, rotation, two_blocks, phases, refined, stored_returns, bifurcations)
+    for function in (equilibrium, orbits, rotation, two_blocks, phases, chains, refined, stored_returns, bifurcations)
 }
