@@ -58,14 +58,11 @@ def dry_run_lines(run: Run) -> list[str]:
     size = sum(run.durations.shipped_cost(job.rule)[1] for job in run.jobs.values())
     disk = f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{max(round(size / 1e6), 1)} MB"
     has_cache = any(job.rule in CACHING for job in run.jobs.values())
-    cache = (
-        "the searches for attractors and bifurcations also fill .snakemake/study_cache (default study: about 300 MB)"
-    )
+    cache = ", in addition to the cache of the searches (.snakemake/study_cache, about 300 MB in the default study)"
     return [
         *(f"{name:{name_width}}  {count:>{count_width}}  {cpu}" for name, count, cpu in rows),
-        f"a run takes {format_estimate(run.forecast(0.0))} {run.capacity} and {disk} of disk space "
+        f"a run takes {format_estimate(run.forecast(0.0))} {run.capacity} and {disk} of disk space{cache * has_cache} "
         "(snakemake -n -p lists the jobs)",
-        *[cache] * has_cache,
     ]
 
 
