@@ -228,7 +228,7 @@ def test_how_often_a_branch_is_locked():
         rotation_number=[[0.64, 0.65, nan], [nan] * 3],
     ).assign_attrs(branch=1)
     assert orbit_digests.rotation(data).splitlines() == [
-        "x: branch 1 is locked (periodic) at 1 of the 2 values of a in the grid at which it is periodic or "
+        "x: branch 1 is locked (periodic) at 1 of 2 values of a in the grid at which it is periodic or "
         "quasiperiodic; rotation number 0.64 to 0.65",
         "y: branch 1 is neither periodic nor quasiperiodic at any a of the grid",
     ]
@@ -251,6 +251,7 @@ def test_which_initial_phases_synchronize():
     assert orbit_digests.phases(data) == (
         "x: 50.0 % of 8 initial states synchronize, from 25.0 % at a = 0.1 to 75.0 % at a = 0.05; 1 undetermined"
     )
+    assert orbit_digests.phases(data.isel(a=[0])) == "x: 75.0 % of 4 initial states synchronize; 0 undetermined"
 
 
 def test_values_of_a_inserted_where_attractors_change():

@@ -68,8 +68,8 @@ def rotation(data: xarray.Dataset) -> str:
             lines.append(f"{law}: branch {branch} is neither periodic nor quasiperiodic at any a of the grid")
             continue
         words = (
-            f"branch {branch} is locked (periodic) at {np.count_nonzero(locked[known] == 1)} of the {known.sum()} "
-            "values of a in the grid at which it is periodic or quasiperiodic"
+            f"branch {branch} is locked (periodic) at {np.count_nonzero(locked[known] == 1)} of "
+            f"{format_count(int(known.sum()), 'value')} of a in the grid at which it is periodic or quasiperiodic"
         )
         if np.isfinite(number).any():
             words += f"; rotation number {span(f'{np.nanmin(number):.5g}', f'{np.nanmax(number):.5g}')}"
@@ -101,7 +101,7 @@ def phases(data: xarray.Dataset) -> str:
         branch = data["branch"].sel(law=law).transpose("a", ...).values.reshape(len(a), -1)
         share = (branch == 0).mean(axis=1)
         words = f"{100.0 * (branch == 0).mean():.1f} % of {branch.size} initial states synchronize"
-        if len(a) > 1:
+        if share.min() < share.max():
             low, high = share.argmin(), share.argmax()
             words += f", from {100.0 * share[low]:.1f} % at a = {a[low]:g} to {100.0 * share[high]:.1f} % at a = "
             words += f"{a[high]:g}"
