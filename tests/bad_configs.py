@@ -166,7 +166,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
         ["chain.coupling: 'stiff'", "a number between 1e-06 and 1e+06 or a list"],
     ),
     "ends": (f"{GOOD}chain: {{ends: closed}}\n", ["chain.ends: 'closed'", "open | ring"]),
-    "chain_key": (f"{GOOD}chain: {{block: 3}}\n", ["chain.block: unknown key", "coupling"]),
+    "chain_key": (f"{GOOD}chain: {{block: 3}}\n", ["chain.block: unknown key (did you mean blocks?)"]),
     "other_blocks": (f"{GOOD}chain: {{blocks: 5}}\n", ["initial.minus: got numbers for 3 blocks, expected 5"]),
     "grid": (f"{GOOD}chain: {{grid: [2, 2]}}\n", ["initial.minus: got numbers for 3 blocks, expected 4"]),
     "grid_of_floats": (f"{GOOD}chain: {{grid: [1.5, 2]}}\n", ["chain.grid[0]: 1.5", "a whole number"]),

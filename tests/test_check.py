@@ -85,7 +85,9 @@ def point(results, law="linearized", a="0.0500"):
 def test_a_sound_study(results, capsys):
     assert main(["check", str(results)]) == 0
     said = capsys.readouterr().out
-    assert said == f"{results}: 7 points and 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed\n"
+    assert (
+        said == f"{results}: 4 points, 3 runs of other solvers, 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed\n"
+    )
 
 
 @pytest.mark.parametrize(
@@ -190,7 +192,7 @@ def test_a_copy_under_another_name_is_no_file_of_the_study(results, capsys):
     assert main(["check", str(results)]) == 0
     assert capsys.readouterr().out.splitlines() == [
         f"unknown  {copy}: no file of a study has that name",
-        f"{results}: 7 points and 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed",
+        f"{results}: 4 points, 3 runs of other solvers, 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed",
     ]
 
 
@@ -291,7 +293,9 @@ def test_a_study_is_checked_from_anywhere(results, capsys, monkeypatch, tmp_path
     capsys.readouterr()
     assert main(["check", str(whole), str(damaged)]) == 1
     said = capsys.readouterr().out.splitlines()
-    assert said[0] == f"{whole}: 7 points and 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed"
+    assert (
+        said[0] == f"{whole}: 4 points, 3 runs of other solvers, 1 other file: 0 missing, 0 corrupt, 0 stale, 0 failed"
+    )
     remake = "snakemake -c2 --configfile small.yaml -R results/other/points/linearized/minus/a0.0500.nc"
     assert said[-1] == f"remake: cd {tmp_path / 'study'} && {remake}"
     (tmp_path / "study/small.yaml").unlink()
@@ -303,8 +307,21 @@ def test_solvers_that_nobody_asked_for_are_not_missing(results, capsys):
     shutil.rmtree(results / "solvers")
     assert main(["check", str(results)]) == 0
     said = capsys.readouterr().out.splitlines()
-    assert said[0].startswith(f"{results}: 4 points and 1 other file: 0 missing")
+    assert said[0].startswith(f"{results}: 4 points, 1 other file: 0 missing")
     assert said[1] == "not counted: 3 runs of other solvers, none of which was requested yet"
+
+
+def test_a_run_in_progress_is_not_to_be_repeated(results, capsys):
+    """Snakemake lists the files that it reads and makes in its lock; those of another study do not count."""
+    point(results).unlink()
+    lock = results.parents[1] / ".snakemake/locks/0.output.lock"
+    lock.parent.mkdir(parents=True)
+    for study, words in (("another", "remake: snakemake"), ("small", "a run is in progress here")):
+        lock.write_text(f"results/{study}/points/linearized/minus/a0.0500.nc\n")
+        assert main(["check", str(results)]) == 1
+        said = capsys.readouterr().out.splitlines()[-1]
+        assert said.startswith(words)
+        assert ("-R" in said) == (study == "another")
 
 
 def test_a_folder_of_another_name_is_said_to_be_that_study(results, capsys):
@@ -363,7 +380,10 @@ def test_files_of_stages_that_are_left_out_are_left_over(results, capsys):
     shown = [name for name in OF_STAGES.split() if not name.startswith(("logs", "benchmarks"))]
     assert said.count("leftover ") == len(shown)
     assert all(f"leftover {results / name}: not part of this study\n" in said for name in shown)
-    assert f"{results}: 7 points and 4 other files: 0 missing, 0 corrupt, 0 stale, 0 failed\n" in said
+    assert (
+        f"{results}: 4 points, 3 runs of other solvers, 4 other files: 0 missing, 0 corrupt, 0 stale, 0 failed\n"
+        in said
+    )
     assert set(open_study(results)["summary"].children) == {"mean_distance"}
     assert main(["prune", str(results)]) == 0
     assert not any((results / name).exists() for name in OF_STAGES.split())

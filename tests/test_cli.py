@@ -161,7 +161,7 @@ def test_no_events(tmp_path):
         ([*RUN, "--solver", "rk4", "--step", "1e-9", "--window", "1e4", "--out", "x.nc"], "step: got 1e-09, expected"),
         ([*RUN, "--out", ""], "cannot be written"),
         (["check"], "FOLDER"),
-        (["check", "nothing"], "nothing: not the results of a study"),
+        (["check", "nothing"], "nothing: this folder does not exist"),
         (["check", "."], ".: not the results of a study"),
         (["check", ".", "--path"], "--path"),
         ([*RUN, "--out", "x.nc", "point"], "point"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from difflib import get_close_matches
 from functools import cached_property
 from inspect import getattr_static
 from typing import Any, TypeVar
@@ -90,6 +91,12 @@ def each_instance_of(values: Any, kind: type[_T], key: str) -> list[_T]:
 def refusal(key: str, value: Any, allowed: object) -> ValueError:
     """Return the error of a refused value: `key: got X, expected Y`."""
     return ValueError(f"{key}{': ' if key else ''}got {format_value(value)}, expected {allowed}")
+
+
+def suggestion(name: Any, known: Iterable[str]) -> str:
+    """Return `(did you mean X?)` with the known name closest to an unknown one; empty if none is close."""
+    near = get_close_matches(name, list(known), 1) if isinstance(name, str) else []
+    return f" (did you mean {near[0]}?)" if near else ""
 
 
 def cut(text: str, longest: int = LONGEST) -> str:

@@ -116,10 +116,10 @@ def _completion(path: Path, what: str = "points") -> list[str]:
 def _catalogues(path: Path) -> list[str]:
     import xarray
 
-    from burridge_knopoff.show.digests import catalogue
+    from burridge_knopoff.show.digests import empty_catalogues
 
     with xarray.open_dataset(path) as summary:
-        words = catalogue(summary)
+        words = empty_catalogues(summary)
     return [*_completion(path, "catalogues"), *([f"catalogues: {words} (event_count in {path})"] if words else [])]
 
 

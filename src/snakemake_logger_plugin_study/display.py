@@ -23,6 +23,8 @@ from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Run
 SHORTEST, LONGEST, STEP = 10.0, 60.0, 0.05
 #: Seconds after which the picture names a running job, and the largest number of jobs that it names.
 LONG_JOB, LONG_JOBS = 5.0, 4
+#: Rules whose jobs keep what they find in the cache of the study.
+CACHING = ("attractors_of_law", "bifurcations_of_law")
 #: Width of a bar, and of a terminal without room for bars.
 BAR_WIDTH, NARROW = 30, 64
 
@@ -55,9 +57,11 @@ def dry_run_lines(run: Run) -> list[str]:
     name_width, count_width = (max(len(row[column]) for row in rows) for column in (0, 1))
     size = sum(run.durations.shipped_cost(job.rule)[1] for job in run.jobs.values())
     disk = f"{size / 1e9:.1f} GB" if size >= 1e9 else f"{max(round(size / 1e6), 1)} MB"
+    has_cache = any(job.rule in CACHING for job in run.jobs.values())
+    cache = ", in addition to the cache of the searches (.snakemake/study_cache, about 300 MB in the default study)"
     return [
         *(f"{name:{name_width}}  {count:>{count_width}}  {cpu}" for name, count, cpu in rows),
-        f"a run takes {format_estimate(run.forecast(0.0))} {run.capacity} and {disk} of disk space "
+        f"a run takes {format_estimate(run.forecast(0.0))} {run.capacity} and {disk} of disk space{cache * has_cache} "
         "(snakemake -n -p lists the jobs)",
     ]
 

@@ -7,7 +7,10 @@ from typing import Any
 
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import read_study_record
+from burridge_knopoff.study.chunks import chunks
+from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.stages import STAGES
+from burridge_knopoff.study.study import all_points
 
 
 def replaced_results(jobs: Jobs, results: str, config_file: str, overrides: Mapping[str, Any]) -> list[str]:
@@ -26,6 +29,20 @@ def replaced_results(jobs: Jobs, results: str, config_file: str, overrides: Mapp
     return [
         f"--config {', '.join(overrides)}: {results} will hold the results of the changed config in place of those of "
         f"{config_file}; to keep both, add study=NAME to --config"
+    ]
+
+
+def points_of_grid(jobs: Jobs) -> list[str]:
+    """Return a line with the number of points of a study of several parameters, and what such a study lacks."""
+    study = jobs.study
+    if not study.is_plane:
+        return []
+    sizes = [f"{format_count(len(values), 'value')} of {name}" for name, values in study.parameters.items()]
+    sizes += [format_count(len(study.laws), "law"), format_count(len(study.initial), "initial state")]
+    points, parts = format_count(len(all_points(study)), "point"), format_count(len(chunks(study)), "job")
+    return [
+        f"{points} ({', '.join(sizes)}), simulated in {parts}; a study of several parameters has a summary, figures "
+        "and a report of its points, but no attractors, basins, bifurcations or claims"
     ]
 
 

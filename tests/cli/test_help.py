@@ -56,6 +56,16 @@ def test_the_examples_of_a_command_run(folder, command, monkeypatch, capsys):
                 assert (folder / file).stat().st_size > 1000
 
 
+def test_help_fits_the_terminal(monkeypatch, capsys):
+    """Except the examples, which can be copied as one line."""
+    monkeypatch.setenv("COLUMNS", "80")
+    for command in COMMANDS:
+        with pytest.raises(SystemExit):
+            main([command, "--help"])
+        lines = capsys.readouterr().out.splitlines()
+        assert not [line for line in lines if len(line) > 80 and not line.startswith("  bk ")]
+
+
 def test_help_says_every_percent_sign(capsys):
     for command in COMMANDS:
         with pytest.raises(SystemExit, match="0"):

@@ -90,7 +90,9 @@ def test_files_that_are_not_present_summaries_are_refused(tmp_path):
     other, bare = make_summary(source_module="other"), make_summary()
     other.attrs["source_fingerprint"] = "0" * 16
     write_summary(other, tmp_path / "other.nc")
-    with pytest.raises(BadFile, match=r"other.nc: was made by other sources \(burridge_knopoff.*lyapunov 0{16}, now"):
+    with pytest.raises(
+        BadFile, match=r"other.nc: was made by other sources \(fingerprint of burridge_knopoff.*lyapunov: 0{16}, now"
+    ):
         open_summary(tmp_path / "other.nc")
     bare.to_netcdf(tmp_path / "bare.nc")
     for name, reason in (("bare.nc", "is truncated, or was not written by this program"), ("missing.nc", "is missing")):

@@ -156,6 +156,8 @@ def test_a_file_that_is_damaged_or_not_of_the_study_is_named(results, tmp_path, 
 
 
 def test_a_folder_without_a_study_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="results/nothing: this folder does not exist"):
+        open_study("results/nothing")
     with pytest.raises(ValueError, match="not the results of a study"):
         open_study(tmp_path)
 

@@ -89,7 +89,7 @@ def test_differences_are_named(tmp_path, name):
         ),
         ({"motion": {"kind": "one"}, "sources": "cd"}, "was made with motion.period: got 1.0, expected nothing"),
         ({"inputs": {"y.nc": "1"}}, "was made from another y.nc"),
-        ({"sources": "cd"}, "was made by other sources (ab, now cd)"),
+        ({"sources": "cd"}, "was made by other sources (fingerprint ab, now cd)"),
     ):
         with pytest.raises(BadFile) as caught:
             check_seal(path, {**ABOUT, **change})

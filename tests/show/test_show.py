@@ -18,7 +18,7 @@ from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.provenance.seal import digest_of
 from burridge_knopoff.show.result import open_result
-from burridge_knopoff.show.summary import summary_lines
+from burridge_knopoff.show.summary import digest, summary_lines
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
 BK = str(Path(sys.executable).parent / "bk")
@@ -112,10 +112,11 @@ def test_every_summary_in_words(study):
     for path in files:
         result = open_result(path)
         lines = summary_lines(result)
-        assert max(map(len, summary_lines(result, 80))) <= 110, path
+        assert max(map(len, summary_lines(result, 80)[2:])) <= 80, path
         assert result.name == path.stem
         assert lines[0] == f"{path}: {result.data.attrs['title']}"
         assert lines[1].strip()
+        assert digest(result, 80), path
         for name in result.data.data_vars:
             assert sum(line.startswith(f"  {name} ") for line in lines) >= 1, (path, name)
         assert not any("other sources" in line for line in lines)

@@ -11,6 +11,8 @@ from burridge_knopoff.attractors.lookup import side_name
 from burridge_knopoff.report.tables import branch_table
 from burridge_knopoff.summaries import all_laws
 from burridge_knopoff.summaries.all_laws import common_branch_names, number_intermediate_branches
+from burridge_knopoff.summaries.branch_rows import branch_rows
+from burridge_knopoff.summaries.branch_table import ABOUT, branch_lines
 from tests.summaries.continued import SETTINGS
 
 
@@ -106,24 +108,34 @@ def test_the_name_of_a_motion_on_one_side_is_mirror_pair(name, side, expected):
 
 def test_the_digest_describes_each_branch(one_law):
     found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
-    assert all_laws.digest(found) == (
-        "linearized, synchronized: at 1 of 3 values of a, 0.05; <J> 0.0000; synchronized; largest basin "
-        "fraction 0.250 (a = 0.05)\n"
-        "linearized, mirror pair (1): at 2 of 3 values of a, 0.05 to 0.1; <J> 0.1400 to 0.1500; quasiperiodic, "
-        "transient chaos; largest basin fraction 1.000 (a = 0.1)\n"
-        "linearized: 5 of 12 sampled states are undetermined; no attractor at a = 0.2\n"
-    )
+    head = "linearized law: 2 branches at 3 values of a; 5 of 12 sampled states are undetermined"
+    rows = [
+        "branch           a         count  <J>            motion                          basin",
+        "synchronized     0.05      1      0.0000         synchronized                    0.250",
+        "mirror pair (1)  0.05-0.1  2      0.1400-0.1500  quasiperiodic, transient chaos  1.000",
+    ]
+    assert all_laws.digest(found).splitlines() == [ABOUT, "", f"{head}; no attractor at a = 0.2", *rows]
     found["sliding_attracts"][0, 2] = 1
-    sliding = "uniform sliding, which has no stops and is not searched for, attracts at a = 0.2\n"
-    assert all_laws.digest(found).endswith(f"undetermined; {sliding}")
+    sliding = "uniform sliding, which has no stops and is not searched for, attracts at a = 0.2"
+    assert all_laws.digest(found).splitlines()[2:] == [f"{head}; {sliding}", *rows]
+    assert max(map(len, branch_lines(found, 80))) <= 80
+
+
+def test_the_digest_of_a_law_without_attractors(one_law):
+    found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
+    found["branch"][...] = -1
+    lines = all_laws.digest(found).splitlines()
+    assert lines[2].startswith("linearized law: 0 branches at 3 values of a; ")
+    assert lines[2].endswith("no attractor at a = 0.05, 0.1, 0.2")
+    assert len(lines) == 3
 
 
 def test_the_largest_basin_fraction_is_taken_where_the_branch_exists(one_law):
     found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
     found["basin_fraction"][...] = found["basin_fraction"] * 0.0
-    assert all_laws.digest(found).splitlines()[1].endswith("largest basin fraction 0.000 (a = 0.05)")
+    assert list(branch_rows(found))[1].fraction == (0.0, 0.05)
     found["branch"][0, 0] = [0, -1]
-    assert all_laws.digest(found).splitlines()[1].endswith("largest basin fraction 0.000 (a = 0.1)")
+    assert list(branch_rows(found))[1].fraction == (0.0, 0.1)
 
 
 def test_text_and_report_name_the_first_of_equal_basin_fractions(one_law):
@@ -132,7 +144,7 @@ def test_text_and_report_name_the_first_of_equal_basin_fractions(one_law):
     found["basin_fraction"][0] = np.array([[0.6, 0.3], [0.1, 0.2], [np.nan, np.nan]])
     found["basin_count"][0] = np.array([[6, 3], [1, 2], [-1, -1]])
     found["sample_count"][0] = 10
-    assert all_laws.digest(found).splitlines()[1].endswith("largest basin fraction 0.300 (a = 0.05)")
+    assert [f"{row.fraction[0]:.3f}" for row in branch_rows(found)] == ["0.600", "0.300"]
     assert [row["fraction"] for row in branch_table(found)] == ["0.600 (a = 0.05)", "0.300 (a = 0.05)"]
 
 

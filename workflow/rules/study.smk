@@ -38,7 +38,11 @@ from burridge_knopoff.study.study import remarks
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import call_error, cluster_error
-from snakemake_logger_plugin_study.remarks import kept_stages, replaced_results
+from snakemake_logger_plugin_study.remarks import (
+    kept_stages,
+    points_of_grid,
+    replaced_results,
+)
 
 # Another Snakefile may import this one as a module; it is then the main Snakefile.
 ROOT = Path(f"{workflow.current_basedir}").resolve().parents[1]
@@ -119,6 +123,7 @@ def print_remarks():
     """Print what users may not expect of this study, a line each."""
     for remark in (
         *remarks(STUDY, GIVEN),
+        *points_of_grid(JOBS),
         *kept_stages(JOBS),
         *replaced_results(JOBS, RESULTS, display_path(CONFIG_FILE), OVERRIDES),
     ):

@@ -50,6 +50,7 @@ class Check:
     findings : problems with these files
     others : problems that another run of the last config does not fix: leftovers, unknown names, an edited config
     notes : further remarks, one per line
+    is_locked : whether Snakemake has locked the files, as it does during a run
     """
 
     results: Path
@@ -57,6 +58,7 @@ class Check:
     findings: list[Finding]
     others: list[Finding]
     notes: list[str]
+    is_locked: bool = False
 
     @property
     def exit_code(self) -> int:
@@ -74,6 +76,12 @@ class Check:
         counts = Counter(finding.kind for finding in (*self.findings, *self.others))
         numbers = ", ".join(f"{counts[kind]} {kind}" for kind in KINDS)
         lines = [*map(str, (*self.findings, *self.others)), f"{self.results}: {self.files}: {numbers}", *self.notes]
+        if self.is_locked:
+            return [
+                *lines,
+                "a run is in progress here and makes missing and stale files; if it was killed, release its lock by "
+                "`snakemake --unlock` and run it again",
+            ]
         return [*lines, f"remake: {self._remake()}"] if self.paths else lines
 
     def _remake(self) -> str:
@@ -84,6 +92,14 @@ class Check:
 def root_of(results: Path) -> Path:
     """Return the folder from which `snakemake` was called for results/<study>."""
     return results.absolute().parents[1]
+
+
+def is_locked(results: Path) -> bool:
+    """Return whether Snakemake has locked the results of a study, as it does during a run."""
+    root = root_of(results)
+    inside = f"{results.absolute().relative_to(root).as_posix()}/"
+    locks = (root / ".snakemake/locks").glob("*.lock")
+    return any(line.startswith(inside) for lock in locks for line in lock.read_text(encoding="utf-8").splitlines())
 
 
 def check_study(results: str | Path) -> Check:
@@ -100,25 +116,33 @@ def check_study(results: str | Path) -> Check:
     notes = []
     if study.name != results.resolve().name:
         notes.append(f"this is study {study.name} under another name: Snakemake expects it in a folder {study.name}")
+    solver_runs = {path: run for path, run in points.items() if path.is_relative_to(results / "solvers")}
+    points = {path: run for path, run in points.items() if path not in solver_runs}
     # A user who requested only points does not expect runs of other solvers.
     if not ((results / "solvers").is_dir() or (results / "logs/simulate_solver").is_dir()):
-        unasked = [points.pop(path) for path in list(points) if path.is_relative_to(results / "solvers")]
-        runs = format_count(len(unasked), "run")
-        notes += [f"not counted: {runs} of other solvers, none of which was requested yet"] if unasked else []
+        runs = format_count(len(solver_runs), "run")
+        notes += [f"not counted: {runs} of other solvers, none of which was requested yet"] if solver_runs else []
+        solver_runs = {}
     if left:
         files = format_count(len(left), "file")
         notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
-    others = {path for path in results.rglob("*.nc") if not path.name.startswith(".")} - points.keys() - set(left)
+    others = {path for path in results.rglob("*.nc") if not path.name.startswith(".")} - {*points, *solver_runs, *left}
     named = {results / name for name in jobs.all_files}
     missing = missing_files(results, jobs)
     rest = [*(path.relative_to(results).as_posix() for path in named if path.is_file()), *missing]
     found = [
-        *(_point_finding(path, *run) for path, run in points.items()),
+        *(_point_finding(path, *run) for path, run in {**points, **solver_runs}.items()),
         *(_file_finding(jobs, results, name, missing.get(name, Path())) for name in rest),
     ]
     return Check(
         results,
-        f"{format_count(len(points), 'point')} and {format_count(len(rest), 'other file')}",
+        ", ".join(
+            [
+                format_count(len(points), "point"),
+                *([f"{format_count(len(solver_runs), 'run')} of other solvers"] if solver_runs else []),
+                format_count(len(rest), "other file"),
+            ]
+        ),
         sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path)),
         [
             *(Finding("leftover", path, "not part of this study") for path in left if path.suffix not in LOGS),
@@ -126,6 +150,7 @@ def check_study(results: str | Path) -> Check:
             *filter(None, [config_change(results, record)]),
         ],
         notes,
+        is_locked(results),
     )
 
 

@@ -24,6 +24,9 @@ _T = TypeVar("_T")
 # A statement on a range of a is judged only with at least this many values of a.
 MIN_VALUES = 10
 
+#: {dimension of a summary with its own values of a: key of the config that has them}
+_KEYS = {"phase_difference": "phases.a", "chain": "chains.two_blocks.a", "blocks": "chains.a", "solver": "solvers.a"}
+
 # Accuracy of a computed a_c: rounding of the multiplier divided by its slope.
 CRITICAL_A_ROUNDING = 1e-13
 
@@ -149,8 +152,9 @@ class Evidence:
         """Return the part of a summary in a range of a; raises NotTestableError for fewer values than `least`."""
         chosen = a.choose(dataset["a"].values)
         if chosen.sum() < least:
+            owner = next((key for dimension, key in _KEYS.items() if dimension in dataset.dims), "the study")
             raise NotTestableError(
-                f"a statement on all {a} needs {least} values of a; the study has {chosen.sum()} there"
+                f"a statement on all {a} needs {least} values of a; {owner} has {chosen.sum()} there"
             )
         return self._cached(("a", chosen.tobytes()), lambda: dataset.isel(a=chosen), dataset)
 

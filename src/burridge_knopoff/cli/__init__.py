@@ -11,6 +11,8 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib import import_module
+from itertools import groupby
+from textwrap import wrap
 from types import ModuleType
 
 # A run uses one thread. Otherwise the linear-algebra library would start a busy thread on every core.
@@ -41,6 +43,17 @@ WRITTEN = ("out", "attractors_out", "plot")
 READER_GONE = 141
 
 
+class _Help(argparse.HelpFormatter):
+    """Wraps texts to the terminal. Indented lines, such as examples, remain whole, so that they can be copied."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        lines: list[str] = []
+        for is_indented, group in groupby(text.splitlines(), lambda line: line.startswith(" ")):
+            part = list(group)
+            lines += part if is_indented else wrap(" ".join(part), width)
+        return "\n".join(lines)
+
+
 class _Parser(argparse.ArgumentParser):
     """A parser that reports wrong input in one line, with exit code 2."""
 
@@ -53,7 +66,7 @@ def build_parser(only: str | None = None) -> argparse.ArgumentParser:
 
     only : parse the options of this command only; all commands by default
     """
-    look = {"formatter_class": argparse.RawDescriptionHelpFormatter, "allow_abbrev": False}
+    look = {"formatter_class": _Help, "allow_abbrev": False}
     parser = _Parser(prog="bk", description=DESCRIPTION, **look)  # type: ignore[arg-type]
     parser.add_argument("--version", action="version", version=f"bk {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=_Parser)

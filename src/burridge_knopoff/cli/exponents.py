@@ -36,7 +36,7 @@ def run(options: argparse.Namespace) -> int:
     from burridge_knopoff.motion.chain_synchronization import ALIGNMENT, transverse_exponent, window_range
     from burridge_knopoff.motion.kind import format_motion, motion_of_run
     from burridge_knopoff.running import simulation
-    from burridge_knopoff.show.formatting import table
+    from burridge_knopoff.summaries.text_table import table
 
     state = state_of(options) or PAPER_STATES["minus"]
     model, motion = model_of(options, state), settings_of(MotionSettings, options)

@@ -86,8 +86,8 @@ def _reached(model: Model, state: InitialState, start: str, settling: float) -> 
 def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
     """Describe an orbit in lines, with at most `most` of its events."""
     from burridge_knopoff.periodic_orbits.floquet import multipliers
-    from burridge_knopoff.show.formatting import table
     from burridge_knopoff.study.formatting import format_count
+    from burridge_knopoff.summaries.text_table import table
 
     found = multipliers(orbit)
     stability = (

@@ -88,5 +88,5 @@ def open_summary(path: str | Path) -> xarray.Dataset:
     module, fingerprint = dataset.attrs["source_module"], dataset.attrs["source_fingerprint"]
     current = source_fingerprint(module)
     if fingerprint != current:
-        raise BadFile(path, f"was made by other sources ({module} {fingerprint}, now {current})")
+        raise BadFile(path, f"was made by other sources (fingerprint of {module}: {fingerprint}, now {current})")
     return dataset

@@ -11,7 +11,7 @@ from burridge_knopoff.laws.law import FormulaLaw, Law
 from burridge_knopoff.laws.linearized import Linearized
 from burridge_knopoff.laws.nonlinear import Nonlinear
 from burridge_knopoff.laws.stribeck import Stribeck
-from burridge_knopoff.values import refusal
+from burridge_knopoff.values import refusal, suggestion
 
 __all__ = ["LAWS", "FormulaLaw", "Law", "law_of"]
 
@@ -53,5 +53,5 @@ def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) ->
         return FormulaLaw(a, values.pop("formula"), name=name, **values)
     kind = values.pop("law", name)
     if not isinstance(kind, str) or kind not in LAWS:
-        raise refusal("law", kind, f"{' | '.join(LAWS)}, or a formula")
+        raise refusal("law", kind, f"{' | '.join(LAWS)}, or a formula{suggestion(kind, LAWS)}")
     return LAWS[kind](a, name=name, **values)

@@ -13,11 +13,10 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from difflib import get_close_matches
 from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
 from burridge_knopoff.model.ranges import Range
-from burridge_knopoff.values import full_key
+from burridge_knopoff.values import full_key, suggestion
 
 #: Default of a required field, and of an optional field whose value follows from other fields.
 REQUIRED, FOLLOWS = object(), object()
@@ -64,12 +63,10 @@ RENAMED = {"fraction_samples": "fraction_width", "pushes": "perturbations"}
 
 
 def unknown_key_error(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
-    """Return the error for an unknown key, with its present name or the closest known key, and all known keys."""
-    near = get_close_matches(name, allowed, 1) if isinstance(name, str) else []
-    hint = f" (did you mean {near[0]}?)" if near else ""
-    if RENAMED.get(name) in allowed:
-        hint = f" (renamed to {RENAMED[name]})"
-    return ValueError(f"{full_key(place, name)}: unknown key{hint}, expected one of: {', '.join(allowed)}")
+    """Return the error for an unknown key, with its present name or the closest known key, otherwise all known keys."""
+    renamed = f" (renamed to {RENAMED[name]})" if RENAMED.get(name) in allowed else ""
+    hint = renamed or suggestion(name, allowed) or f", expected one of: {', '.join(allowed)}"
+    return ValueError(f"{full_key(place, name)}: unknown key{hint}")
 
 
 _T = TypeVar("_T")

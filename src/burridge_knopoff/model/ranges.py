@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.values import full_key, real_number, refusal, scalar
+from burridge_knopoff.values import full_key, real_number, refusal, scalar, suggestion
 
 #: Means no limit, except that numbers must be finite.
 HUGE = 1e300
@@ -90,6 +90,12 @@ class OneOf(Range):
     """One of a few words."""
 
     words: tuple[str, ...]
+
+    def form(self, value: Any, key: str) -> Any:
+        """Return a word. Raises ValueError, one line with the closest word, for any other value."""
+        if self._fit(value, key) is None:
+            raise refusal(key, value, f"{self}{suggestion(value, self.words)}")
+        return value
 
     def _fit(self, value: Any, key: str) -> str | None:
         return value if isinstance(value, str) and value in self.words else None

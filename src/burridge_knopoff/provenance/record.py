@@ -77,7 +77,8 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         record = json.loads(path.read_text(encoding="utf-8"))
     except OSError:
         folder = escape_unprintable(str(results))
-        raise ValueError(f"{folder}: not the results of a study: no {NAME} in it, which `snakemake` writes") from None
+        reason = f"not the results of a study: no {NAME} in it, which `snakemake` writes"
+        raise ValueError(f"{folder}: {reason if Path(results).exists() else 'this folder does not exist'}") from None
     except (ValueError, RecursionError):
         record = None
     # Records of earlier versions have more keys.

@@ -194,7 +194,7 @@ def describe_difference(key: str, found: Mapping[str, Any], expected: Mapping[st
     if key == "command" and one and other:
         return f"is another run: {difference(one, other)}"
     if key == "sources" and one and other:
-        return f"was made by other sources ({one}, now {other})"
+        return f"was made by other sources (fingerprint {one}, now {other})"
     place = [key]
     while isinstance(one, dict) and isinstance(other, dict):
         if inside := first_difference(one, other):

@@ -7,8 +7,10 @@ import xarray
 
 from burridge_knopoff.attractors.lookup import branch_names, side_name
 from burridge_knopoff.motion.kind import MotionKind
-from burridge_knopoff.show.formatting import table
+from burridge_knopoff.show.formatting import wrap_lines
 from burridge_knopoff.study.formatting import to_ascii, with_error
+from burridge_knopoff.summaries.branch_table import branch_lines
+from burridge_knopoff.summaries.text_table import UNLIMITED, table
 
 
 def branch_label(found: xarray.Dataset, branch: int, side: int) -> str:
@@ -16,8 +18,8 @@ def branch_label(found: xarray.Dataset, branch: int, side: int) -> str:
     return side_name(branch_names(found)[branch], side)
 
 
-def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> list[str]:
-    """Return the lines of a table of the attractors of one law and one a.
+def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]], width: int = UNLIMITED) -> list[str]:
+    """Return the lines of a table of the attractors of one law and one a, wrapped to a width.
 
     columns : {head: a text for each attractor}, appended to the table
     """
@@ -35,4 +37,20 @@ def attractor_table(found: xarray.Dataset, columns: dict[str, list[str]]) -> lis
                 *(column[slot] for column in columns.values()),
             )
         )
-    return table(("attractor", "motion, section points", "<J>", "Lyapunov exponents", *columns), rows)
+    return table(("attractor", "motion, section points", "<J>", "Lyapunov exponents", *columns), rows, width)
+
+
+def branches(found: xarray.Dataset, width: int) -> list[str]:
+    """Return lines about the attractors at all values of a: a table of their branches.
+
+    A file of one law has other numbers of branches than the summary of all laws, and no names; it has no table.
+    """
+    if "branch_name" in found:
+        return branch_lines(found, width)
+    branch = found["branch"].values
+    count, numbers = (branch >= 0).sum(axis=-1)[0], np.unique(branch[branch >= 0])
+    most = f"at most {count.max()} attractors coexist, mirror images counted separately"
+    words = f"{found['law'].item()}: {len(numbers)} branch{'es' * (len(numbers) != 1)} of attractors; {most}"
+    where = f", first at a = {found['a'].values[count.argmax()]:g}" if len(numbers) else ""
+    all_laws = "summary/attractors.nc has the attractors of all laws, with the names of the branches"
+    return wrap_lines([f"{words}{where}", all_laws], width)

@@ -1,4 +1,4 @@
-"""Sentences about summaries whose modules have no digest, computed from their data."""
+"""Sentences about summaries of runs, computed from their data: the main result of each law and initial state."""
 
 from __future__ import annotations
 
@@ -7,9 +7,13 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import xarray
 
+from burridge_knopoff.claims.verdict import format_values
 from burridge_knopoff.dataset.variables import decode_flags
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.study.formatting import format_count, span
+from burridge_knopoff.summaries.bifurcation_diagram import section_points
+from burridge_knopoff.summaries.solvers import NO_RUN
 
 NO_EVENT = "neighbours slip without end (try a slower driver), or the window is too short"
 
@@ -24,18 +28,13 @@ def _lines(data: xarray.Dataset, sentence: Callable[[xarray.Dataset, np.ndarray]
 
 
 def values_where(holds: np.ndarray, a: np.ndarray) -> str:
-    """Return the values of a at which something holds: `up to a = 0.085`, `at a = 0.02 to 0.04, 0.05`."""
+    """Return the values of a at which something holds: `up to a = 0.085`, `at a = 0.02 to 0.04, 0.05`, `at no a`."""
     if holds.all():
         return "at all a"
-    edges = np.flatnonzero(np.diff([False, *holds, False])).reshape(-1, 2)
-    spans = [f"{a[first]:g}" if first == end - 1 else f"{a[first]:g} to {a[end - 1]:g}" for first, end in edges]
-    if holds[0] and len(spans) == 1:
-        return f"up to a = {a[edges[0, 1] - 1]:g}"
-    return f"at a = {', '.join(spans)}"
-
-
-def _synchrony(is_synchronized: np.ndarray, a: np.ndarray) -> str:
-    return f"synchronized {values_where(is_synchronized, a)}" if is_synchronized.any() else "synchronized at no a"
+    if not holds.any():
+        return "at no a"
+    last = int(np.flatnonzero(holds)[-1])
+    return f"up to a = {a[last]:g}" if holds[: last + 1].all() else format_values(a, holds)
 
 
 def _largest(name: str, values: np.ndarray, a: np.ndarray) -> Iterator[str]:
@@ -44,12 +43,19 @@ def _largest(name: str, values: np.ndarray, a: np.ndarray) -> Iterator[str]:
         yield f"largest {name} {values[place]:.4g} at a = {a[place]:g}"
 
 
+def _incomplete(completed: np.ndarray) -> Iterator[str]:
+    """Yield how many runs did not complete, if there are any."""
+    if not completed.all():
+        yield f"{np.count_nonzero(~completed)} of {format_count(completed.size, 'run')} did not complete"
+
+
 def mean_distance(data: xarray.Dataset) -> str:
     """Return where each law and initial state is synchronized, and its largest ⟨J⟩."""
 
     def sentence(one: xarray.Dataset, a: np.ndarray) -> str:
         is_synchronized = decode_flags(one["synchronized"]).values == "yes"
-        return "; ".join([_synchrony(is_synchronized, a), *_largest("<J>", one["mean_distance"].values, a)])
+        where = f"synchronized {values_where(is_synchronized, a)}"
+        return "; ".join([where, *_largest("<J>", one["mean_distance"].values, a)])
 
     return _lines(data, sentence)
 
@@ -73,7 +79,110 @@ def lyapunov(data: xarray.Dataset) -> str:
     return _lines(data, sentence)
 
 
+def bifurcation_diagram(data: xarray.Dataset) -> str:
+    """Return the range of W' at upward crossings of the section for each law and initial state."""
+    lines = []
+    for law, initial in dict.fromkeys(zip(data["law"].values, data["initial"].values, strict=True)):
+        a, velocity = section_points(data, law, initial, 1)
+        words = "W never crosses 0 upward"
+        if len(a):
+            ends = span(f"{velocity.min():.4g}", f"{velocity.max():.4g}")
+            words = f"W' at upward crossings is {ends}, largest at a = {a[velocity.argmax()]:g}"
+        lines.append(f"{law}, {initial}: {words}")
+    return "\n".join(lines)
+
+
+def stick_slip(data: xarray.Dataset) -> str:
+    """Return where all blocks stop, the longest sticks, and where the end blocks move against each other."""
+
+    def sentence(one: xarray.Dataset, a: np.ndarray) -> str:
+        rate, stuck = one["stop_rate"].values, one["stick_fraction"].values
+        completed = np.isfinite(rate).all(axis=-1)
+        if not completed.any():
+            return "no run completed"
+        place, block = np.unravel_index(np.nanargmax(stuck), stuck.shape)
+        words = [f"every block stops {values_where(completed & (rate > 0.0).all(axis=-1), a)}"]
+        if stuck[place, block] > 0.0:
+            which = f"block {one['block'].values[block]} at a = {a[place]:g}"
+            words.append(f"the largest fraction of time in which a block sticks is {stuck[place, block]:.2g} ({which})")
+        negative = np.count_nonzero(one["velocity_correlation"].values < 0.0)
+        words.append(
+            f"the velocities of the end blocks are negatively correlated at {negative} of {len(a)} values of a"
+        )
+        return "; ".join([*words, *_incomplete(completed)])
+
+    return _lines(data, sentence)
+
+
+def solvers(data: xarray.Dataset) -> str:
+    """Return how far ⟨J⟩ and the order of events of other solvers differ from those of the study's points."""
+    lines = []
+    for law in data["law"].values:
+        own = data.attrs[f"solver_{law}"]
+        reference = data.sel(law=law, solver=own)
+        for solver in data["solver"].values:
+            one = data.sel(law=law, solver=solver)
+            status = one["status"].values
+            if solver == own or (status == NO_RUN).all():
+                continue
+            runs = status != NO_RUN
+            completed = (status == Status.COMPLETED) & (reference["status"].values == Status.COMPLETED)
+            difference = np.where(completed, np.abs(one["difference"].values), np.nan)
+            words = []
+            if np.isfinite(difference).any():
+                i, k = np.unravel_index(np.nanargmax(difference), difference.shape)
+                largest, error = f"{difference[i, k]:.2g}", one["difference_error"].values[i, k]
+                where = f"{one['initial'].values[i]}, a = {one['a'].values[k]:g}"
+                words.append(f"<J> differs by at most {largest}{f' +- {error:.2g}' if error > 0.0 else ''} ({where})")
+            until = one["event_order_time"].values
+            end = np.fmin(one["end_time"].values, reference["end_time"].values)
+            same = runs & (until >= end)
+            order = f"the order of events is the same in {np.count_nonzero(same)} of {format_count(runs.sum(), 'run')}"
+            if (runs & ~same).any():
+                order += f" and in the others at least until tau = {until[runs & ~same].min():.4g}"
+            words.append(order)
+            lines.append(f"{law}, {solver} compared with {own}: {'; '.join([*words, *_incomplete(completed[runs])])}")
+    return "\n".join(lines)
+
+
+def grid(data: xarray.Dataset) -> str:
+    """Return at how many points of several parameters each law and initial state is synchronized or chaotic."""
+
+    def line(one: xarray.Dataset, mean: np.ndarray) -> str:
+        kinds = one["run_kind"].values
+        counts = [f"{kind.words} {count}" for kind in MotionKind if (count := np.count_nonzero(kinds == kind))]
+        words = f"{format_count(kinds.size, 'point')}: {', '.join(counts)}"
+        if np.isfinite(mean).any():
+            place = np.unravel_index(np.nanargmax(mean), mean.shape)
+            where = zip(one["mean_distance"].dims, place, strict=True)
+            at = ", ".join(f"{name} = {one[name].values[k]:g}" for name, k in where)
+            words += f"; largest <J> {mean[place]:.4g} at {at}"
+        return words
+
+    return "\n".join(
+        f"{law}, {initial}: {line(one, one['mean_distance'].values)}"
+        for law in data["law"].values
+        for initial in data["initial"].values
+        for one in [data.sel(law=law, initial=initial)]
+    )
+
+
 def catalogue(data: xarray.Dataset) -> str:
+    """Return the number of slip events under each law, the range of their slopes, and how many catalogues are empty."""
+    lines = []
+    for law in data["law"].values:
+        one = data.sel(law=law)
+        events = format_count(int(np.maximum(one["event_count"].values, 0).sum()), "slip event")
+        words = f"{law}: {events} at {format_count(one.sizes['a'], 'value')} of a"
+        slope = one["slope"].values
+        if np.isfinite(slope).any():
+            ends = span(f"{np.nanmin(slope):.3g}", f"{np.nanmax(slope):.3g}")
+            words += f"; slope b of the magnitudes {ends} (rates decrease as exp(-b magnitude))"
+        lines.append("; ".join([words, *_incomplete(one["status"].values == Status.COMPLETED)]))
+    return "\n".join([*lines, *filter(None, [empty_catalogues(data)])])
+
+
+def empty_catalogues(data: xarray.Dataset) -> str:
     """Return at how many values of a catalogues of completed runs are empty, and why; empty if none is."""
     is_empty = (data["event_count"].values == 0) & (data["status"].values == Status.COMPLETED)
     return f"no slip event at {is_empty.sum()} of {is_empty.size} values: {NO_EVENT}" if is_empty.any() else ""
@@ -87,5 +196,9 @@ def slip_events(data: xarray.Dataset) -> str:
 
 #: {name of a result: function that returns its digest}
 DIGESTS: dict[str, Callable[[xarray.Dataset], str]] = {
-    function.__name__: function for function in (mean_distance, lyapunov, catalogue, slip_events)
+    function.__name__: function
+    for function in (
+        *(mean_distance, lyapunov, bifurcation_diagram, stick_slip, solvers, grid),
+        *(catalogue, slip_events),
+    )
 }

@@ -13,9 +13,10 @@ from burridge_knopoff.motion.kind import format_motion, motion_of_run
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.command import CHAIN_OPTIONS
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.show.formatting import UNLIMITED, list_numbers, table, wrap_lines
+from burridge_knopoff.show.formatting import list_numbers, wrap_lines
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.study.formatting import format_count, to_ascii, with_error
+from burridge_knopoff.summaries.text_table import UNLIMITED, table
 
 
 def point_lines(result: Result, width: int = UNLIMITED) -> list[str]:

@@ -75,8 +75,9 @@ class Result:
     def origin(self) -> str:
         """The software and the sources that made the file, and whether the sources have changed since, in a line."""
         attributes = self.data.attrs
-        words = f"{attributes['software']}, {attributes['source_module']} {attributes['source_fingerprint']}"
-        return words if self.of_these_sources else f"{words} (not the current sources)"
+        words = f"{attributes['software']}, module {attributes['source_module']}"
+        which = "" if self.of_these_sources else ", not the current ones"
+        return f"{words}; fingerprint of its sources: {attributes['source_fingerprint']}{which}"
 
     @property
     def of_these_sources(self) -> bool:

@@ -11,10 +11,13 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.provenance.sources import PACKAGE
-from burridge_knopoff.show.attractors import attractor_table
+from burridge_knopoff.show.attractors import attractor_table, branches
 from burridge_knopoff.show.digests import DIGESTS
-from burridge_knopoff.show.formatting import UNLIMITED, describe_values, table, wrap_lines
+from burridge_knopoff.show.formatting import describe_values, wrap_lines
+from burridge_knopoff.show.orbit_digests import DIGESTS as ORBIT_DIGESTS
+from burridge_knopoff.show.orbit_digests import basin_part
 from burridge_knopoff.show.result import Result
+from burridge_knopoff.summaries.text_table import UNLIMITED, table
 
 #: Global attributes that the page shows elsewhere, or that are the same in all files.
 _ELSEWHERE = (
@@ -29,6 +32,10 @@ _ELSEWHERE = (
 )
 
 
+#: Results whose law is an attribute and whose variables do not depend on it.
+WITH_LAW_ATTRIBUTE = ("bifurcations", "basins", "slip_events")
+
+
 def summary_lines(result: Result, width: int = UNLIMITED) -> list[str]:
     """Return a description of a summary in lines of at most a width.
 
@@ -37,8 +44,8 @@ def summary_lines(result: Result, width: int = UNLIMITED) -> list[str]:
     data = result.data
     lines = wrap_lines([f"{result.path}: {data.attrs.get('title', result.name)}", *_question(result)], width)
     lines += ["", "dimensions", *table((), [(f"  {name}", text) for name, text in _dimensions(data)], width), ""]
-    if text := digest(result):
-        lines += [*wrap_lines(text.rstrip().splitlines(), width), ""]
+    if text := digest(result, width):
+        lines += [*text, ""]
     lines += ["variables", *table((), [_described(data[name]) for name in data.data_vars], width), ""]
     if settings := [(f"  {key}", _text(value)) for key, value in data.attrs.items() if key not in _ELSEWHERE]:
         lines += ["settings", *table((), settings, width), ""]
@@ -55,18 +62,21 @@ def _described(variable: xarray.DataArray) -> tuple[str, str, str]:
     return f"  {variable.name}", describe_values(variable), f"{variable.attrs.get('long_name', '')}{over}"
 
 
-def digest(result: Result) -> str:
-    """Return sentences or a table computed from the data of a summary; empty if there are none for this file."""
-    if result.name == "attractors" and result.data.sizes.get("a") == result.data.sizes.get("law") == 1:
-        return "\n".join(attractor_table(result.data, {}))
+def digest(result: Result, width: int = UNLIMITED) -> list[str]:
+    """Return lines of at most a width with the main result of a summary; none if there is no digest of this file."""
+    data = result.data
+    if "law" in data.attrs and "law" not in data.dims and result.name not in WITH_LAW_ATTRIBUTE:
+        data = data.expand_dims(law=[data.attrs["law"]])
     try:
-        if result.name in DIGESTS:
-            return DIGESTS[result.name](result.data)
-        module = import_module(result.data.attrs["source_module"])
-        return module.digest(result.data)
+        if result.name == "attractors":
+            one = data.sizes["a"] == data.sizes["law"] == 1 and "branch_name" in data
+            return attractor_table(data, {}, width) if one else branches(data, width)
+        known = {**DIGESTS, **ORBIT_DIGESTS, **({} if "map" in data.dims else {"basins": basin_part})}
+        text = known.get(result.name) or import_module(data.attrs["source_module"]).digest
+        return wrap_lines(text(data).rstrip().splitlines(), width)
     except (ImportError, AttributeError, KeyError, ValueError, IndexError):
         # Made by other sources, or only a part of the summary.
-        return ""
+        return []
 
 
 def _question(result: Result) -> Iterator[str]:

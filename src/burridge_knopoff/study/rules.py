@@ -25,7 +25,7 @@ from burridge_knopoff.study.config import SOME_VALUES
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
 from burridge_knopoff.study.stages import CHAIN_LENGTHS
-from burridge_knopoff.values import MOST_NUMBERS, refusal
+from burridge_knopoff.values import MOST_NUMBERS, refusal, suggestion
 
 #: States labelled at once for each pair of nearby states: basins/pair_separation.py.
 _STATES_OF_A_PAIR = 2
@@ -87,7 +87,7 @@ def fill_names(config: dict[str, Any]) -> None:
     laws, state, solver = config["laws"], next(iter(config["initial"])), config["solver"]
     for name, description in laws.items():
         if name not in LAWS and not {"law", "formula"} & description.keys():
-            raise refusal(f"laws.{name}", name, f"{' | '.join(LAWS)}, or a formula")
+            raise refusal(f"laws.{name}", name, f"{' | '.join(LAWS)}, or a formula{suggestion(name, LAWS)}")
     known, first = OneOf(tuple(laws)), next(iter(laws))
     known.form(config["figures"].setdefault("law", first), "figures.law")
     Several(known).form(config["chains"].setdefault("laws", [first]), "chains.laws")

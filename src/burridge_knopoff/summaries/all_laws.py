@@ -23,11 +23,10 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.study.formatting import span
 from burridge_knopoff.study.model import models_of
 from burridge_knopoff.summaries import refined, rotation
 from burridge_knopoff.summaries.attractors import VARIABLES
-from burridge_knopoff.summaries.branch_rows import branch_rows
+from burridge_knopoff.summaries.branch_table import branch_lines
 
 #: Values of the grid of a, under one law, from which on the number of a branch does not depend on what lasts shorter.
 LASTING = 3
@@ -176,32 +175,5 @@ def _renumber(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return a line for each law and branch: its range of a, its ⟨J⟩, kinds of motion and largest basin fraction."""
-    lines = []
-    a, rows = dataset["a"].values, list(branch_rows(dataset))
-    for law in dataset["law"].values:
-        one = dataset.sel(law=law)
-        for row in rows:
-            if row.law != law:
-                continue
-            ends = span(*(f"{value:g}" for value in row.a[[0, -1]]))
-            basin = "basin fraction not sampled"
-            if row.fraction:
-                fraction, at = row.fraction
-                basin = f"largest basin fraction {fraction:.3f} (a = {at:g})"
-            lines.append(
-                f"{law}, {row.name}: at {len(row.a)} of {row.of} values of a, {ends}; "
-                f"<J> {span(*(f'{value:.4f}' for value in row.distance))}; {row.kinds}; {basin}"
-            )
-        undetermined = one["undetermined_count"].values
-        total = int(one["sample_count"].sum())
-        line = f"{law}: {int(undetermined.sum())} of {total} sampled states are undetermined"
-        sliding = one["sliding_attracts"].values == 1
-        for where, words in (
-            ((one["branch"].values.max(axis=1) < 0) & ~sliding, "no attractor"),
-            (sliding, "uniform sliding, which has no stops and is not searched for, attracts"),
-        ):
-            if where.any():
-                line += f"; {words} at a = {', '.join(f'{value:g}' for value in a[where])}"
-        lines.append(line)
-    return "\n".join(lines) + "\n"
+    """Return the branches under each law as text, see `branch_lines`."""
+    return "\n".join(branch_lines(dataset)) + "\n"

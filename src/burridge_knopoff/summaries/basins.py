@@ -253,21 +253,25 @@ def digest(dataset: xarray.Dataset) -> str:
             shares[0] += f" ({row.symmetric_count} of {row.undetermined} {line})"
         times = one["decision_time"].values
         decided = f"; mean decision time {np.nanmean(times):.0f}" if np.isfinite(times).any() else ""
-        lines.append(f"{row.law}, a = {row.a:g}: {', '.join(shares)}; {_exponent_text(one)}{decided}")
+        lines.append(f"{row.law}, a = {row.a:g}: {', '.join(shares)}; {exponent_text(one)}{decided}")
     return "\n".join(lines) + "\n"
 
 
-def _exponent_text(one: xarray.Dataset) -> str:
-    """Return the uncertainty exponent of one map's boundary as text."""
+def exponent_text(one: xarray.Dataset) -> str:
+    """Return the uncertainty exponent of one map's boundary, and what it means, as text."""
     kind = ExponentKind(one["exponent_kind"].item())
     if kind == ExponentKind.UNKNOWN:
-        return "uncertainty exponent undetermined: too few pairs differ"
+        return "uncertainty exponent undetermined: too few pairs of nearby states reach different attractors"
     change, error = one["exponent_change"].item(), one["exponent_change_error"].item()
-    changes = f"it changes by {to_ascii(with_error(change, error))} over the separations"
+    changes = to_ascii(with_error(change, error))
     if kind == ExponentKind.VARYING:
-        return f"no single uncertainty exponent: {changes}"
+        return f"no single uncertainty exponent: from the largest separation to the smallest it changes by {changes}"
     alpha, error = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
-    return f"uncertainty exponent {to_ascii(with_error(alpha, error))} ({changes})"
+    return (
+        f"uncertainty exponent {to_ascii(with_error(alpha, error))}: if initial states are known 10 times as "
+        f"precisely, the fraction of them whose attractor is uncertain is divided by {10.0**alpha:.2g} (by 10 if the "
+        "basin boundary is smooth)"
+    )
 
 
 def _coordinates(first: np.ndarray, last: np.ndarray) -> dict[str, Any]:
