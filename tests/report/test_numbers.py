@@ -24,7 +24,7 @@ def test_json_cannot_end_its_element():
 
 def test_prose_adds_subscripts_and_code_to_escaped_text():
     assert prose("U_1(0) of `one_sided`, one_sided & a_digits, μ_x, <b>") == (
-        "<i>U</i><sub>1</sub>(0) of <code>one_sided</code>, one_sided &amp; a_digits, <i>μ</i><sub>x</sub>, &lt;b&gt;"
+        "<i>U</i><sub>1</sub>(0) of <code>one_sided</code>, one-sided &amp; a_digits, <i>μ</i><sub>x</sub>, &lt;b&gt;"
     )
 
 
