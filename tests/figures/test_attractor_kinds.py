@@ -25,25 +25,38 @@ def refined(a, branch, in_grid):
     )
 
 
+# So closely spaced that bars meet.
+DENSE = np.arange(61) / 100
+
+
 def test_a_bar_ends_halfway_to_the_next_value_and_continues_where_only_others_were_searched_for():
-    # Branch 0 ends between 0.15 and 0.16; branch 1, not searched for there, continues; the last value is padding.
-    a = [0.0, 0.1, 0.15, 0.16, 0.2, 0.3, np.nan]
-    branch = [[0, 1], [0, 1], [0, -1], [-1, -1], [1, -1], [1, -1], [-1, -1]]
-    bars = draw(refined(a, branch, [1, 1, 0, 0, 1, 1, 0])).axes[1].patches
-    first, second = ([bar for bar in bars if round(bar.get_y() + 0.4) == row] for row in (0, 1))
-    assert [bar.get_x() for bar in first] == pytest.approx([-0.05, 0.05, 0.125])
-    assert first[-1].get_x() + first[-1].get_width() == pytest.approx(0.155)
-    assert [bar.get_x() for bar in second] == pytest.approx([-0.05, 0.05, 0.15, 0.25])
-    assert second[1].get_x() + second[1].get_width() == pytest.approx(0.15)
-    assert second[-1].get_x() + second[-1].get_width() == pytest.approx(0.35)
+    # Branch 0 ends between 0.15 and 0.155; branch 1, not searched for there, continues; the last value is padding.
+    a = np.array([*DENSE[:16], 0.155, *DENSE[16:], np.nan])
+    first, second = np.where(a <= 0.15, 0, -1), np.where(np.isfinite(a) & (a != 0.155), 1, -1)
+    bars = draw(refined(a, np.stack([first, second], axis=1), np.isin(a, DENSE).astype(int))).axes[1].patches
+    ends = [[], []]
+    for bar in bars:
+        ends[round(bar.get_y() + 0.4)].append((bar.get_x(), bar.get_x() + bar.get_width()))
+    assert ends[0][0] == pytest.approx((-0.005, 0.005))
+    assert ends[0][-1] == pytest.approx((0.145, 0.1525))
+    assert len(ends[1]) == 61
+    assert ends[1][15] == pytest.approx((0.145, 0.155))
+    assert ends[1][16] == pytest.approx((0.155, 0.165))
 
 
-@pytest.mark.parametrize("grid", [[0.0, 0.1, 0.2, 0.3], [0.0, 0.1, 0.2, 0.5]])
-def test_no_bar_continues_over_a_value_at_which_the_branch_is_not(grid):
+@pytest.mark.parametrize("last", [0.61, 0.9])
+def test_no_bar_continues_over_a_value_at_which_the_branch_is_not(last):
     """Also where a wider step of the grid lies elsewhere."""
-    drawn = draw(refined(grid, [[0], [-1], [0], [0]], [1] * 4)).axes[1].patches
+    a = np.append(DENSE, last)
+    drawn = draw(refined(a, np.where(a == 0.3, -1, 0)[:, None], np.ones(len(a)))).axes[1].patches
     bars = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in drawn]
-    assert bars[:2] == [pytest.approx((-0.05, 0.05)), pytest.approx((0.15, 0.5 * (0.2 + grid[3])))]
+    assert bars[29:31] == [pytest.approx((0.285, 0.295)), pytest.approx((0.305, 0.315))]
+
+
+def test_bars_of_a_coarse_grid_do_not_meet():
+    drawn = draw(refined([0.0, 0.1, 0.2, 0.3], [[0]] * 4, [1] * 4)).axes[1].patches
+    bars = [(bar.get_x(), bar.get_x() + bar.get_width()) for bar in drawn]
+    assert bars == [pytest.approx((value - 0.005, value + 0.005)) for value in (0.0, 0.1, 0.2, 0.3)]
 
 
 def test_a_branch_of_a_single_value_has_no_bar():

@@ -62,7 +62,8 @@ def test_all_values_of_a_stay_on_the_axis_of_section_points():
         {"a": ("point", [2.0, 3.0, 5.0]), "law": ("point", ["linearized"] * 3), "initial": ("point", ["plus"] * 3)},
     )
     (panel,) = bifurcation_diagram.draw(points).axes
-    assert panel.get_xlim() == pytest.approx((1.4325, 6.0675))
+    left, right = panel.get_xlim()
+    assert left < 2.0 < 5.0 < right
     # Rounding of uniform sliding is no crossing.
     assert words(bifurcation_diagram.draw(points.assign(crossing_velocity=1e-10 * points["crossing_velocity"]))) == [
         [bifurcation_diagram.STAYS]
@@ -95,7 +96,7 @@ def test_differences_of_0_lie_at_the_foot_and_are_said():
         assert panel.get_lines()[0].get_ydata().tolist() == [floor] * 2
         assert panel.get_ylim()[0] < floor
     # The shading leaves the columns alike.
-    assert np.allclose(figure.axes[0].get_xlim(), (0.047, 0.253))
+    assert len({panel.get_xlim() for panel in figure.axes}) == 1
     (legend,) = figure.legends
     assert "undecided" not in [text.get_text() for text in legend.get_texts()]
 
@@ -122,7 +123,8 @@ def test_a_distance_of_0_is_said():
 def test_kinds_of_no_attractors_keep_their_axis():
     figure = attractor_kinds.draw(refined([0.3, 0.5], [[-1], [-1]], [1, 1]))
     assert words(figure) == [["no attractor"], []]
-    assert np.allclose(figure.axes[0].get_xlim(), (0.194, 0.606))
+    left, right = figure.axes[0].get_xlim()
+    assert left < 0.3 < 0.5 < right
 
 
 def test_runs_without_exponents_say_so():

@@ -9,6 +9,7 @@ from matplotlib.lines import Line2D
 
 from burridge_knopoff.figures.style import (
     ACROSS,
+    STRIP,
     begin_at_zero,
     cells,
     label_panels,
@@ -16,6 +17,9 @@ from burridge_knopoff.figures.style import (
     legend_entries,
     panel_table,
     scale_to_decades,
+    strip_columns,
+    strips,
+    strips_meet,
     styled,
 )
 
@@ -104,6 +108,20 @@ def test_a_logarithmic_scale_reaches_from_a_power_of_ten_to_another(drawn, ends)
 
 def test_cells_meet_halfway_and_extend_as_far_to_the_outside_as_to_the_inside():
     assert cells(np.array([0.0, 0.1, 0.3])) == pytest.approx([-0.05, 0.05, 0.2, 0.4])
+
+
+def test_strips_of_close_values_meet_and_those_of_a_coarse_grid_do_not():
+    close, coarse = np.linspace(0.0, 0.3, 121), np.array([0.02, 0.08, 0.14])
+    assert strips_meet(close)
+    left, right = strips(close)
+    assert [left[0], *right] == pytest.approx(cells(close))
+    assert not strips_meet(coarse)
+    left, right = strips(coarse)
+    assert (left + right) / 2 == pytest.approx(coarse)
+    assert right - left == pytest.approx([STRIP * 0.18] * 3)
+    edges, index = strip_columns(coarse)
+    assert index.tolist() == [0, -1, 1, -1, 2]
+    assert edges == pytest.approx(np.column_stack([left, right]).ravel())
 
 
 def test_only_several_panels_have_letters():

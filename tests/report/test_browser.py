@@ -1,5 +1,6 @@
 """The report in a browser, read as its readers do: with a pointer, with the keyboard, on a phone, in print."""
 
+import unicodedata
 from dataclasses import replace
 
 import netCDF4
@@ -101,8 +102,8 @@ def detail(page):
 
 def check_number(text, value, error):
     """Hold a number with its error against the file: it is rounded to a tenth of its error, and no coarser."""
-    number, _, power = text.replace("−", "-").replace("∞", "inf").lstrip("(").partition(")e")
-    parts = [float(part) * 10.0 ** int(power or 0) for part in number.split(" ± ")]
+    number, _, power = unicodedata.normalize("NFKC", text).replace("−", "-").replace("∞", "inf").partition(" × 10")
+    parts = [float(part) * 10.0 ** int(power or 0) for part in number.strip("()").split(" ± ")]
     if len(parts) == 1 or not error > 0.0:
         assert parts[0] == value
         return
@@ -124,7 +125,7 @@ def check_run(page, results, law, initial, a):
     lines = shown["Lyapunov exponents"].splitlines()
     for line, value, spread in zip(lines, exponents, errors, strict=True):
         check_number(line.split(" = ")[1], value, spread)
-    assert shown["Run"] == f"{law} law, initial state {initial}, a = {a!r}"
+    assert unicodedata.normalize("NFKC", shown["Run"]) == f"{law} law, initial state {initial}, a = {a!r}"
     assert page.locator("#run-snakemake").inner_text() == (
         f"snakemake -c1 --force results/tiny/{path} --configfile study.yaml"
     )
@@ -220,7 +221,7 @@ def test_the_report_of_a_study(browser, reported):
         "The paper's claims, tested",
         "Mean distance ⟨J⟩",
         "Bifurcation diagrams",
-        "Verdicts on the paper",
+        "Verdicts on all statements",
     ]
 
     # A run by pointer, by arrow keys, by the buttons and by the lists.

@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from burridge_knopoff.report.numbers import embedded_json, format_measured, json_number
+from burridge_knopoff.report.numbers import embedded_json, format_measured, json_number, with_powers_of_ten
 from burridge_knopoff.report.prose import prose
 
 
@@ -24,7 +24,7 @@ def test_json_cannot_end_its_element():
 
 def test_prose_adds_subscripts_and_code_to_escaped_text():
     assert prose("U_1(0) of `one_sided`, one_sided & a_digits, μ_x, <b>") == (
-        "<i>U</i><sub>1</sub>(0) of <code>one_sided</code>, one_sided &amp; a_digits, <i>μ</i><sub>x</sub>, &lt;b&gt;"
+        "<i>U</i><sub>1</sub>(0) of <code>one_sided</code>, one-sided &amp; a_digits, <i>μ</i><sub>x</sub>, &lt;b&gt;"
     )
 
 
@@ -35,6 +35,8 @@ def test_prose_adds_subscripts_and_code_to_escaped_text():
         ("from a block, for 0 < a < 0.1 and each a", "from a block, for 0 < <i>a</i> < 0.1 and each <i>a</i>"),
         ("⟨J⟩ against a, W' at W = 0", "⟨<i>J</i>⟩ against <i>a</i>, <i>W</i>′ at <i>W</i> = 0"),
         ("as a^2.11 at a fixed v", "as <i>a</i><sup>2.11</sup> at a fixed <i>v</i>"),
+        ("U_i' − vτ, Φ = 1 − aU'", "<i>U</i><sub><i>i</i></sub>′ − <i>vτ</i>, Φ = 1 − <i>aU</i>′"),
+        ("A block, amplitude A, <J> for a between", "A block, amplitude <i>A</i>, ⟨<i>J</i>⟩ for <i>a</i> between"),
     ],
 )
 def test_prose_distinguishes_symbols_from_words(sentence, html):
@@ -43,7 +45,21 @@ def test_prose_distinguishes_symbols_from_words(sentence, html):
 
 @pytest.mark.parametrize(
     ("value", "error", "shown"),
-    [(9.155614e-15, None, "9e−15"), (0.0, None, "0"), (0.0869729046661, 2e-13, "0.0869729046661 ± 2.0e−13")],
+    [
+        (9.155614e-15, None, "9 × 10⁻¹⁵"),
+        (1e-6, None, "10⁻⁶"),
+        (0.0, None, "0"),
+        (0.741935, None, "0.7419"),
+        (12345.0, None, "12345"),
+        (-np.inf, None, "−∞"),
+        (0.0869729046661, 2e-13, "0.0869729046661 ± 2.0 × 10⁻¹³"),
+        (9.2e-15, 9.2e-15, "(9.2 ± 9.2) × 10⁻¹⁵"),
+    ],
 )
-def test_a_rounding_error_has_one_digit(value, error, shown):
-    assert format_measured(value, error) == shown
+def test_numbers_are_written_as_they_are_published(value, error, shown):
+    assert format_measured(value, error).replace("\N{NO-BREAK SPACE}", " ") == shown
+
+
+def test_only_numbers_of_computers_become_powers_of_ten():
+    words = with_powers_of_ten("J < 1e-06, 1.5e+05 steps, a1e5, 3e7b, (1 ± 2)e−9").replace("\N{NO-BREAK SPACE}", " ")
+    assert words == "J < 10⁻⁶, 1.5 × 10⁵ steps, a1e5, 3e7b, (1 ± 2) × 10⁻⁹"

@@ -12,7 +12,7 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.palette import KINDS
-from burridge_knopoff.figures.style import cells, label_panels, legend_below, page_width, say, show_all, styled
+from burridge_knopoff.figures.style import STRIP, cells, label_panels, legend_below, page_width, say, show_all, styled
 from burridge_knopoff.motion.kind import MotionKind
 
 TITLE = "Kinds of motion of the attractors"
@@ -79,12 +79,13 @@ def _points(panel: Axes, refined: xarray.Dataset) -> None:
 def _bars(panel: Axes, refined: xarray.Dataset, numbers: list[int]) -> None:
     """Draw each value of a as a bar, halfway to the next on the branch; where the branch ends, to the next of all.
 
-    Between values of the grid, only branches that change are searched for: the others continue.
+    Between values of the grid, only branches that change are searched for: the others continue. No bar is wider than a
+    strip, so that those of a coarse grid do not meet.
     """
     # Other laws may have more values.
     refined = refined.isel(value=refined["a"].notnull().values)
     every, edges = refined["a"].values, cells(refined["a"].values)
-    grid = every[refined["in_grid"].values == 1]
+    grid, half = every[refined["in_grid"].values == 1], 0.5 * STRIP * (edges[-1] - edges[0])
     for row, number in enumerate(numbers):
         slots = refined["branch"].values == number
         (here,) = np.nonzero(slots.any(axis=1))
@@ -92,6 +93,7 @@ def _bars(panel: Axes, refined: xarray.Dataset, numbers: list[int]) -> None:
         joined, middle = np.searchsorted(grid, a[1:]) == np.searchsorted(grid, a[:-1], "right"), 0.5 * (a[1:] + a[:-1])
         left = np.append(edges[here[:1]], np.where(joined, middle, edges[here[1:]]))
         right = np.append(np.where(joined, middle, edges[here[:-1] + 1]), edges[here[-1:] + 1])
+        left, right = np.maximum(left, a - half), np.minimum(right, a + half)
         colors = [KINDS[int(item)] for item in kind]
         panel.barh(
             np.full(len(a), row),

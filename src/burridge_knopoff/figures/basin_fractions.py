@@ -17,6 +17,7 @@ from burridge_knopoff.figures.style import (
     page_width,
     say,
     say_nothing,
+    strips_meet,
     styled,
 )
 
@@ -25,9 +26,9 @@ CATEGORY = "Attractors"
 INPUTS = ("attractors",)
 CAPTION = """\
 Top: the fraction of sampled initial states that reach each branch of attractors, versus a, with 95 % Wilson intervals
-(bands). Branches with small basins are counted together (grey). Crosses show the fraction of undetermined states.
-Bottom: ⟨J⟩ of the attractor followed while a is raised (black) or lowered (open) in small steps; where they differ,
-there is hysteresis.
+(bands or bars). Branches with small basins are counted together (grey). Crosses show the fraction of undetermined
+states. Bottom: ⟨J⟩ of the attractor followed while a is raised (black) or lowered (open) in small steps; where they
+differ, there is hysteresis.
 """
 
 
@@ -65,8 +66,8 @@ def _fractions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) 
         return
     for name, color, interval in fraction_curves(attractors, colors):
         there = np.isfinite(interval[:, 0])
-        # The other branches are not one: neither a line nor a band joins them.
-        line, is_one = ("o", False) if name == OTHERS else ("-o", True)
+        # Neither a line nor a band joins the other branches, which are not one, or the values of a coarse grid.
+        line, is_one = ("o", False) if name == OTHERS or not strips_meet(a) else ("-o", True)
         panel.plot(a, interval[:, 0], line, markersize=1.6, linewidth=0.8, color=color, label=name)
         if is_one:
             panel.fill_between(a, interval[:, 1], interval[:, 2], color=color, alpha=0.2, linewidth=0)

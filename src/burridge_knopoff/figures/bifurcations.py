@@ -32,11 +32,9 @@ CATEGORY = "Attractors"
 INPUTS = ("attractors", "bifurcations")
 CAPTION = """\
 Top: ⟨J⟩ of periodic orbits versus a for each law, in the colour of their branch of attractors: solid where stable,
-dashed where unstable and continued a little beyond a bifurcation. Pale points: all attractors. Middle: the ends and
+dashed where unstable and continued a little beyond a bifurcation. Pale points: all attractors. Below: the ends and
 changes of branches, a row for each type, in the colour of the branch that begins, ends or changes. Crises and
-undetermined changes are only known to lie in a range of a, the width of the bar. Bottom, if the study covers it: the
-route from period one to chaos, enlarged, with the symbol of its type at each bifurcation. Numbers next to an orbit are
-the stops of each block in a period.
+undetermined changes are only known to lie in a range of a, the width of the bar.
 """
 
 MARK: Any = {"color": "black", "markersize": 3.6, "markerfacecolor": "white", "markeredgewidth": 0.7}
@@ -75,17 +73,16 @@ def draw(attractors: xarray.Dataset, bifurcations: xarray.Dataset) -> Figure:
             _marks(panel, bifurcations, laws[number])
             _stops(panel, bifurcations, laws[number])
             panel.set(xlim=ROUTE[0], ylim=ROUTE[1])
-            words = "numbers: stops of each\nblock in a period"
+            words = "symbols: bifurcations\nnumbers: stops of each\nblock in a period"
             panel.text(0.03, 0.96, words, va="top", fontsize=7.5, transform=panel.transAxes)
         for panel in column[1:]:
             panel.set_xlabel("$a$")
     for panel in (panels[0, 0], *panels[2:, 0]):
         panel.set_ylabel(r"$\langle J\rangle$")
-    figure.align_ylabels()
-    _legend(figure, bifurcations, colors, branch_names(attractors))
-    label_panels(
-        panels.flat, [f"{law} law{end}" for end in ("", ": bifurcations", ": route to chaos")[:rows] for law in laws]
-    )
+    figure.align_ylabels(panels[::2, 0])
+    _legend(figure, attractors, bifurcations, colors)
+    contents = ("", ": bifurcations", ": route from period one to chaos")
+    label_panels(panels.flat, [f"{law} law{content}" for content in contents[:rows] for law in laws])
     return figure
 
 
@@ -170,8 +167,9 @@ def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
         panel.annotate(stops, (a[middle], mean[middle]), (6, -9), textcoords="offset points", ha="left", fontsize=7.5)
 
 
-def _legend(figure: Figure, bifurcations: xarray.Dataset, colors: dict[int, str], names: dict[int, str]) -> None:
-    drawn = {int(number): colors.get(int(number), OTHER_BRANCHES) for number in bifurcations["orbit_branch"].values}
+def _legend(figure: Figure, attractors: xarray.Dataset, bifurcations: xarray.Dataset, colors: dict[int, str]) -> None:
+    numbers = np.unique([*attractors["branch"].values.ravel(), *bifurcations["orbit_branch"].values])
+    drawn = {number: colors.get(number, OTHER_BRANCHES) for number in numbers[numbers >= 0].tolist()}
     stable = bifurcations["orbit_stable"].values
     orbits: Any = [(1, 1.3, "-", "stable orbits"), (0, 0.7, "--", "unstable orbits")]
     handles = [
@@ -180,6 +178,9 @@ def _legend(figure: Figure, bifurcations: xarray.Dataset, colors: dict[int, str]
             for number, width, line, name in orbits
             if number in stable
         ),
-        *(Line2D([], [], color=color, linewidth=1.3, label=name) for name, color in named_colors(drawn, names).items()),
+        *(
+            Line2D([], [], color=color, linewidth=1.3, label=name)
+            for name, color in named_colors(drawn, branch_names(attractors)).items()
+        ),
     ]
     legend_below(figure, handles)

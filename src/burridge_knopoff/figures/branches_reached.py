@@ -16,9 +16,9 @@ bars of three standard errors). A branch has the same number (in brackets) and c
 small basins are grey. A run may end before it reaches its attractor. Dotted: a_c, at which the synchronized orbit
 changes its stability. At a = 0 the paper's laws are constant, and there is no attractor: ⟨J⟩ depends on the initial
 state. Bottom: the branch reached from each initial state, with a row for each state and convention; white where it is
-undetermined. A state from which a run reaches a motion that does not attract is perturbed. Contact one-sided: a stuck
-block holds against any backward pull; symmetric: it slips backward beyond its static friction. Start moving: all blocks
-slip at τ = 0; tested: blocks that friction can hold are stuck.
+undetermined, and between the values of a coarse grid. A state from which a run reaches a motion that does not attract
+is perturbed. Contact one-sided: a stuck block holds against any backward pull; symmetric: it slips backward beyond its
+static friction. Start moving: all blocks slip at τ = 0; tested: blocks that friction can hold are stuck.
 """
 
 

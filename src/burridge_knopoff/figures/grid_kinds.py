@@ -11,7 +11,7 @@ from matplotlib.patches import Patch
 
 from burridge_knopoff.figures.over_parameters import draw_panels
 from burridge_knopoff.figures.palette import KINDS
-from burridge_knopoff.figures.style import cells, legend_below, styled
+from burridge_knopoff.figures.style import draw_strips, legend_below, styled
 from burridge_knopoff.motion.kind import MotionKind
 
 TITLE = "Kinds of motion over the parameters"
@@ -45,5 +45,5 @@ def _colors(one: xarray.Dataset) -> np.ndarray:
 
 
 def _strip(panel: Axes, values: np.ndarray, one: xarray.Dataset) -> None:
-    panel.pcolormesh(cells(values), [0.0, 1.0], _colors(one)[None], rasterized=True)
+    draw_strips(panel, values, _colors(one)[None])
     panel.set_yticks([])

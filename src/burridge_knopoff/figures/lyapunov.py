@@ -10,13 +10,13 @@ from matplotlib.ticker import NullLocator
 
 from burridge_knopoff.figures.palette import KINDS
 from burridge_knopoff.figures.style import (
-    cells,
     label_panels,
     legend_below,
     legend_entries,
     panel_table,
     say,
     show_all,
+    strips,
     styled,
 )
 from burridge_knopoff.motion.kind import MotionKind
@@ -28,7 +28,7 @@ CAPTION = """\
 The two largest Lyapunov exponents versus a, with bars of three times their error, for each law and initial state. The
 error includes the scatter of the batches and algebraic growth of perturbations. Values below the frame, including −∞,
 are not shown. The strip at the top of each panel shows the kind of motion: from the exponents and section points of the
-run or, where these do not decide, from the attractor that the run has reached. White: undetermined.
+run or, where these do not decide, from the attractor that the run has reached. White inside a frame: undetermined.
 """
 
 # The frame reaches down at least this far, so that exponents near 0 look near 0.
@@ -48,7 +48,8 @@ def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
     figure, table = panel_table(2.1, len(states), "$a$", ["Lyapunov exponents" for _ in laws])
     panels = list(table.flat)
     a = lyapunov["a"].values
-    edges = cells(a)
+    left, right = strips(a)
+    gap = left[1:] > right[:-1]
     low, high = frame(lyapunov)
     titles = []
     for number, panel in enumerate(panels):
@@ -76,9 +77,10 @@ def draw(lyapunov: xarray.Dataset, agreement: xarray.Dataset) -> Figure:
             say(panel, "no exponents were computed")
         panel.set_ylim(low, low + (high - low) / CURVES)
         kinds = agreement["kind"].sel(law=run["law"], initial=run["initial"]).values
-        for left, right, kind in zip(edges[:-1], edges[1:], kinds, strict=True):
-            panel.axvspan(left, right, STRIP, 1.0, color=KINDS[int(kind)], linewidth=0)
-        panel.axvspan(edges[0], edges[-1], STRIP, 1.0, facecolor="none", edgecolor="black", linewidth=0.5)
+        for first, last, kind in zip(left, right, kinds, strict=True):
+            panel.axvspan(first, last, STRIP, 1.0, color=KINDS[int(kind)], linewidth=0)
+        for first, last in zip(left[np.append(True, gap)], right[np.append(gap, True)], strict=True):
+            panel.axvspan(first, last, STRIP, 1.0, facecolor="none", edgecolor="black", linewidth=0.5)
         if number % len(states) == 0:
             panel.text(
                 -0.01, 0.5 * (STRIP + 1.0), "kind", ha="right", va="center", transform=panel.transAxes, fontsize=7

@@ -15,7 +15,7 @@ from burridge_knopoff.figures.branches import branch_colors, named_colors
 from burridge_knopoff.figures.palette import state_symbol
 from burridge_knopoff.figures.style import (
     begin_at_zero,
-    cells,
+    draw_strips,
     label_panels,
     legend_below,
     page_width,
@@ -126,11 +126,10 @@ def _label_start(panel: Axes, runs: xarray.Dataset, attractors: xarray.Dataset) 
 
 def _conventions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:
     names, reached = branches_reached(attractors)
-    edges = cells(attractors["a"].values)
     picture = np.ones((*reached.shape, 3))
     for branch, color in colors.items():
         picture[reached == branch] = to_rgb(color)
-    panel.pcolormesh(edges, np.arange(len(names) + 1), picture, rasterized=True)
+    draw_strips(panel, attractors["a"].values, picture)
     panel.set_yticks(np.arange(len(names)) + 0.5, names, fontsize=6.5)
     panel.tick_params(axis="y", length=0)
     panel.set_ylim(len(names), 0)

@@ -15,7 +15,7 @@ from burridge_knopoff.figures.palette import law_symbol
 from burridge_knopoff.figures.style import (
     PAGE,
     SHADE,
-    cells,
+    draw_strips,
     label_panels,
     legend_below,
     legend_entries,
@@ -59,6 +59,9 @@ def draw(two_blocks: xarray.Dataset) -> Figure:
     for n, chain in enumerate(CHAINS):
         for handle in draw_panels(panels[2 * n], panels[2 * n + 1], two_blocks.sel(chain=chain)):
             entries.setdefault(handle.get_label(), handle)
+    # The panels share the axis of a.
+    for panel in panels[:-1]:
+        panel.set_xlabel("")
     legend_below(figure, list(entries.values()))
     below = "initial states for which the laws disagree"
     label_panels(panels, [title for chain in CHAINS for title in (TITLES[chain], below)])
@@ -86,7 +89,7 @@ def draw_panels(upper: Axes, lower: Axes, two_blocks: xarray.Dataset) -> list[Ar
         picture[there] = to_rgb(shade)
         if there.any():
             handles.append(Patch(facecolor=shade, edgecolor="0.6", label=words))
-    lower.pcolormesh(cells(a), np.arange(states + 1) + 0.5, picture, rasterized=True)
+    draw_strips(lower, a, picture, bottom=0.5)
     lower.set(xlabel="$a$", ylabel="initial state", ylim=(states + 0.5, 0.5))
     lower.set_yticks(np.arange(1, states + 1), map(str, range(1, states + 1)), fontsize=6.5)
     lower.tick_params(axis="y", length=0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from typing import Any
 
 from markupsafe import Markup
@@ -12,6 +13,13 @@ from burridge_knopoff.study.formatting import text, with_error
 
 #: A number below this, without an error, is one of the order of rounding errors.
 ROUNDING = 1e-9
+
+#: Significant digits of a measured number without an error.
+DIGITS = 4
+
+# A number in the notation of computers; the factor 1 is left out.
+_EXPONENT = re.compile(r"(?<![\w.])(?:1(?=e)|(\d[\d.]*|\([^()]*\)))e([-−+]?)0*(\d+)(?!\w)")
+_SUPERSCRIPTS = str.maketrans("-−0123456789", "⁻⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def json_number(value: float) -> float | str | None:
@@ -33,8 +41,18 @@ def embedded_json(data: Any) -> Markup:
     return Markup(plain)
 
 
-def format_measured(value: Any, error: Any) -> str:
-    """Format a measured number with its error, and a rounding error with one digit."""
-    if error is None and isinstance(value, float) and 0.0 < abs(value) < ROUNDING:
-        return text(float(f"{value:.0e}"))
-    return with_error(value, error)
+def with_powers_of_ten(words: str) -> str:
+    """Write numbers in words, such as 2.1e-15, with a power of ten: 2.1 × 10⁻¹⁵."""
+
+    def power(found: re.Match[str]) -> str:
+        exponent = f"10{(found[2].strip('+') + found[3]).translate(_SUPERSCRIPTS)}"
+        return f"{found[1]}\N{NO-BREAK SPACE}×\N{NO-BREAK SPACE}{exponent}" if found[1] else exponent
+
+    return _EXPONENT.sub(power, words)
+
+
+def format_measured(value: Any, error: Any = None) -> str:
+    """Format a measured number with its error; without one, with DIGITS digits, and a rounding error with one digit."""
+    if error is None and isinstance(value, float) and abs(value) < 10.0**DIGITS:
+        value = float(f"{value:.{1 if abs(value) < ROUNDING else DIGITS}g}")
+    return with_powers_of_ten(with_error(value, error))

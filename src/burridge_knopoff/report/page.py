@@ -153,6 +153,7 @@ def _over_a(
         "sliding": _from_summary(
             summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False
         ),
+        "proved": "proof" in summaries,
         "transitions": tables.transition_table(summaries["orbits"]),
         "maps": _from_summary(summaries, "basins", tables.map_table, []),
         "agreement": digest(summaries["agreement"]).splitlines(),

@@ -12,9 +12,8 @@ import xarray
 
 from burridge_knopoff.motion.kind import Motion, MotionKind, format_motion
 from burridge_knopoff.motion.settings import MotionSettings
-from burridge_knopoff.report.numbers import json_number
+from burridge_knopoff.report.numbers import format_measured, json_number
 from burridge_knopoff.running.status import STATUS_WORDS, Status
-from burridge_knopoff.study.formatting import with_error
 from burridge_knopoff.study.paths import POINT
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.equilibrium import SLIDING, is_sliding_attracting
@@ -99,7 +98,7 @@ def _kind_texts(study: Study, agreement: xarray.Dataset, lyapunov: xarray.Datase
 def _format_errors(values: np.ndarray, errors: np.ndarray) -> Any:
     """Return values with their errors as text, in nested lists."""
     return (
-        np.array([with_error(*pair) for pair in zip(values.flat, errors.flat, strict=True)], dtype=object)
+        np.array([format_measured(*pair) for pair in zip(values.flat, errors.flat, strict=True)], dtype=object)
         .reshape(values.shape)
         .tolist()
     )

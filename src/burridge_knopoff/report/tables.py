@@ -9,7 +9,8 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
-from burridge_knopoff.study.formatting import span, text, with_error
+from burridge_knopoff.report.numbers import ROUNDING, format_measured, with_powers_of_ten
+from burridge_knopoff.study.formatting import span, text
 from burridge_knopoff.summaries.branch_rows import branch_rows
 from burridge_knopoff.summaries.map_rows import map_rows
 from burridge_knopoff.summaries.orbit_flags import BifurcationSide, OrbitStatus
@@ -23,7 +24,7 @@ def branch_table(attractors: xarray.Dataset) -> list[dict[str, str]]:
             "branch": row.name,
             "range": span(text(row.a[0]), text(row.a[-1])),
             "values": f"{len(row.a)} of {row.of}",
-            "distance": span(*(f"{value:.4f}" for value in row.distance)),
+            "distance": span(*("0" if value < ROUNDING else f"{value:.4f}" for value in row.distance)),
             "kinds": row.kinds,
             "fraction": f"{row.fraction[0]:.3f} (a = {text(row.fraction[1])})" if row.fraction else "–",
         }
@@ -42,7 +43,7 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
         for law in laws:
             one = orbits.sel(law=law)
             number = one[value].item()
-            cells.append(with_error(number, one[error].item()) if error else _rounded(number, digits))
+            cells.append(format_measured(number, one[error].item()) if error else _rounded(number, digits))
         return {"name": name, "cells": cells}
 
     kinds = [_meaning(BifurcationKind(orbits.sel(law=law)["bifurcation_kind"].item())) for law in laws]
@@ -60,13 +61,13 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
             row("exponent of |x_1 − x_3| against a − a_c", "amplitude_exponent", "amplitude_exponent_error"),
             row("coefficient of this power law", "amplitude_coefficient"),
             # Of the order of rounding errors if there is no hysteresis.
-            row("largest difference of |x_1 − x_3| between rising and falling a", "hysteresis", digits=2),
+            row("largest difference of |x_1 − x_3| between rising and falling a", "hysteresis", digits=1),
         ],
     }
 
 
 def _rounded(value: float, digits: int) -> str:
-    return text(value) if not np.isfinite(value) else f"{value:.{digits}g}".replace("-", "−")
+    return text(value) if not np.isfinite(value) else with_powers_of_ten(f"{value:.{digits}g}".replace("-", "−"))
 
 
 def _meaning(item: IntEnum) -> str:
@@ -79,7 +80,7 @@ def map_table(basins: xarray.Dataset) -> list[dict[str, str]]:
         {
             "law": row.law,
             "a": text(row.a),
-            "exponent": with_error(*row.exponent),
+            "exponent": format_measured(*row.exponent),
             "undetermined": f"{row.undetermined} of {row.states}"
             + (
                 f", {row.symmetric_count} of them on the line of mirror-symmetric states, which has no area"

@@ -43,11 +43,13 @@ def test_a_bifurcation_diagram_tells_every_count():
     counts[[3, 200, 201], [0, 0, 1]] = -1, 3, 7
     (cells,) = sections(np.array([0.1, 0.2]), np.linspace(-1.0, 1.0, BINS + 1), counts).data
     filled = np.isfinite(cells.z)
-    assert (filled == (counts != 0)).all()
+    # The strips of two values of a have a gap between them.
+    assert (filled[:, ::2] == (counts != 0)).all()
+    assert not filled[:, 1].any()
     assert (cells.z[filled] > 0.0).all()
     assert cells.text[filled].tolist() == [
-        "1 of 4 crossings, downward",
-        "3 of 4 crossings, upward",
-        "7 of 7 crossings, upward",
+        "a = 0.1<br>1 of 4 crossings, downward",
+        "a = 0.1<br>3 of 4 crossings, upward",
+        "a = 0.2<br>7 of 7 crossings, upward",
     ]
-    assert cells.z[201, 1] == cells.zmax
+    assert cells.z[201, 2] == cells.zmax

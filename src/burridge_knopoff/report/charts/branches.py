@@ -13,7 +13,7 @@ from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.charts.legend import Entry
 from burridge_knopoff.report.charts.look import SYMBOLS, a_axis, axis, bars, chart, scatter
 from burridge_knopoff.report.charts.theme import INK
-from burridge_knopoff.study.formatting import with_error
+from burridge_knopoff.report.numbers import format_measured
 
 # Of the branches that have a colour of their own; all others share one.
 _SHAPES = (
@@ -69,7 +69,7 @@ def distance(
         run = runs.sel(initial=name)
         mean, error = run["mean_distance"].values, run["mean_distance_error"].values
         words = [MotionKind(one).words for one in kind.sel(initial=name).values]
-        shown = [with_error(*pair) for pair in zip(mean.tolist(), error.tolist(), strict=True)]
+        shown = [format_measured(*pair) for pair in zip(mean.tolist(), error.tolist(), strict=True)]
         traces.append(
             scatter(
                 a,
@@ -112,15 +112,19 @@ def attractor_marks(attractors: xarray.Dataset, branches: Branches) -> list[go.S
         there = np.isin(numbers, [number for number in branches.colors if branches.group(number) == group])
         if not there.any():
             continue
-        pairs = zip(numbers[there].tolist(), kinds[there].tolist(), strict=True)
+        found = zip(numbers[there].tolist(), kinds[there].tolist(), mean[there].tolist(), strict=True)
         traces.append(
             scatter(
                 a[there],
                 mean[there],
                 color,
-                "attractor: %{text}<br>a = %{x}<br>⟨J⟩ = %{y:.5g}",
+                "attractor: %{customdata[0]}<br>a = %{x}<br>⟨J⟩ = %{customdata[1]}",
                 mode="markers",
-                text=[f"{branches.names[number]}, {MotionKind(kind).words}" for number, kind in pairs],
+                # The name of the synchronized branch is its kind of motion.
+                customdata=[
+                    [", ".join(dict.fromkeys((branches.names[number], MotionKind(kind).words))), format_measured(value)]
+                    for number, kind, value in found
+                ],
                 marker={"symbol": branches.shape(group), "size": 8, "opacity": 0.6},
             )
         )

@@ -7,12 +7,12 @@ import plotly.graph_objects as go
 import xarray
 
 from burridge_knopoff.figures.palette import KINDS
-from burridge_knopoff.figures.style import cells
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.charts.legend import Entry
-from burridge_knopoff.report.charts.look import a_axis, axis, bars, chart, scatter, steps
+from burridge_knopoff.report.charts.look import a_axis, axis, bars, chart, scatter, steps, strip_map
 from burridge_knopoff.report.charts.theme import GREYS, INK, fixed
-from burridge_knopoff.study.formatting import text, with_error
+from burridge_knopoff.report.numbers import format_measured
+from burridge_knopoff.study.formatting import text
 
 _NAMES = ("λ₁", "λ₂")
 
@@ -42,18 +42,18 @@ def exponents(run: xarray.Dataset, kinds: np.ndarray, frame: tuple[float, float]
                 grey,
                 f"a = %{{x}}<br>{name} = %{{text}}",
                 mode="markers",
-                text=[with_error(*pair) for pair in zip(value.tolist(), error.tolist(), strict=True)],
+                text=[format_measured(*pair) for pair in zip(value.tolist(), error.tolist(), strict=True)],
                 error_y=bars(3.0 * error, grey),
                 marker_size=4,
             )
         )
     words = [f"a = {text(value)}: {MotionKind(kind).words}" for value, kind in zip(a, kinds, strict=True)]
-    strip = go.Heatmap(
-        x=cells(a),
+    strip = strip_map(
+        a,
+        np.array([[order.index(kind) for kind in kinds]]),
+        np.array([words]),
         y=[0, 1],
         yaxis="y2",
-        z=[[order.index(kind) for kind in kinds]],
-        text=[words],
         hovertemplate="%{text}<extra></extra>",
         **steps([fixed(color) for color in KINDS.values()]),
     )

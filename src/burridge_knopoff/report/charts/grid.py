@@ -13,7 +13,8 @@ from burridge_knopoff.figures.style import cells
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.report.charts.look import axis, chart
 from burridge_knopoff.report.charts.theme import SCALE
-from burridge_knopoff.study.formatting import text, with_error
+from burridge_knopoff.report.numbers import format_measured
+from burridge_knopoff.study.formatting import text
 
 
 def maps(grid: xarray.Dataset) -> list[tuple[str, go.Figure]]:
@@ -39,11 +40,11 @@ def _map(one: xarray.Dataset, varied: list[str], highest: float) -> go.Figure:
     words = np.full(values.shape, "the run did not complete", dtype=object)
     for place in zip(*np.nonzero(np.isfinite(values)), strict=True):
         run = one.isel(dict(zip((varied[1], varied[0]), place, strict=True)))
-        told = [f"⟨J⟩ = {with_error(run['mean_distance'].item(), run['mean_distance_error'].item())}"]
+        told = [f"⟨J⟩ = {format_measured(run['mean_distance'].item(), run['mean_distance_error'].item())}"]
         told.append(MotionKind(run["run_kind"].item()).words)
         if run["lyapunov_exponent"].size:
             first, error = (run[name].values[0].item() for name in ("lyapunov_exponent", "lyapunov_error"))
-            told.append(f"λ₁ = {with_error(first, error)}")
+            told.append(f"λ₁ = {format_measured(first, error)}")
         words[place] = "<br>".join(told)
     x, y = (one[name].values for name in varied[:2])
     names = [f"<i>{name}</i>" if len(name) == 1 else name for name in varied[:2]]

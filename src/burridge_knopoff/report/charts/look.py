@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import plotly.graph_objects as go
 
-from burridge_knopoff.figures.style import cells
+from burridge_knopoff.figures.style import strip_columns, strip_range
 from burridge_knopoff.report.charts.theme import FONT, INK, dark_colors
 
 #: Plotly's names of matplotlib's markers.
@@ -56,7 +56,7 @@ _TEMPLATE = go.layout.Template(
         },
         "modebar": {"bgcolor": "rgba(0,0,0,0)", "color": INK["muted"], "activecolor": INK["text"]},
         "xaxis": _AXIS,
-        "yaxis": _AXIS,
+        "yaxis": {**_AXIS, "automargin": True},
     }
 )
 
@@ -84,9 +84,17 @@ def axis(title: str, **more: Any) -> dict[str, Any]:
 
 def a_axis(a: np.ndarray, **more: Any) -> dict[str, Any]:
     """Return the axis of a, with room for what is drawn at the first and at the last value."""
-    first, last = cells(a)[[0, -1]]
-    margin = 0.02 * (last - first)
-    return axis("<i>a</i>", range=[first - margin, last + margin], **{"nticks": 8, **more})
+    return axis("<i>a</i>", range=list(strip_range(a)), **{"nticks": 8, **more})
+
+
+def strip_map(a: np.ndarray, values: np.ndarray, words: np.ndarray, **more: Any) -> go.Heatmap:
+    """Return a heat map with a strip for each a, and gaps between the strips of a coarse grid.
+
+    values, words : numbers, and what they say under the pointer, of shape (row, a)
+    """
+    edges, index = strip_columns(a)
+    numbers = np.where(index < 0, np.nan, np.asarray(values, dtype="f4")[:, index])
+    return go.Heatmap(x=edges, z=numbers, text=np.asarray(words)[:, index], hoverongaps=False, **more)
 
 
 def steps(colors: Sequence[str]) -> dict[str, Any]:

@@ -6,8 +6,9 @@ import numpy as np
 import plotly.graph_objects as go
 import xarray
 
-from burridge_knopoff.report.charts.look import a_axis, axis, chart
+from burridge_knopoff.report.charts.look import a_axis, axis, chart, strip_map
 from burridge_knopoff.report.charts.theme import INK
+from burridge_knopoff.study.formatting import text
 from burridge_knopoff.summaries.bifurcation_diagram import ROUNDING
 
 #: So few that each takes a line of pixels.
@@ -57,19 +58,19 @@ def sections(a: np.ndarray, edges: np.ndarray, counts: np.ndarray) -> go.Figure:
         shade = np.clip(DECADES + np.log10(number / totals), 1e-3, None)
     words = np.full(counts.shape, "", dtype=object)
     for n, k in zip(*np.nonzero(counts), strict=True):
-        words[n, k] = f"{number[n, k]} of {totals[k]} crossings, {'upward' if counts[n, k] > 0 else 'downward'}"
+        side = "upward" if counts[n, k] > 0 else "downward"
+        words[n, k] = f"a = {text(a[k])}<br>{number[n, k]} of {totals[k]} crossings, {side}"
     ink = INK["text"]
-    trace = go.Heatmap(
-        x=a,
+    trace = strip_map(
+        a,
+        np.where(counts, shade, np.nan),
+        words,
         y=0.5 * (edges[1:] + edges[:-1]),
-        z=np.where(counts, shade, np.nan).astype("f4"),
-        text=words,
         zmin=0.0,
         zmax=DECADES,
         colorscale=[[0, f"{ink}59"], [0.5, ink], [1, ink]],
         showscale=False,
-        hoverongaps=False,
-        hovertemplate="a = %{x}<br>W′ = %{y:.4f}<br>%{text}<extra></extra>",
+        hovertemplate="W′ = %{y:.4f}<br>%{text}<extra></extra>",
     )
     margin = 8 * (edges[1] - edges[0])
     yaxis = axis("<i>W</i>′ at <i>W</i> = 0", range=[edges[0] - margin, edges[-1] + margin])

@@ -1,7 +1,7 @@
 // The blocks of the picked run, drawn from its trajectory: a chain pulled by the driver, which is at rest in the picture.
 const trajectories = data.trajectories;
 // Sizes in the units of the drawing; time units of the run per second.
-const SPACING = 180, BLOCK = 62, TOP = 14, GROUND = 150, SPEED = 3;
+const SPACING = 180, BLOCK = 62, TOP = 38, GROUND = 174, SPEED = 3;
 const moving = {
   blocks: null, frames: 0, moment: 0, playing: false, request: 0, last: 0, visible: false,
   wanted: !window.matchMedia("(prefers-reduced-motion: reduce)").matches,
@@ -69,8 +69,9 @@ function makeBlocks() {
   byId("blocks").style.minWidth = `${4 * count}rem`;
   moving.anchors = Array.from({ length: count }, (none, n) => SPACING * (n + 0.75) + 20);
   svg("path", { d: `M10 ${TOP}H${width - 10}`, class: "driver" });
-  svg("path", { d: `M${width - 52} ${TOP + 14}h34m-8 -5l8 5l-8 5`, class: "line" });
-  svg("text", { x: width - 62, y: TOP + 19, class: "velocity" }).textContent = "v";
+  // Above the driver, where no spring can reach.
+  svg("path", { d: `M${width - 52} ${TOP - 20}h40m-8 -5l8 5l-8 5`, class: "line" });
+  svg("text", { x: width - 64, y: TOP - 14, class: "velocity" }).textContent = "v";
   svg("path", { d: `M10 ${GROUND}H${width - 10}`, class: "line" });
   moving.ground = svg("path", { d: `M10 ${GROUND + 7}H${width - 10}`, class: "ground" });
   moving.pulling = moving.anchors.map(() => svg("path", { class: "spring pulling" }));
@@ -103,7 +104,7 @@ function drawBlocks() {
       moving.coupling[n - 1].setAttribute("d", spring(x[n - 1] + BLOCK / 2, middle, center - BLOCK / 2, middle));
   });
   byId("moment").value = moving.moment;
-  byId("moment-text").textContent = `${moving.moment.toFixed(1)} of ${(moving.frames * trajectories.interval).toFixed(1)}`;
+  byId("moment-text").textContent = `${moving.moment.toFixed(1)} of ${(moving.frames * trajectories.interval).toFixed(1)} time units`;
 }
 
 /** Play or pause: blocks move if they are in the window and the reader wants it. */

@@ -22,11 +22,11 @@ function rowsOf({ law, initial, a }) {
   const at = (name) => runs[name][law][initial][a];
   const exponents = at("exponent_texts").map((text, n) => `λ${subscript(n + 1)} = ${text}`);
   return [
-    ["Run", element("span", {}, `${runs.laws[law]} law, initial state ${runs.initial[initial]}, `, element("i", {}, "a"), ` = ${runs.texts[a]}`)],
+    ["Run", element("span", {}, `${runs.laws[law]} law, initial state ${runs.initial[initial]}, `, element("i", {}, "a"), `\u00a0=\u00a0${runs.texts[a]}`)],
     [element("span", {}, "⟨", element("i", {}, "J"), "⟩"), at("mean_distance_text")],
     ["Status", runs.statuses[at("status")].replaceAll("_", " ")],
     ["Kind of motion", at("kind_text")],
-    ["Lyapunov exponents", exponents.length ? element("ul", {}, ...exponents.map((text) => element("li", {}, text))) : "none computed"],
+    ["Lyapunov exponents", exponents.length ? element("ul", { class: "values" }, ...exponents.map((text) => element("li", {}, text))) : "none computed"],
     ...comparedRows({ law, initial, a }),
     ["File", element("a", { href: commandsOf({ law, initial, a }).path, id: "run-file" }, commandsOf({ law, initial, a }).path)],
   ];
