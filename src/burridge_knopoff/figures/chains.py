@@ -75,7 +75,8 @@ def _draw_fraction(panel: Axes, chain: xarray.Dataset) -> None:
         panel.errorbar(shifted, fraction, np.maximum(bars, 0.0), label=f"synchronized{name}", **line, **look)
         unknown = run["undetermined_fraction"].values
         places, totals = shifted[unknown > 0.0], (fraction + unknown)[unknown > 0.0]
-        panel.plot(places, totals, "o", markersize=2.8, fillstyle="none", label=f"synchronized or undetermined{name}", **look)
+        either = f"synchronized or undetermined{name}"
+        panel.plot(places, totals, "o", markersize=2.8, fillstyle="none", label=either, **look)
         below = run["symmetric_exponent"] + STANDARD_ERRORS * run["symmetric_error"] < 0.0
         stable = a[below.any("symmetric_state").values]
         height = np.full(len(stable), 1.1 + 0.05 * index)
