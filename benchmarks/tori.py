@@ -2,8 +2,8 @@
 
     python benchmarks/tori.py results/paper
 
-A torus that proves to be chaos, and chaos that proves to be regular, would have another kind in the study's files if the
-search used such windows. A torus that attracts in both of its directions is locked to a periodic orbit; its period, by
+A torus that proves to be chaos, and chaos that proves to be regular, would have another kind in the study's files if
+the search used such windows. A torus whose second exponent is negative is locked to a periodic orbit; its period, after
 which it repeats to 1e-6, should exceed `motion.longest_period`. All tori and chaotic attractors of the grid are tested,
 and every eighth at the values of a between: the thresholds of the search were chosen without these.
 """
