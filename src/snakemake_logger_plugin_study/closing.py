@@ -88,7 +88,7 @@ def _verdicts(path: Path) -> list[str]:
     counts = ", ".join(f"{verdict} {count}" for verdict, count in independent.items())
     lines = [f"{sum(independent.values())} independent claims of the paper: {counts} ({ledger})"]
     for verdict in (FAILS, CONVENTION, READING):
-        names = [claim["name"] for claim in read["claims"] if claim["verdict"] == verdict]
+        names = [each["name"] for each in read["claims"] if each["verdict"] == verdict and not each["depends_on"]]
         more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
         lines += [f"  {verdict}: {', '.join(names[:MOST_NAMES])}{more}"] if names else []
     return lines

@@ -36,11 +36,14 @@ def write(claims, statuses, kinds):
 def summaries(tmp_path, monkeypatch):
     """Summaries below the current folder."""
     monkeypatch.chdir(tmp_path)
-    verdicts = dict.fromkeys((f"claim_{n}" for n in range(10)), "fails")
+    verdicts = dict.fromkeys((f"claim_{n}" for n in range(12)), "fails")
     verdicts |= {"plus": "depends on convention", "x": "holds"}
-    counts = {"holds": 1, "holds loosely": 0, "depends on convention": 1, "fails": 10, "not testable": 0}
-    independent = {**counts, "fails": 4}
-    claims = [{"name": name, "verdict": verdict} for name, verdict in verdicts.items()]
+    counts = {"holds": 1, "holds loosely": 0, "depends on convention": 1, "fails": 12, "not testable": 0}
+    independent, dependent = {**counts, "fails": 10}, ("claim_3", "claim_7")
+    claims = [
+        {"name": name, "verdict": verdict, "depends_on": ["claim_0"] * (name in dependent)}
+        for name, verdict in verdicts.items()
+    ]
     write({"counts": counts, "independent_counts": independent, "claims": claims}, [0, 3, 0, 1, 3], [-1, 3, 0, -1, 2])
 
 
@@ -59,10 +62,10 @@ def test_a_whole_study():
     assert lines(*done(*made), wanted=(*RULES, "report"), seconds=312.0) == [
         "study paper: done in 5 min 12 s on 1 core",
         "files made in results/paper: points 2, summary 1, report.html",
-        "6 independent claims of the paper: holds 1, holds loosely 0, depends on convention 1, fails 4, "
+        "12 independent claims of the paper: holds 1, holds loosely 0, depends on convention 1, fails 10, "
         "not testable 0 "
         f"({FOLDER}/claims.md)",
-        "  fails: claim_0, claim_1, claim_2, claim_3, claim_4, claim_5, claim_6, claim_7 and 2 more",
+        "  fails: claim_0, claim_1, claim_2, claim_4, claim_5, claim_6, claim_8, claim_9 and 2 more",
         "  depends on convention: plus",
         f"points: 3 of 5 did not complete: diverged 2, step_limit 1 (status in {FOLDER}/mean_distance.nc)",
         f"points: kind of motion undetermined at 2 of 5 (kind in {FOLDER}/agreement.nc)",
