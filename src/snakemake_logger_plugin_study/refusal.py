@@ -40,6 +40,10 @@ _REPLACEMENTS = (
         re.compile(r"^File (.+) marked for report but does not exist\.", re.MULTILINE),
         r"--report: \1 is missing: run the study first, by the same command without --report",
     ),
+    (
+        re.compile(r"\A(\d+) jobs have (?:missing|outdated) provenance/metadata so that .*", re.DOTALL),
+        r"\1 jobs: .snakemake has no record of how their results were made; only `bk check` finds those out of date",
+    ),
     # The error that a function of a rule raised, one line among the wildcards and the lines of code.
     (re.compile(r"^ *ConfigError: (.+)$", re.MULTILINE), r"\1"),
     (

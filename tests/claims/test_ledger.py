@@ -189,7 +189,7 @@ def test_a_proved_number_is_marked() -> None:
     proved = [item for item in claim["measured"] if item["proved"]]
     assert [(item["quantity"].split(", ")[-1], item["value"]) for item in proved] == [("linearized", 0.0801)]
     assert abs(proved[0]["error"] - 2e-7) < 1e-12
-    assert "ends at a_c = 0.0801 (linearized, proved) and at a_c = 0.0802 (nonlinear)" in claim["reason"]
+    assert "loses stability, at a_c = 0.0801 (linearized, proved) and a_c = 0.0802 (nonlinear)" in claim["reason"]
     rows = [row for row in csv.DictReader(io.StringIO(as_csv(content))) if row["proved"]]
     assert [(row["value"], row["proved"]) for row in rows] == [("0.0801", "proved")]
     world["orbits"]["critical_a"].values[0] += 1e-6

@@ -127,7 +127,8 @@ def print_remarks():
         *kept_stages(JOBS),
         *replaced_results(JOBS, RESULTS, display_path(CONFIG_FILE), OVERRIDES),
     ):
-        print(remark, file=sys.stderr)
+        # In one piece: Snakemake writes to the same stream from another thread.
+        sys.stderr.write(f"{remark}\n")
 
 
 def prepare_results():

@@ -265,7 +265,8 @@ def aperiodic(evidence: Evidence, initial: str, laws: Sequence[str], at: float, 
             exponent, error = (run[name].values[1] for name in ("lyapunov_exponent", "lyapunov_error"))
             measured.append(Measured(f"second exponent, {law}", float(exponent), float(error)))
         seen = f"after {period} section points" if period else f"within {longest:g} time units"
-        repeats = f"repeats {seen}" if kind in PERIODIC_KINDS else f"does not repeat {seen}"
+        cloud = ", which look like a cloud" if period > points else ""
+        repeats = f"repeats {seen}{cloud}" if kind in PERIODIC_KINDS else f"does not repeat {seen}"
         texts.append(f"{MotionKind(kind).words} ({law}): it {repeats}")
         others = ~np.isin(kinds, (*PERIODIC_KINDS, MotionKind.UNDETERMINED))
         elsewhere += describe_where("aperiodic", grid, others, law)

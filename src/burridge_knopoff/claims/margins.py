@@ -46,8 +46,8 @@ LISTED = {
 #: The parts of a run that can judge a claim: the averaging window, or the whole run with its transient.
 PARTS = {"window": "the window", "run": "the whole run"}
 
-# Number of bisections of the exponent of FACTOR at which a verdict changes, which determine the tolerance to 2 %.
-BISECTIONS = 5
+# Number of bisections of the exponent of FACTOR at which a verdict changes, which determine the tolerance to 0.3 %.
+BISECTIONS = 8
 
 Judge = Callable[[Evidence, Mapping[str, Any]], Verdict]
 # Returns the changed verdict of a claim from evidence and parameters; "" if it is unchanged.
@@ -103,19 +103,26 @@ def _tolerance_choices(
         def verdict_at(exponent: float, name: str = name) -> str:
             return changed_verdict(evidence, {**parameters, name: _scaled(parameters[name], name, exponent)})
 
-        found = [(side, *_nearest_change(verdict_at, side)) for side in (-1.0, 1.0)]
-        if len({other for _, _, other in found if other}) == 1 and not any(same for _, same, _ in found):
-            yield f"{found[0][2]} if {words} is not exactly {parameters[name]:g}"
+        found = [_nearest_change(verdict_at, side) for side in (-1.0, 1.0)]
+        if len({other for _, other in found if other}) == 1 and all(abs(end) <= 2.0**-BISECTIONS for end, _ in found):
+            yield f"{found[0][1]} if {words} is not exactly {parameters[name]:g}"
             continue
-        for side, same, other in found:
+        for end, other in found:
             if other:
-                last = _scaled(parameters[name], name, same)
-                relation = "above" if _scaled(parameters[name], name, side) > parameters[name] else "below"
-                yield f"{other} if {words} is {relation} {last:.3g} (here {parameters[name]:g})"
+                last = _scaled(parameters[name], name, end)
+                is_larger = last > parameters[name]
+                limit = f"at {'least' if is_larger else 'most'} {_rounded(last, up=is_larger):g}"
+                yield f"{other} if {words} is {limit} (here {parameters[name]:g})"
+
+
+def _rounded(value: float, *, up: bool) -> float:
+    """Return a value to three digits, rounded up or down."""
+    unit = 10.0 ** (math.floor(math.log10(abs(value))) - 2) if value else 1.0
+    return float(f"{(math.ceil if up else math.floor)(value / unit) * unit:.3g}")
 
 
 def _nearest_change(verdict_at: Callable[[float], str], side: float) -> tuple[float, str]:
-    """Return the largest exponent towards a side at which the verdict is unchanged, and the verdict beyond it.
+    """Return the exponent nearest to 0, towards a side, at which the verdict is found to change, and the verdict there.
 
     "" if the verdict is unchanged at the side itself.
     """
@@ -129,7 +136,7 @@ def _nearest_change(verdict_at: Callable[[float], str], side: float) -> tuple[fl
             end, other = middle, found
         else:
             same = middle
-    return same, other
+    return end, other
 
 
 def _scaled(value: float, name: str, exponent: float) -> float:

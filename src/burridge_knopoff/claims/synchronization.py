@@ -75,7 +75,7 @@ def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, toleranc
     It lies between two neighbours of the grid. The attractor reached decides, since close to the loss of synchrony a
     run is too short to get there. If the synchronized orbit loses stability between the two values, the edge is a_c.
     """
-    verdicts, measured, texts = [], [], []
+    verdicts, measured, texts, losses = [], [], [], []
     for law, grid, synchronized in _reached_synchrony(evidence, initial):
         low, high = _edge(grid, synchronized)
         if not np.isfinite(low + high):
@@ -89,12 +89,12 @@ def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, toleranc
             verdicts.append(judge_value(critical, claimed, tolerance, loose))
             measured.append(Measured(name, critical, error, proved=proved is not None))
             certain = ", proved" if proved else ""
-            texts[-1] = f"at a_c = {critical:.5g} ({law}{certain})"
+            losses.append(f"a_c = {critical:.5g} ({law}{certain})")
         else:
             verdicts.append(judge_interval(low, high, claimed, tolerance, loose))
     reason = f"Synchrony from {initial} ends {join_words(texts)}; the paper says {claimed:g}."
-    if any("a_c" in text for text in texts):
-        reason += " At a_c the synchronized orbit loses stability."
+    if losses:
+        reason += f" There the synchronized orbit loses stability, at {join_words(losses)}."
     return Verdict(worst_verdict(verdicts), reason, measured)
 
 
