@@ -320,9 +320,9 @@ def test_snakemake_has_the_messages_that_are_replaced():
     assert replacement("Select jobs to execute...") == ""
     assert '"Select jobs to execute..."' in getsource(job_scheduler)
     assert replacement("Elapsed time: 0:07:00.875591") == ""
-    unrecorded = "{} jobs have {} provenance/metadata so that it in part cannot be used to trigger re-runs.\nRules with {}"
     for what in ("missing", "outdated"):
-        assert replacement(unrecorded.format(3, what, what)).startswith("3 jobs: .snakemake has no record of ")
+        unrecorded = f"3 jobs have {what} provenance/metadata so that it in part cannot be used to trigger re-runs.\nRules"
+        assert replacement(unrecorded).startswith("3 jobs: .snakemake has no record of ")
     assert "Elapsed time: " in getsource(Workflow)
     missing = exceptions.MissingRuleException("x.nc")
     assert replacement(exceptions.format_exception_to_string(missing)) == (
