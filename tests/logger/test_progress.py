@@ -321,7 +321,7 @@ def test_snakemake_has_the_messages_that_are_replaced():
     assert '"Select jobs to execute..."' in getsource(job_scheduler)
     assert replacement("Elapsed time: 0:07:00.875591") == ""
     for what in ("missing", "outdated"):
-        unrecorded = f"3 jobs have {what} provenance/metadata so that it in part cannot be used to trigger re-runs.\nRules"
+        unrecorded = f"3 jobs have {what} provenance/metadata so that it in part cannot be used to trigger re-runs."
         assert replacement(unrecorded).startswith("3 jobs: .snakemake has no record of ")
     assert "Elapsed time: " in getsource(Workflow)
     missing = exceptions.MissingRuleException("x.nc")
