@@ -115,7 +115,7 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
         f"attractor: true of {format_shares(shares)} with {a}. Every block stops on {format_shares(every)} of the "
         "attractors."
     )
-    changes = "it is not true of every block" if any(share.value < 1.0 for share in every.values()) else ""
+    changes = "not every block stops on every attractor" if any(share.value < 1.0 for share in every.values()) else ""
     return Verdict(judge_worst_share(shares, loose_share), reason, measured, changes)
 
 
@@ -139,7 +139,7 @@ def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation
         found = reached_attractor(attractors, at, initial, law, "velocity_correlation")
         if not found or not np.isfinite(found[0]):
             return "", ""
-        return _judge_antiphase(found[0], correlation), with_error(round(float(found[0]), 2))
+        return _judge_antiphase(found[0], correlation), f"correlation {with_error(round(float(found[0]), 2))}"
 
     measured = [Measured("correlation of U₁' and U₃'", value)]
     return judge_conventions(evidence, verdict, reason, measured, exceptions, judge_attractors)
