@@ -50,7 +50,7 @@ def run_legend(states: list[str]) -> list[Entry]:
 
 
 def _run_shape(number: int) -> str:
-    return SYMBOLS[STATE_MARKERS[number % len(STATE_MARKERS)]] + ("-open" if number else "")
+    return SYMBOLS[STATE_MARKERS[number % len(STATE_MARKERS)]] + "-open"
 
 
 def distance(
@@ -80,7 +80,7 @@ def distance(
                 meta="run",
                 customdata=[[number, *pair] for pair in zip(words, shown, strict=True)],
                 error_y=bars(3.0 * error, INK["text"]),
-                marker={"symbol": _run_shape(number), "size": 4.5 + 2.5 * number, "line": {"width": 1}},
+                marker={"symbol": _run_shape(number), "size": 4.5 + 1.5 * number, "line": {"width": 1}},
             )
         )
     ring = {"symbol": "circle-open", "size": 15, "color": INK["focus"], "line": {"width": 2.5}}
