@@ -39,6 +39,27 @@ def test_a_bifurcation_that_is_not_located_is_as_wide_as_its_error():
     assert left < 0.1 < 0.2 < right
 
 
+def test_a_symbol_lies_on_a_curve():
+    """The branch of one orbit is not a curve."""
+    names = ("law", "a", "attractor")
+    a, branch = np.array([0.1, 0.15, 0.2]), np.array([[[1], [2], [1]]])
+    attractors = xr.Dataset(
+        {"branch": (names, branch), "basin_count": (names, branch), "mean_distance": (names, 0.045 + 0.0 * branch)},
+        {"law": ["linearized"], "a": a},
+    ).assign(branch_number=("number", [1, 2]), branch_name=("number", ["mirror pair (1)", "mirror pair (2)"]))
+    orbits = {"law": ["linearized"] * 3, "a": [0.12, 0.15, 0.16], "mean_distance": [0.045] * 3, "stable": [1] * 3}
+    orbits |= {"segment": [0, 1, 0], "branch": [1, 2, 1]}
+    found = {f"orbit_{name}": ("orbit", values) for name, values in orbits.items()}
+    found["orbit_stops"] = (("orbit", "block"), np.ones((3, 3), dtype=int))
+    folds = {"law": ["linearized"] * 2, "a": [0.16, 0.15], "a_error": [0.0] * 2, "mean_distance": [0.045] * 2}
+    folds |= {"kind": [int(BifurcationKind.FOLD)] * 2, "change": [int(Change.END)] * 2}
+    folds |= {"from_branch": [1, 2], "to_branch": [-1, -1]}
+    found |= {name: ("bifurcation", values) for name, values in folds.items()}
+    *_, route = draw(attractors, xr.Dataset(found)).axes
+    marked = [line.get_xdata() for line in route.get_lines() if line.get_marker() == BifurcationKind.FOLD.mark]
+    assert np.concatenate(marked).tolist() == [0.16]
+
+
 def test_the_legend_names_all_branches_that_are_drawn():
     names = ("law", "a", "attractor")
     branch = np.arange(12).reshape(1, 1, 12)

@@ -14,7 +14,9 @@ RUN = {"law": ["linearized", "nonlinear"], "initial": ["plus"], "a": [0.0, 0.1, 
 def means(values):
     names = ("law", "initial", "a")
     error = np.full_like(values, 0.01)
-    return xr.Dataset({"mean_distance": (names, values), "mean_distance_error": (names, error)}, RUN)
+    least = np.broadcast_to([1.0, 0.9, 0.8], values.shape)
+    columns = {"mean_distance": values, "mean_distance_error": error, "least_friction": least}
+    return xr.Dataset({name: (names, column) for name, column in columns.items()}, RUN)
 
 
 @pytest.fixture
@@ -51,6 +53,14 @@ def test_runs_alone_where_attractors_are_left_out():
     panels = draw(means(WITH_A_GAP)).axes
     assert [panel.get_title(loc="left") for panel in panels] == ["(a) linearized law", "(b) nonlinear law"]
     assert np.array_equal(panels[0].get_lines()[0].get_ydata(), WITH_A_GAP[0, 0], equal_nan=True)
+
+
+def test_constant_friction_is_named_where_runs_have_it(attractors):
+    runs = means(WITH_A_GAP)
+    for others in (None, attractors):
+        for panel in draw(runs, attractors=others).axes[:2]:
+            assert [text.get_text() for text in panel.texts] == ["constant friction\nat $a=0$"]
+    assert not draw(runs.assign(least_friction=0.9 * runs["least_friction"])).axes[0].texts
 
 
 def test_no_line_joins_runs_and_a_c_is_marked_where_there_is_one():

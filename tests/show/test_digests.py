@@ -64,8 +64,8 @@ def test_where_each_state_is_chaotic():
     data["lyapunov_exponent"] = data["whole"].expand_dims(exponent=1, axis=-1)
     assert lyapunov(data).splitlines() == [
         "linearized, minus: chaotic at 1 of 4 values of a, first at a = 0.15; largest exponent 0.05 at a = 0.15",
-        "linearized, plus: chaotic at 1 of 4 values of a, first at a = 0.1; by the run alone undetermined at 1 (see "
-        "agreement.nc)",
+        "linearized, plus: chaotic at 1 of 4 values of a, first at a = 0.1; undetermined at 1 value of a from the run "
+        "alone (agreement.nc has the kind of the attractor)",
     ]
 
 

@@ -65,7 +65,7 @@ def test_a_point_in_words(point, capsys):
         "transient 3000, window 1000 in 4 batches\n",
         "completed at tau = 4000\n",
         "periodic, repeats after 48 section points\n",
-        " of all 6 are -infinity\n",
+        "at least 1 of the 6 exponents is -infinity\n",
     ):
         assert words in said
     with netCDF4.Dataset(point) as dataset:
@@ -189,8 +189,8 @@ def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
         (tmp_path / "text.nc", "not written by this program"),
         (tmp_path / "foreign.nc", "not written by this program"),
         (tmp_path / "none.nc", "is missing"),
-        (tmp_path, "cannot be read"),
-        (study / "study.json", "not a result file (bk show reads .nc files)"),
+        (study, "got a folder, expected a netCDF file (.nc); of the results of a study, read summary/claims.md, "),
+        (study / "study.json", "got a .json file, expected a netCDF file (.nc); "),
         (inside, f"remake it: cd {shlex.quote(str(root))} && snakemake -c2 -R {inside.relative_to(root)}"),
     ):
         said = shown(capsys, path, code=2)

@@ -49,7 +49,9 @@ def run(options: argparse.Namespace) -> int:
     rows = [(str(k), f"{value:z.6f}", f"{error:.6f}") for k, (value, error) in enumerate(exponents, 1)]
     print("\n".join(table(("", "Lyapunov exponent", "error"), rows)))
     if trajectory.lyapunov_infinite_count > 0:
-        print(f"at least {trajectory.lyapunov_infinite_count} of all {2 * model.blocks} are -infinity: blocks stick")
+        infinite = int(trajectory.lyapunov_infinite_count)
+        verb = "is" if infinite == 1 else "are"
+        print(f"at least {infinite} of the {2 * model.blocks} exponents {verb} -infinity: blocks stick")
     motion = motion.scaled_to_velocity(model.v)
     found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
     print(f"\nmotion: {format_motion(found, motion)}")

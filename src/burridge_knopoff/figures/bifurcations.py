@@ -125,10 +125,7 @@ def _bifurcations(
     is_first : whether it is the first panel of its row, which has the symbols next to the names of the types
     """
     a, error, kind = (bifurcations[name].values for name in ("a", "a_error", "kind"))
-    # Branches that begin are drawn above, all others below.
-    branch = np.where(
-        bifurcations["change"] == Change.BEGINNING, bifurcations["to_branch"], bifurcations["from_branch"]
-    )
+    branch = _branch(bifurcations)
     for row, one in enumerate(ROWS):
         for k in np.flatnonzero((bifurcations["law"].values == law) & (kind == one)):
             color = colors.get(int(branch[k]), OTHER_BRANCHES)
@@ -143,9 +140,19 @@ def _bifurcations(
     panel.set_ylim(len(ROWS) - 0.4, -0.6)
 
 
+def _branch(bifurcations: xarray.Dataset) -> np.ndarray:
+    """Return the branch that begins, ends or changes at each bifurcation."""
+    begins = bifurcations["change"] == Change.BEGINNING
+    return np.where(begins, bifurcations["to_branch"], bifurcations["from_branch"])
+
+
 def _marks(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
-    """Draw a symbol at each located bifurcation."""
-    own, kind = bifurcations["law"].values == law, bifurcations["kind"].values
+    """Draw a symbol at each located bifurcation of the branches that are curves: of more than one orbit."""
+    orbits, count = np.unique(
+        bifurcations["orbit_branch"].values[bifurcations["orbit_law"].values == law], return_counts=True
+    )
+    kind = bifurcations["kind"].values
+    own = (bifurcations["law"].values == law) & np.isin(_branch(bifurcations), orbits[count > 1])
     a, mean = bifurcations["a"].values, bifurcations["mean_distance"].values
     for one in filter(attrgetter("mark"), BifurcationKind):
         chosen = own & (kind == one) & np.isfinite(mean)
@@ -174,7 +181,7 @@ def _legend(figure: Figure, attractors: xarray.Dataset, bifurcations: xarray.Dat
     orbits: Any = [(1, 1.3, "-", "stable orbits"), (0, 0.7, "--", "unstable orbits")]
     handles = [
         *(
-            Line2D([], [], color="#555555", linewidth=width, linestyle=line, label=name)
+            Line2D([], [], color="black", linewidth=width, linestyle=line, label=name)
             for number, width, line, name in orbits
             if number in stable
         ),

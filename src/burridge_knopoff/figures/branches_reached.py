@@ -11,7 +11,7 @@ TITLE = "⟨J⟩ of the attractors, and the branch reached from each state"
 CATEGORY = "Attractors"
 INPUTS = ("mean_distance", "orbits", "attractors")
 CAPTION = """\
-Top: ⟨J⟩ of the attractors, in the colour of their branch, and of the runs from each initial state (open symbols, with
+Top: ⟨J⟩ of the attractors, in the colour of their branch, and of the runs from each initial state (black symbols, with
 bars of three standard errors). A branch has the same number (in brackets) and colour in all figures; branches with
 small basins are grey. A run may end before it reaches its attractor. Dotted: a_c, at which the synchronized orbit
 changes its stability. At a = 0 the paper's laws are constant, and there is no attractor: ⟨J⟩ depends on the initial

@@ -42,9 +42,9 @@ def draw(
 ) -> Figure:
     """Draw ⟨J⟩(a) of the runs over the branches of attractors, and the branch that each initial state reaches.
 
-    A column for each law. Above: coloured points are attractors, open symbols are runs with three standard errors; runs
-    that did not complete are left out. Below: a row for each initial state and convention of contact and start, in the
-    colour of the branch that it reaches; white is undetermined.
+    A column for each law. Above: coloured points are attractors, black symbols are runs with three standard errors;
+    runs that did not complete are left out. Below: a row for each initial state and convention of contact and start, in
+    the colour of the branch that it reaches; white is undetermined.
 
     orbits : the summary of the synchronized orbit; without it, a_c is not marked
     attractors : without them, only the runs are drawn
@@ -61,7 +61,7 @@ def draw(
         if attractors is not None:
             _branches(panels[0, column], attractors.sel(law=law), colors)
             _conventions(panels[1, column], attractors.sel(law=law), colors)
-            _label_start(panels[0, column], mean_distance.sel(law=law), attractors.sel(law=law))
+        _label_constant_friction(panels[0, column], mean_distance.sel(law=law))
         _runs(panels[0, column], mean_distance.sel(law=law))
         if orbits is not None and np.isfinite(critical := orbits["critical_a"].sel(law=law).item()):
             look = {"color": "0.4", "linestyle": ":", "linewidth": 0.9}
@@ -115,13 +115,13 @@ def _runs(panel: Axes, runs: xarray.Dataset) -> None:
         panel.errorbar(run["a"].values, run["mean_distance"].values, error, elinewidth=0.5, **state_symbol(index))
 
 
-def _label_start(panel: Axes, runs: xarray.Dataset, attractors: xarray.Dataset) -> None:
-    """Say next to the runs at a = 0 that nothing attracts there."""
-    highest = runs["mean_distance"].values[:, 0].max()
-    if attractors["a"].values[0] == 0.0 and (attractors["branch"].values[0] < 0).all() and np.isfinite(highest):
-        panel.annotate(
-            "no attractor\nat $a=0$", (0.0, highest), (5, 0), textcoords="offset points", va="center", fontsize=7.0
-        )
+def _label_constant_friction(panel: Axes, runs: xarray.Dataset) -> None:
+    """Say next to the runs at a = 0 that their friction is constant, if it is: nothing attracts them."""
+    first = runs.isel(a=0)
+    highest = first["mean_distance"].values.max()
+    if first["a"] == 0.0 and (first["least_friction"] == 1.0).all() and np.isfinite(highest):
+        words = "constant friction\nat $a=0$"
+        panel.annotate(words, (0.0, highest), (5, 0), textcoords="offset points", va="center", fontsize=7.0)
 
 
 def _conventions(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str]) -> None:

@@ -152,9 +152,9 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, index
     near = (runs["a"].values >= low) & (runs["a"].values <= high)
     for k, initial in enumerate(runs["initial"].values):
         run = runs.sel(initial=initial).isel(a=near)
-        # Symbols of both laws may coincide at ⟨J⟩ = 0.
-        look = {**state_symbol(k, SIZE + 2.5 * index), "color": hue, "label": f"run from {initial}"}
-        panel.plot(run["a"].values, run["mean_distance"].values, **look)
+        # Symbols of both laws may coincide at ⟨J⟩ = 0: those of the first law are smaller and lie on top.
+        look = {**state_symbol(k, SIZE + 2.5 * index), "color": hue, "zorder": 3 - 0.1 * index}
+        panel.plot(run["a"].values, run["mean_distance"].values, label=f"run from {initial}", **look)
 
 
 def _attracts(one: xarray.Dataset, *, below: bool) -> bool:

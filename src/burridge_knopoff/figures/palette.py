@@ -36,7 +36,7 @@ DASHES: tuple[Any, ...] = (
 MARKERS = ("o", "s", "^", "D", "v", "p", "h", "x")
 
 
-#: Initial states, as open symbols that grow, so that one is seen around another.
+#: Initial states: a filled symbol, then open symbols that grow, so that one is seen around another.
 STATE_MARKERS = "ovs^Dph*"
 
 
@@ -65,18 +65,14 @@ def law_symbol(index: int, size: float = 3.0) -> dict[str, Any]:
 
 
 def state_symbol(index: int, size: float = 1.9) -> dict[str, Any]:
-    """Return the look of the points of an initial state by its number: an open black symbol.
+    """Return the look of the points of an initial state by its number: a black symbol, open except for the first state.
 
     size : of the symbol of the first state
     """
-    return {
-        "color": "black",
-        "marker": STATE_MARKERS[index % len(STATE_MARKERS)],
-        "markerfacecolor": "none",
-        "markeredgewidth": 0.45,
-        "markersize": size + 0.8 * index,
-        "linestyle": "",
-    }
+    look = {"color": "black", "marker": STATE_MARKERS[index % len(STATE_MARKERS)], "linestyle": ""}
+    if index == 0:
+        return look | {"markeredgewidth": 0.0, "markersize": size}
+    return look | {"markerfacecolor": "none", "markeredgewidth": 0.45, "markersize": size + 0.8 + 0.9 * index}
 
 
 def ramp(count: int) -> list[str]:

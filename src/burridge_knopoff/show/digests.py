@@ -15,6 +15,7 @@ from burridge_knopoff.study.formatting import format_count, span
 from burridge_knopoff.summaries.bifurcation_diagram import section_points
 from burridge_knopoff.summaries.solvers import NO_RUN
 
+_UNCLEAR = "undetermined at {} of a from the run alone (agreement.nc has the kind of the attractor)"
 NO_EVENT = "neighbours slip without end (try a slower driver), or the window is too short"
 
 
@@ -67,11 +68,11 @@ def lyapunov(data: xarray.Dataset) -> str:
         kind = one["run_kind"].values
         is_chaotic = np.isin(kind, CHAOS)
         first = f", first at a = {a[is_chaotic.argmax()]:g}" if is_chaotic.any() else ""
-        unclear = np.count_nonzero(kind == MotionKind.UNDETERMINED)
+        unclear = int((kind == MotionKind.UNDETERMINED).sum())
         return "; ".join(
             [
                 f"chaotic at {is_chaotic.sum()} of {len(a)} values of a{first}",
-                *([f"by the run alone undetermined at {unclear} (see agreement.nc)"] if unclear else []),
+                *([_UNCLEAR.format(format_count(unclear, "value"))] if unclear else []),
                 *_largest("exponent", one["lyapunov_exponent"].values.max(axis=-1, initial=-np.inf), a),
             ]
         )

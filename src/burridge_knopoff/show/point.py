@@ -84,15 +84,15 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
     if exponents and not np.isnan(run["lyapunov_exponent"]).all():
         yield "exponents", ", ".join(to_ascii(with_error(*map(float, one))) for one in exponents)
         if run["lyapunov_infinite_count"] > 0:
-            yield "", f"at least {run['lyapunov_infinite_count']} of all {2 * chain.blocks} are -infinity"
+            infinite = int(run["lyapunov_infinite_count"])
+            verb = "is" if infinite == 1 else "are"
+            yield "", f"at least {infinite} of the {2 * chain.blocks} exponents {verb} -infinity"
     else:
         yield "exponents", "none"
     yield "events", f"{point['event_count'].item()} stops and starts in the whole run"
-    yield (
-        "minimum",
-        f"friction Phi of a slipping block {run['least_friction']:.4g}, spring force on a stuck block "
-        f"{run['least_spring_force']:.4g}",
-    )
+    yield "", f"smallest friction Phi of a slipping block {run['least_friction']:.4g}"
+    word = "most negative" if run["least_spring_force"] < 0.0 else "smallest"
+    yield "", f"{word} spring force on a stuck block {run['least_spring_force']:.4g}"
 
 
 def _plain_value(value: Any) -> Any:

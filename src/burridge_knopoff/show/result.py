@@ -88,9 +88,16 @@ class Result:
 def open_result(path: str | Path) -> Result:
     """Open a point file or a summary, whether the current sources or others made it.
 
-    Raises ValueError, one line, if it is missing, damaged, from another program, or not the file expected in its study.
+    Raises ValueError, one line, if it is not a netCDF file, missing, damaged, from another program, or not the file
+    expected in its study.
     """
     path = Path(path)
+    if path.is_dir() or (path.is_file() and path.suffix != ".nc"):
+        found = "folder" if path.is_dir() else f"{path.suffix} file" if path.suffix else "file without suffix"
+        raise ValueError(
+            f"{path}: got a {found}, expected a netCDF file (.nc); of the results of a study, read summary/claims.md, "
+            "check the folder with bk check, or open it with open_study"
+        )
     study = study_folder(path)
     try:
         files = check_result(path)
@@ -98,8 +105,6 @@ def open_result(path: str | Path) -> Result:
         # Only the file of a study has a command that recreates it.
         if study and path.suffix == ".nc":
             raise
-        is_other = path.suffix != ".nc" and path.is_file()
-        reason = "not a result file (bk show reads .nc files)" if is_other else error.reason
-        raise ValueError(f"{path}: {reason}") from None
+        raise ValueError(f"{path}: {error.reason}") from None
     data = xarray.load_dataset(path, engine="netcdf4")
     return Result(path, data, study, read_study_record(study) if study else {}, files)

@@ -59,7 +59,8 @@ def summary_lines(result: Result, width: int = UNLIMITED) -> list[str]:
 
 def _described(variable: xarray.DataArray) -> tuple[str, str, str]:
     over = f" ({', '.join(map(str, variable.dims))})" if variable.dims else ""
-    return f"  {variable.name}", describe_values(variable), f"{variable.attrs.get('long_name', '')}{over}"
+    comment = f"; {variable.attrs['comment']}" if "comment" in variable.attrs else ""
+    return f"  {variable.name}", describe_values(variable), f"{variable.attrs.get('long_name', '')}{over}{comment}"
 
 
 def digest(result: Result, width: int = UNLIMITED) -> list[str]:

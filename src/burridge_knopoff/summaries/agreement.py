@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -213,7 +213,7 @@ def digest(dataset: xarray.Dataset) -> str:
     lines = [] if len(others) else [f"The {first} law is the only one: there is nothing to compare."]
     for other in others:
         for initial in dataset["initial"].values:
-            found = _agreement_text(dataset.sel(other_law=other, initial=initial))
+            found = _agreement_text(dataset.sel(other_law=other, initial=initial, law=[first, other]))
             lines.append(f"{initial}, {other} law compared with the {first} law: {found}")
     for law in dataset["law"].values:
         for initial in dataset["initial"].values:
@@ -228,7 +228,7 @@ def digest(dataset: xarray.Dataset) -> str:
 
 
 def _agreement_text(row: xarray.Dataset) -> str:
-    """Return as text where two laws agree and where they disagree, from one initial state."""
+    """Return as text where two laws agree and where they disagree, from one initial state; row : of both laws."""
     verdict = row["agrees"].values
     a = row["a"].values[verdict >= 0]
     different = row["a"].values[verdict == 0]
@@ -246,9 +246,23 @@ def _agreement_text(row: xarray.Dataset) -> str:
             f"they {agree}first disagree at a = {different[0]:g}; they disagree at {len(different)} of {len(a)} values "
             f"of a, the last at {different[-1]:g}{kinds}."
         )
-    if failed := int((verdict < 0).sum()):
+    if undetermined := int((verdict < 0).sum()):
         text += (
-            f" At {format_count(failed, 'value')} of a the comparison is undetermined: a run did not complete, its "
-            "kind of motion is undetermined, or the difference of <J> is close to the tolerance."
+            f" At {format_count(undetermined, 'value')} of a the comparison is undetermined: "
+            f"{' or '.join(_undetermined_reasons(row))}."
         )
     return text
+
+
+def _undetermined_reasons(row: xarray.Dataset) -> Iterator[str]:
+    """Yield why the comparison of two laws is undetermined where it is."""
+    undetermined = row["agrees"].values < 0
+    incomplete = row["mean_distance"].isnull().any("law").values
+    unclear = (row["kind"] == MotionKind.UNDETERMINED).any("law").values & ~incomplete
+    for holds, words in (
+        (incomplete, "a run did not complete"),
+        (unclear, "the kind of motion of a run is undetermined"),
+        (~incomplete & ~unclear, "the difference of <J> is close to the tolerance"),
+    ):
+        if (undetermined & holds).any():
+            yield words

@@ -36,7 +36,13 @@ LARGEST_WIDTH = 1e-15
 
 ORBITS = ("given", "critical")
 END = ("low", "high")
-EVENTS = ("lateral_start", "lateral_stop", "center_stop", "center_start")
+#: {event, in the order of a period: words for a text}
+EVENTS = {
+    "lateral_start": "end blocks start",
+    "lateral_stop": "end blocks stop",
+    "center_stop": "middle block stops",
+    "center_start": "middle block starts",
+}
 MODES = ("transverse", "symmetric")
 BLOCKS = (1, 2)
 
@@ -76,7 +82,7 @@ VARIABLES = {
 _COORDINATES = {
     "orbit": (ORBITS, "O", "orbit: at the given a, or at a_c"),
     "end": (END, "O", "end of the interval that contains the number"),
-    "event": (EVENTS, "O", "event of a period: blocks 1 and 3 are lateral, block 2 is the center"),
+    "event": (tuple(EVENTS), "O", "event of a period: blocks 1 and 3 are lateral, block 2 is the center"),
     "mode": (MODES, "O", "Floquet mode"),
     "block": (BLOCKS, "i4", "number of the block"),
 }
@@ -189,7 +195,7 @@ def _of_orbit(orbit: ProvedOrbit, model: Model) -> dict[str, Any]:
         f"{('lateral', 'center')[arc.event_block]}_{'stop' if arc.slips[arc.event_block] else 'start'}"
         for arc in orbit.arcs
     ]
-    if tuple(names) != EVENTS:
+    if names != list(EVENTS):
         raise ProofError(f"events: got {', '.join(names)}, expected {', '.join(EVENTS)}")
     with arithmetic():
         positions = [limits(model.v * place) for place in orbit.enclosure.inner[:POSITIONS]]
@@ -235,7 +241,9 @@ def _law_lines(dataset: xarray.Dataset, name: str) -> list[str]:
         orbit = dataset.sel(orbit=one)
         lines += ["", f"{name}: {title}, these lie between"]
         lines += [f"    period              {_format_ends(orbit['period'])}"]
-        lines += [f"    {event:<19} {_format_ends(orbit['event_time'].sel(event=event))}" for event in EVENTS]
+        lines += [
+            f"    {words:<19} {_format_ends(orbit['event_time'].sel(event=event))}" for event, words in EVENTS.items()
+        ]
         lines += [f"    mu, {mode:<15} {_format_ends(orbit['multiplier'].sel(mode=mode))}" for mode in MODES]
         lines += ["    All other multipliers except that of the flow are 0. No block stops or starts in between."]
         friction, force = orbit["least_friction"].item(), orbit["least_spring_force"].item()
