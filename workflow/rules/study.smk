@@ -119,6 +119,11 @@ wildcard_constraints:
     initial="|".join(STUDY.initial),
 
 
+def write_line(text):
+    """Write a line to standard error, in one piece: Snakemake writes to it from another thread."""
+    sys.stderr.write(f"{text}\n")
+
+
 def print_remarks():
     """Print what users may not expect of this study, a line each."""
     for remark in (
@@ -127,8 +132,7 @@ def print_remarks():
         *kept_stages(JOBS),
         *replaced_results(JOBS, RESULTS, display_path(CONFIG_FILE), OVERRIDES),
     ):
-        # In one piece: Snakemake writes to the same stream from another thread.
-        sys.stderr.write(f"{remark}\n")
+        write_line(remark)
 
 
 def prepare_results():
@@ -156,9 +160,8 @@ def remove_damaged():
     """Remove damaged files that no job reads, such as pictures; the run recreates them."""
     is_dry_run = workflow.output_settings.dryrun
     for path, reason in damaged_files(JOBS, Path(RESULTS)):
-        print(
-            f"{path}: {reason}: it {'would be' if is_dry_run else 'is'} recreated",
-            file=sys.stderr,
+        write_line(
+            f"{path}: {reason}: it {'would be' if is_dry_run else 'is'} recreated"
         )
         if not is_dry_run:
             path.unlink()

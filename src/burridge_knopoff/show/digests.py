@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
+from itertools import product
 
 import numpy as np
 import xarray
@@ -19,13 +20,15 @@ _UNCLEAR = "undetermined at {} of a from the run alone (agreement.nc has the kin
 NO_EVENT = "neighbours slip without end (try a slower driver), or the window is too short"
 
 
-def _lines(data: xarray.Dataset, sentence: Callable[[xarray.Dataset, np.ndarray], str]) -> str:
-    """Return a line with a sentence about each law and initial state, given its part of the data and a."""
-    return "\n".join(
-        f"{law}, {initial}: {sentence(data.sel(law=law, initial=initial), data['a'].values)}"
-        for law in data["law"].values
-        for initial in data["initial"].values
-    )
+#: What a line of a digest is about.
+RUN = ("law", "initial")
+
+
+def lines_of(data: xarray.Dataset, dimensions: Sequence[str], sentence: Callable[[xarray.Dataset], str]) -> str:
+    """Return a line `law, initial: sentence` for all coordinates of some dimensions, given their part of the data."""
+    cases = product(*(data[name].values for name in dimensions))
+    parts = ((case, data.sel(dict(zip(dimensions, case, strict=True)))) for case in cases)
+    return "\n".join(f"{', '.join(case)}: {sentence(part)}" for case, part in parts)
 
 
 def values_where(holds: np.ndarray, a: np.ndarray) -> str:
@@ -53,18 +56,20 @@ def _incomplete(completed: np.ndarray) -> Iterator[str]:
 def mean_distance(data: xarray.Dataset) -> str:
     """Return where each law and initial state is synchronized, and its largest ⟨J⟩."""
 
-    def sentence(one: xarray.Dataset, a: np.ndarray) -> str:
+    def sentence(one: xarray.Dataset) -> str:
+        a = one["a"].values
         is_synchronized = decode_flags(one["synchronized"]).values == "yes"
         where = f"synchronized {values_where(is_synchronized, a)}"
         return "; ".join([where, *_largest("<J>", one["mean_distance"].values, a)])
 
-    return _lines(data, sentence)
+    return lines_of(data, RUN, sentence)
 
 
 def lyapunov(data: xarray.Dataset) -> str:
     """Return where the runs of each law and initial state are chaotic or undetermined, and the largest exponent."""
 
-    def sentence(one: xarray.Dataset, a: np.ndarray) -> str:
+    def sentence(one: xarray.Dataset) -> str:
+        a = one["a"].values
         kind = one["run_kind"].values
         is_chaotic = np.isin(kind, CHAOS)
         first = f", first at a = {a[is_chaotic.argmax()]:g}" if is_chaotic.any() else ""
@@ -77,7 +82,7 @@ def lyapunov(data: xarray.Dataset) -> str:
             ]
         )
 
-    return _lines(data, sentence)
+    return lines_of(data, RUN, sentence)
 
 
 def bifurcation_diagram(data: xarray.Dataset) -> str:
@@ -96,7 +101,8 @@ def bifurcation_diagram(data: xarray.Dataset) -> str:
 def stick_slip(data: xarray.Dataset) -> str:
     """Return where all blocks stop, the longest sticks, and where the end blocks move against each other."""
 
-    def sentence(one: xarray.Dataset, a: np.ndarray) -> str:
+    def sentence(one: xarray.Dataset) -> str:
+        a = one["a"].values
         rate, stuck = one["stop_rate"].values, one["stick_fraction"].values
         completed = np.isfinite(rate).all(axis=-1)
         if not completed.any():
@@ -112,7 +118,7 @@ def stick_slip(data: xarray.Dataset) -> str:
         )
         return "; ".join([*words, *_incomplete(completed)])
 
-    return _lines(data, sentence)
+    return lines_of(data, RUN, sentence)
 
 
 def solvers(data: xarray.Dataset) -> str:
@@ -149,8 +155,8 @@ def solvers(data: xarray.Dataset) -> str:
 def grid(data: xarray.Dataset) -> str:
     """Return at how many points of several parameters each law and initial state is synchronized or chaotic."""
 
-    def line(one: xarray.Dataset, mean: np.ndarray) -> str:
-        kinds = one["run_kind"].values
+    def sentence(one: xarray.Dataset) -> str:
+        kinds, mean = one["run_kind"].values, one["mean_distance"].values
         counts = [f"{kind.words} {count}" for kind in MotionKind if (count := np.count_nonzero(kinds == kind))]
         words = f"{format_count(kinds.size, 'point')}: {', '.join(counts)}"
         if np.isfinite(mean).any():
@@ -160,27 +166,22 @@ def grid(data: xarray.Dataset) -> str:
             words += f"; largest <J> {mean[place]:.4g} at {at}"
         return words
 
-    return "\n".join(
-        f"{law}, {initial}: {line(one, one['mean_distance'].values)}"
-        for law in data["law"].values
-        for initial in data["initial"].values
-        for one in [data.sel(law=law, initial=initial)]
-    )
+    return lines_of(data, RUN, sentence)
 
 
 def catalogue(data: xarray.Dataset) -> str:
     """Return the number of slip events under each law, the range of their slopes, and how many catalogues are empty."""
-    lines = []
-    for law in data["law"].values:
-        one = data.sel(law=law)
+
+    def sentence(one: xarray.Dataset) -> str:
         events = format_count(int(np.maximum(one["event_count"].values, 0).sum()), "slip event")
-        words = f"{law}: {events} at {format_count(one.sizes['a'], 'value')} of a"
+        words = f"{events} at {format_count(one.sizes['a'], 'value')} of a"
         slope = one["slope"].values
         if np.isfinite(slope).any():
             ends = span(f"{np.nanmin(slope):.3g}", f"{np.nanmax(slope):.3g}")
             words += f"; slope b of the magnitudes {ends} (rates decrease as exp(-b magnitude))"
-        lines.append("; ".join([words, *_incomplete(one["status"].values == Status.COMPLETED)]))
-    return "\n".join([*lines, *filter(None, [empty_catalogues(data)])])
+        return "; ".join([words, *_incomplete(one["status"].values == Status.COMPLETED)])
+
+    return "\n".join(filter(None, [lines_of(data, ["law"], sentence), empty_catalogues(data)]))
 
 
 def empty_catalogues(data: xarray.Dataset) -> str:

@@ -10,7 +10,7 @@ import xarray
 
 from burridge_knopoff.dataset.variables import Answer, decode_flags
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
-from burridge_knopoff.show.digests import values_where
+from burridge_knopoff.show.digests import lines_of, values_where
 from burridge_knopoff.study.formatting import format_count, span
 from burridge_knopoff.summaries.basins import exponent_text
 from burridge_knopoff.summaries.bifurcations import digest as bifurcations_one_by_one
@@ -24,26 +24,24 @@ ROUNDING = 1e-10
 
 def equilibrium(data: xarray.Dataset) -> str:
     """Return where perturbations of uniform sliding grow, and their largest growth rate."""
-    lines, a = [], data["a"].values
-    for law in data["law"].values:
-        growth = data["eigenvalue"].sel(law=law, part="real").max("mode", skipna=False).values
+
+    def sentence(one: xarray.Dataset) -> str:
+        a, growth = one["a"].values, one["eigenvalue"].sel(part="real").max("mode", skipna=False).values
         if np.isnan(growth).all():
-            lines.append(f"{law}: uniform sliding was not examined")
-            continue
+            return "uniform sliding was not examined"
         where = values_where(growth > ROUNDING, a)
         largest = f"; the largest growth rate is {np.nanmax(growth):.4g} at a = {a[np.nanargmax(growth)]:g}"
-        lines.append(f"{law}: perturbations of uniform sliding grow {where}{largest * bool((growth > ROUNDING).any())}")
-    return "\n".join(lines)
+        return f"perturbations of uniform sliding grow {where}{largest * bool((growth > ROUNDING).any())}"
+
+    return lines_of(data, ["law"], sentence)
 
 
 def orbits(data: xarray.Dataset) -> str:
     """Return where the synchronized orbit loses its transverse stability, and by which bifurcation."""
-    lines = []
-    for law in data["law"].values:
-        one = data.sel(law=law)
+
+    def sentence(one: xarray.Dataset) -> str:
         if (one["status"].values == OrbitStatus.NOT_THREE_BLOCKS).any():
-            lines.append(f"{law}: not computed, as the chain has not three blocks")
-            continue
+            return "not computed, as the chain has not three blocks"
         critical, grazing = one["critical_a"].item(), one["grazing_a"].item()
         words = ["no a was found at which the synchronized orbit loses its transverse stability"]
         if np.isfinite(critical):
@@ -53,28 +51,29 @@ def orbits(data: xarray.Dataset) -> str:
             words = [f"the synchronized orbit loses its transverse stability at a = {critical:.10g} ({how})"]
         if np.isfinite(grazing):
             words.append(f"block 2 begins to stick at a = {grazing:.10g}")
-        lines.append(f"{law}: {'; '.join(words)}")
-    return "\n".join(lines)
+        return "; ".join(words)
+
+    return lines_of(data, ["law"], sentence)
 
 
 def rotation(data: xarray.Dataset) -> str:
     """Return at how many values of the grid a branch is locked, and the range of its rotation number."""
-    lines, branch = [], data.attrs["branch"]
-    for law in data["law"].values:
-        one = data.sel(law=law)
+    branch = data.attrs["branch"]
+
+    def sentence(one: xarray.Dataset) -> str:
         locked, number = one["locked"].values, one["rotation_number"].values
         known = (locked >= 0) & (one["in_grid"].values == 1)
         if not known.any():
-            lines.append(f"{law}: branch {branch} is neither periodic nor quasiperiodic at any a of the grid")
-            continue
+            return f"branch {branch} is neither periodic nor quasiperiodic at any a of the grid"
         words = (
             f"branch {branch} is locked (periodic) at {np.count_nonzero(locked[known] == 1)} of "
             f"{format_count(int(known.sum()), 'value')} of a in the grid at which it is periodic or quasiperiodic"
         )
         if np.isfinite(number).any():
             words += f"; rotation number {span(f'{np.nanmin(number):.5g}', f'{np.nanmax(number):.5g}')}"
-        lines.append(f"{law}: {words}")
-    return "\n".join(lines)
+        return words
+
+    return lines_of(data, ["law"], sentence)
 
 
 def two_blocks(data: xarray.Dataset) -> str:
@@ -96,17 +95,19 @@ def two_blocks(data: xarray.Dataset) -> str:
 
 def phases(data: xarray.Dataset) -> str:
     """Return the fraction of the initial phases that lead to synchrony, and the a where it is smallest and largest."""
-    lines, a = [], data["a"].values
-    for law in data["law"].values:
-        branch = data["branch"].sel(law=law).transpose("a", ...).values.reshape(len(a), -1)
+
+    def sentence(one: xarray.Dataset) -> str:
+        a = one["a"].values
+        branch = one["branch"].transpose("a", ...).values.reshape(len(a), -1)
         share = (branch == 0).mean(axis=1)
         words = f"{100.0 * (branch == 0).mean():.1f} % of {branch.size} initial states synchronize"
         if share.min() < share.max():
             low, high = share.argmin(), share.argmax()
             words += f", from {100.0 * share[low]:.1f} % at a = {a[low]:g} to {100.0 * share[high]:.1f} % at a = "
             words += f"{a[high]:g}"
-        lines.append(f"{law}: {words}; {np.count_nonzero(branch < 0)} undetermined")
-    return "\n".join(lines)
+        return f"{words}; {np.count_nonzero(branch < 0)} undetermined"
+
+    return lines_of(data, ["law"], sentence)
 
 
 def chains(data: xarray.Dataset) -> str:
@@ -122,16 +123,16 @@ def chains(data: xarray.Dataset) -> str:
 
 def refined(data: xarray.Dataset) -> str:
     """Return how many values of a were inserted between those of the grid, and the number of branches."""
-    lines = []
-    for law in data["law"].values:
-        one = data.sel(law=law)
+
+    def sentence(one: xarray.Dataset) -> str:
         values, in_grid = np.isfinite(one["a"].values), one["in_grid"].values == 1
         branches = len(np.unique(one["branch"].values[one["branch"].values >= 0]))
-        lines.append(
-            f"{law}: {branches} branch{'es' * (branches != 1)} of attractors at {values.sum()} values of a, "
+        return (
+            f"{branches} branch{'es' * (branches != 1)} of attractors at {values.sum()} values of a, "
             f"{np.count_nonzero(values & ~in_grid)} of them inserted where the attractors change"
         )
-    return "\n".join(lines)
+
+    return lines_of(data, ["law"], sentence)
 
 
 def stored_returns(data: xarray.Dataset) -> str:
