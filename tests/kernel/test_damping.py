@@ -199,22 +199,6 @@ def test_quasistatic_loading_is_the_limit_of_a_slow_driver(groups):
     assert np.allclose(*columns, rtol=3e-3, atol=1e-5)
 
 
-@pytest.mark.parametrize("groups", [False, True])
-def test_an_overdamped_slip_ends_where_friction_balances_the_springs(groups):
-    """Behind a stationary driver the slip decays and comes to rest within rounding: the force falls to θ Φ(0)."""
-    one = Model(Chain(1, pulling=2.0, threshold=3.0, pulling_damping=10.0), law_of("carlson_langer", 1.0), 0.01)
-    table, _, _ = record_catalogue(one, at_rest(one), 90.0, groups, loading="quasistatic")
-    assert len(table["time"]) > 10
-    assert np.allclose(table["stress_drop"], 3.0 * 0.01, rtol=1e-11)
-    assert np.allclose(table["moment"], 3.0 * 0.01 / 2.0, rtol=1e-11)
-    # The speed falls like exp(−τ/3.5), with (c − θ a)/D = 3.5.
-    assert (table["duration"] > 20 * 3.5).all()
-    many = Model(Chain(8, coupling=9.0, pulling=1.0, damping=6.0), law_of("carlson_langer", 1.0), 0.01)
-    table, runner, _ = record_catalogue(many, at_rest(many), 60.0, groups, loading="quasistatic")
-    assert len(table["time"]) > 10
-    assert runner.kernel.steps < 1000 * len(table["time"])
-
-
 def test_a_neighbour_pulls_on_a_stuck_block_by_its_dashpot():
     """It starts where the whole force passes its threshold, and `start: tested` asks for the same force."""
     c, state = 2.0, InitialState("own", (-0.85, -1.1), (0.05, 0.3))

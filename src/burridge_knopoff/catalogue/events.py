@@ -32,7 +32,7 @@ class SlipEvents:
     and an event is a connected set of slips. Blocks are numbered from 1; all quantities are in the units of `Model`.
 
     time : τ of the first start; slip_time : the same on the slip clock, which differs under quasi-static loading
-    duration : slip time from the first start to the last stop
+    duration : slip time from the first start to the last stop, without creep
     epicentre : block that starts first
     first_block, last_block : ends of the event along the chain. In a ring, `first_block` exceeds `last_block` if the
         event spans the seam
@@ -100,9 +100,10 @@ def record_events(
     start, end : state at the start of the run, and τ of its end
     begin : earlier events are omitted, by default none; they still count for the intervals
     profiles : whether the slip of every block is stored
-    loading : steady: the driver moves at velocity v | quasistatic: the driver stops while any block slips; when all are
-        at rest it advances to the next slip. In the second case τ is the displacement of the driver divided by v, and
-        the slip clock runs while blocks slip
+    loading : steady: the driver moves at velocity v | quasistatic: the driver stops while any block slips; when all
+        stick or creep it advances to the next slip. In the second case τ is the displacement of the driver divided by
+        v, and the slip clock runs while blocks slip. An overdamped slip does not end: it creeps at the threshold of
+        slip, and its event goes on
     solver : series, map (where the motion has a closed form), or, for comparison, a solver with a fixed step and events
         at step ends: rk4, or euler (explicit)
     step : step of rk4 and euler
@@ -135,7 +136,7 @@ def record_events(
     runner.begin(start)
     status = runner.run(None if stepping else end)
     table = catalogue.take()
-    order = np.argsort(table["time"], kind="stable")
+    order = np.lexsort((table["slip_time"], table["time"]))
     ends, block, slip = (table.pop(name) for name in ("slip_end", "slip_block", "slip"))
     for name in table:
         table[name] = table[name][order]

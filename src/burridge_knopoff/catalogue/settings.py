@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Annotated
 
 from burridge_knopoff.model.fields import check_fields, settings
+from burridge_knopoff.model.model import LOADINGS
 from burridge_knopoff.model.ranges import HUGE, Number, OneOf, TrueOrFalse
-from burridge_knopoff.running.loading import LOADINGS
 from burridge_knopoff.running.settings import DURATION, TIME
 from burridge_knopoff.values import refusal
 
@@ -25,8 +25,8 @@ class CatalogueSettings:
     loading: Annotated[
         str,
         OneOf(LOADINGS),
-        "steady: the driver always moves | quasistatic: the driver stops while any block slips; when all are at rest "
-        "it advances to the next slip",
+        "steady: the driver always moves | quasistatic: the driver stops while any block slips; when all stick or "
+        "creep it advances to the next slip",
     ] = "steady"
     transient: Annotated[float, DURATION, "time of the loading clock before the catalogue"] = 3000.0
     window: Annotated[float, TIME, "length of the catalogue on the loading clock"] = 7000.0

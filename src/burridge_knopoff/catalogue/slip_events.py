@@ -95,7 +95,7 @@ def catalogue_of_run(
     """
     ran = {"loading": settings.loading, "solver": solver}
     begin, end = settings.transient, settings.end
-    at = model.begin(initial, start)
+    at = model.begin(initial, start, settings.loading)
     events = record_events(model, at, end, begin=begin, profiles=settings.profiles, step=step, **ran)
     about: dict[str, Any] = {"initial": initial.name, "start": start, **ran, "history": "snakemake"}
     if solver == "rk4":

@@ -69,6 +69,7 @@ class KernelModel:
         steepest: float,
         v: float,
         symmetric: bool,
+        creep_speed: float = ...,
     ) -> None: ...
     @property
     def fastest(self) -> float:

@@ -77,13 +77,13 @@ class Catalogue {
     struct Block {
         // The event in which the block slips, and its last event if this has not ended; −1 for none.
         int event = -1, last_event = -1;
-        // Time and position at the start of the slip, and start time of the last event that has ended.
-        Clock begun;
+        // Both clocks and the position at the start of the slip, and start time of the last event that has ended.
+        Clock begun, loaded;
         double position = 0.0, last_start = NAN;
 
         template <class A>
         void archive(A &values) {
-            values(event, last_event, begun, position, last_start);
+            values(event, last_event, begun, loaded, position, last_start);
         }
     };
 
@@ -159,18 +159,20 @@ class Catalogue {
         events[number].slipping++;
         block.event = number;
         block.begun = at;
+        block.loaded = load;
         block.position = x;
     }
 
-    // Block i stops at position x.
-    void stop(const Springs &springs, double v, int i, const Clock &at, double x) {
+    // Block i stops at position x. v, loading : velocities of the driver on the slip clock and on the loading clock
+    void stop(const Springs &springs, double v, double loading, int i, const Clock &at, const Clock &load, double x) {
         Block &block = of_block[i];
         if (block.event < 0) return;
         const int number = find(block.event);
         Event &event = events[number];
         block.event = -1;
         block.last_event = number;
-        event.slips.emplace_back(i, (x - block.position) + v * block.begun.until(at));
+        event.slips.emplace_back(
+            i, ((x - block.position) + v * block.begun.until(at)) + loading * block.loaded.until(load));
         if (--event.slipping > 0) return;
         finish(springs, number, at);
         for (int k : event.absorbed) release(k);

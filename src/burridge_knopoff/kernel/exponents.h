@@ -87,12 +87,14 @@ class Exponents {
     }
 
     // Map the perturbations to the start of block i under quasi-static loading: the driver advances until s_i reaches
-    // the threshold, x_j → x_j + δs_i/D_i for every block.
-    void load_until_start(const Springs &springs, int i) {
+    // the threshold. creep : displacement of each block relative to that of the driver; rate : that of s_i
+    //
+    //     x_j → x_j + (1 − creep_j) δs_i/rate.
+    void load_until_start(const Springs &springs, int i, const double *creep, double rate) {
         tangent.forget_stops(Blocks::all_lanes(true));
         for (int v = 0; v < tangent.vectors; v++) {
-            const double less = springs.pull(x(v), i) / springs.driving[i];
-            for (int j = 0; j < blocks; j++) x(v)[j] += less;
+            const double less = springs.pull(x(v), i) / rate;
+            for (int j = 0; j < blocks; j++) x(v)[j] += less * (1.0 - creep[j]);
         }
     }
 

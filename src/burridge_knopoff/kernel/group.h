@@ -22,8 +22,9 @@ struct Group {
     double length = 0.0;    // of the piece: until the next event, or as far as the series goes
     double observed = 0.0;  // time up to which the piece has been observed
     bool planned = false, event = false;
-    int section = -1;  // lane of W in g
-    int side = 0;      // the observer's side at the start of the piece
+    bool resting = false;  // whether the blocks stick or creep at the end of the piece, see Run::plan
+    int section = -1;      // lane of W in g
+    int side = 0;          // the observer's side at the start of the piece
     uint64_t version = 0;
     int number = 0, first = 0;  // number of the group, and of its first block
     bool alive = false;         // whether the group has blocks
@@ -54,6 +55,20 @@ struct Group {
         event = search.found[0];
         observed = 0.0;
         planned = true;
+        return true;
+    }
+
+    // Whether all blocks stick at a time of the piece, or slip so slowly that they creep; fastest : see State::rests
+    bool rests_at(double t, double fastest) const {
+        for (int c = 0; c < layout.columns; c++) {
+            vec slope{};
+            for (int k = Blocks::ORDER; k > 0; k--)
+                slope = slope * t + double(k) * series.velocity[size_t(k) * series.columns + c];
+            const vec speed = series.value(series.velocity, c, Blocks::splat(t));
+            const mask slow =
+                (magnitude(speed) <= layout.creep_speed) & (magnitude(slope) <= fastest * layout.creep_speed);
+            if (any(layout.present[c] & (state.slip[c] != vec{}) & ~slow)) return false;
+        }
         return true;
     }
 

@@ -9,7 +9,7 @@ namespace bk {
 void Run::wait(int i) {
     const Springs &springs = model.springs;
     const bool steady = loading == 0.0;
-    const double rate = (steady ? model.v : loading) * springs.driving[i];
+    const double rate = steady ? model.v * springs.driving[i] : loading * creep_rate(i);
     const double left = (springs.threshold[i] - waiting_force(i, alone[i].since)) / rate;
     begins[i] =
         rate > 0.0 ? (steady ? alone[i].since : alone[i].loaded).after(left > 0.0 ? left : 0.0) : Clock{NEVER, 0.0};
@@ -100,10 +100,8 @@ bool Run::process() {
     for (int number : ending) {
         Group &own = *groups[number];
         end_piece(own, own.length);
-        if (own.event)
-            find_due(own);
-        else if (!find_resting(own))
-            continue;
+        if (!own.event) continue;
+        find_due(own);
         events++;
         group = &own;
         for (int k = 0; k < own.size(); k++)
@@ -124,7 +122,8 @@ bool Run::process() {
         moves = part(*group);
     }
     for (int number : ending)
-        if (groups[number] && groups[number]->alive && !groups[number]->planned) moves &= schedule(*groups[number]);
+        if (Group *own = groups[number].get(); own && own->alive && !own->planned)
+            moves &= rests(*own) ? part(*own) : schedule(*own);
     return moves;
 }
 
@@ -138,8 +137,11 @@ void Run::regroup() {
         blind |= !group->plan(0, 0, 0);
         group->advance(length);
         if (catalogue) group->record(*catalogue, polynomial, 0.0, length, true);
-        for (int k = 0; k < group->size(); k++)
-            group->state.position.lane(k) -= loading * alone[group->layout.member[k]].loaded.until(load);
+        for (int k = 0; k < group->size(); k++) {
+            const int i = group->layout.member[k];
+            if (alone[i].creeps) add_creep(i, loading * alone[i].loaded.until(load) * alone[i].creep);
+            group->state.position.lane(k) -= lag(i);
+        }
         retire(*group);
     }
     Group &group = collect(all);
@@ -165,9 +167,13 @@ Group &Run::collect(std::vector<int> &members) {
     std::sort(members.begin(), members.end());
     members.erase(std::unique(members.begin(), members.end()), members.end());
     for (int i : members) {
-        if (alone[i].slip == 0.0) alone[i].x = stuck_position(i, now);
-        alone[i].since = now;
-        alone[i].loaded = load;
+        Block &block = alone[i];
+        if (block.creeps) add_creep(i, loading * block.loaded.until(load) * block.creep);
+        if (block.slip == 0.0 || block.creeps) block.x = position_at_rest(i, now);
+        block.since = now;
+        block.loaded = load;
+        block.creeps = false;
+        block.creep = 0.0;
         version[i]++;
     }
     return build(members, now);
@@ -176,25 +182,31 @@ Group &Run::collect(std::vector<int> &members) {
 // Take all neighbours of slipping blocks into a group.
 Group *Run::complete(Group *group) {
     const Springs &springs = model.springs;
-    const int number = group->number;
-    std::vector<int> missing;
-    for (int k = 0; k < group->size(); k++) {
-        if (group->state.slip.lane(k) == 0.0) continue;
-        const int i = group->layout.member[k];
-        for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
-            if (group_of[springs.neighbour[p]] != number) missing.push_back(springs.neighbour[p]);
+    for (;;) {
+        const int number = group->number;
+        std::vector<int> missing;
+        for (int k = 0; k < group->size(); k++) {
+            if (group->state.slip.lane(k) == 0.0) continue;
+            const int i = group->layout.member[k];
+            for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
+                if (group_of[springs.neighbour[p]] != number) missing.push_back(springs.neighbour[p]);
+        }
+        if (missing.empty()) return group;
+        std::vector<int> members = group->layout.member;
+        retire(*group);
+        for (int i : missing)
+            if (std::find(members.begin(), members.end(), i) == members.end()) gather(i, members);
+        group = &collect(members);
     }
-    if (missing.empty()) return group;
-    std::vector<int> members = group->layout.member;
-    retire(*group);
-    for (int i : missing)
-        if (std::find(members.begin(), members.end(), i) == members.end()) gather(i, members);
-    return &collect(members);
 }
 
-// Divide a group into connected sets of slipping blocks with their stuck neighbours, and plan their pieces.
-bool Run::part(Group &group) {
+// Divide a group into connected sets of slipping blocks with their stuck neighbours, and plan their pieces. Sets that
+// creep leave it.
+bool Run::part(Group &parted) {
     const Springs &springs = model.springs;
+    Group *remaining = release(parted);
+    if (!remaining) return true;
+    Group &group = *remaining;
     const int number = group.number, n = group.size();
     std::vector<int> set(n, -1), reached;
     int sets = 0, placed = 0;
@@ -256,7 +268,7 @@ Polynomial Run::motion_of(int i, bool speed, const Clock &at) {
     Polynomial made;
     if (group_of[i] < 0) {
         made.degree = 1;
-        made.coefficient[0] = speed ? 0.0 : stuck_position(i, at);
+        made.coefficient[0] = speed ? 0.0 : position_at_rest(i, at);
         made.coefficient[1] = speed ? 0.0 : -model.v;
         return made;
     }
@@ -332,8 +344,9 @@ double Run::waiting_force(int i, const Clock &at) const {
     const Springs &springs = model.springs;
     double pull = 0.0;
     for (int64_t p = springs.start[i]; p < springs.start[i + 1]; p++)
-        pull += springs.strength[p] * stuck_position(springs.neighbour[p], at);
-    return (springs.sliding_force[i] + springs.damping_load[i]) + (pull - springs.diagonal[i] * stuck_position(i, at));
+        pull += springs.strength[p] * position_at_rest(springs.neighbour[p], at);
+    return (springs.sliding_force[i] + springs.damping_load[i]) +
+           (pull - springs.diagonal[i] * position_at_rest(i, at));
 }
 
 // W at a time before the next change of any block.

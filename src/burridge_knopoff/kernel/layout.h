@@ -25,6 +25,9 @@ struct Model {
     Law law;
     double v;
     bool symmetric;  // whether a block that is pulled below −θ_i slips backward
+    // Speed below which a slip creeps: behind a driver that does not move, its speed tends to 0 and rounding decides
+    // the sign. A block stops where its speed has fallen below minus this. 0 if no slip can creep.
+    double creep_speed;
 
     bool drops() const { return law.at_rest < 1.0; }
     double coincidence() const { return COINCIDENCE * springs.unit; }
@@ -54,7 +57,7 @@ struct Layout : Lanes<COUNT> {
     Rows drift;
     std::vector<mask> present;
     bool linear, drops, symmetric, damped;
-    Number v, at_rest, rate, coincidence, young;
+    Number v, at_rest, rate, coincidence, young, creep_speed;
 
     // The value for one lane, or for all lanes.
     static double of_lane(const Number &number, int lane) {
@@ -93,6 +96,7 @@ struct Layout : Lanes<COUNT> {
         set_lane(rate, lane, model.law.rate);
         set_lane(coincidence, lane, model.coincidence());
         set_lane(young, lane, model.young());
+        set_lane(creep_speed, lane, model.creep_speed);
     }
 };
 

@@ -79,14 +79,14 @@ void Run::settle_first() {
 
 void Run::state_of(int i, double &position, double &speed, double &direction) {
     if (group_of[i] < 0) {
-        position = stuck_position(i, now);
+        position = position_at_rest(i, now);
         speed = alone[i].u;
         direction = alone[i].slip;
         return;
     }
     Group &group = *groups[group_of[i]];
     const int lane = lane_of[i];
-    position = group.state.position.lane(lane) - loading * alone[i].loaded.until(load);
+    position = group.state.position.lane(lane) - lag(i);
     speed = group.state.velocity.lane(lane);
     direction = group.state.slip.lane(lane);
     const double t = group.start.until(now);
@@ -97,10 +97,9 @@ void Run::state_of(int i, double &position, double &speed, double &direction) {
     }
 }
 
-// The position of a stuck block at a time.
-double Run::stuck_position(int i, const Clock &at) const {
-    if (group_of[i] < 0)
-        return (alone[i].x - model.v * alone[i].since.until(at)) - loading * alone[i].loaded.until(load);
+// The position at a time of a block that sticks, or creeps alone.
+double Run::position_at_rest(int i, const Clock &at) const {
+    if (group_of[i] < 0) return (alone[i].x - model.v * alone[i].since.until(at)) - lag(i);
     const Group &group = *groups[group_of[i]];
     return group.state.position.lane(lane_of[i]) - model.v * group.start.until(at);
 }
@@ -128,14 +127,14 @@ Group &Run::build(std::vector<int> members, const Clock &at) {
     group.alive = true;
     group.layout.member = members;
     group.start = at;
-    group.planned = group.event = false;
+    group.planned = group.event = group.resting = false;
     for (int k = 0; k < n; k++) {
         group_of[members[k]] = number;
         lane_of[members[k]] = k;
     }
     auto place = [&](int i) { return group_of[i] == number ? lane_of[i] : -1; };
     group.layout.lay(place);
-    if (n < blocks) group.layout.outside(place, [&](int i) { return stuck_position(i, at); });
+    if (n < blocks) group.layout.outside(place, [&](int i) { return position_at_rest(i, at); });
     group.state.widen();
     for (size_t k = n; k < size_t(group.layout.columns) * LANES; k++) group.state.place(k, 0.0, 0.0, true);
     for (int k = 0; k < n; k++) {
@@ -151,8 +150,9 @@ Group &Run::build(std::vector<int> members, const Clock &at) {
 }
 
 // The state of the block in a lane of a group; loaded : the loading clock
-static Block block_in(Group &group, int lane, const Clock &loaded) {
+Block Run::block_in(Group &group, int lane, const Clock &loaded) const {
     State<Blocks> &state = group.state;
+    const Block &block = alone[group.layout.member[lane]];
     return {state.position.lane(lane),
             state.velocity.lane(lane),
             state.acceleration.lane(lane),
@@ -160,7 +160,9 @@ static Block block_in(Group &group, int lane, const Clock &loaded) {
             state.slip.lane(lane),
             state.touching.lane(lane),
             group.start,
-            loaded};
+            loaded,
+            block.creeps,
+            block.creep};
 }
 
 // Store the states of a group's blocks, and dissolve the group.
@@ -181,18 +183,22 @@ bool Run::plan(Group &group) {
     steps++;
     watch.worked(group.size());
     const bool seen = observing && !local;
-    return group.plan(seen ? observer.side : 0, first, last);
+    if (!group.plan(seen ? observer.side : 0, first, last)) return false;
+    if (loading > 0.0 && model.creep_speed > 0.0) end_at_rest(group);
+    return true;
 }
 
 // Stop or start the block in a lane now, and store the event.
 void Run::change(Group &group, int lane, const Clock &at) {
     const int i = group.layout.member[lane];
+    group.resting = false;
     if (exponents.tangent.vectors > 0)
         exponents.tangent.change(group.state, lane / LANES, Blocks::from_bits(1 << lane % LANES));
     const int kind = group.state.slip.lane(lane) == 0.0;
     group.state.transition(lane / LANES, Blocks::from_bits(1 << lane % LANES));
     if (catalogue && kind) catalogue->start(model.springs, i, at, loading_clock(at), group.state.position.lane(lane));
-    if (catalogue && !kind) catalogue->stop(model.springs, model.v, i, at, group.state.position.lane(lane));
+    if (catalogue && !kind)
+        catalogue->stop(model.springs, model.v, loading, i, at, loading_clock(at), group.state.position.lane(lane));
     log.add(i, kind, at.time, [&](double *row) {
         double direction;
         watch.worked(blocks);
@@ -226,16 +232,6 @@ bool Run::settle(Group &group, const Clock &at) {
 void Run::find_due(Group &group) {
     due.assign(group.layout.columns, 0);
     for (int c = 0; c < group.layout.columns; c++) due[c] = bits(group.search.due(group.series, c));
-}
-
-// Find the blocks that come to rest at the end of a piece without an event; return whether there are any.
-bool Run::find_resting(Group &group) {
-    due.assign(group.layout.columns, 0);
-    if (!(loading > 0.0 && model.springs.damped)) return false;
-    bool any = false;
-    for (int c = 0; c < group.layout.columns; c++)
-        any |= (due[c] = bits(group.state.at_rest(c) & group.layout.present[c])) != 0;
-    return any;
 }
 
 // Store the pieces that the end of a run truncates.
@@ -291,7 +287,8 @@ int Run::run_whole() {
     Group &group = *groups[group_of[0]];
     for (;;) {
         if (const int reason = blocked()) return reason;
-        if (loading > 0.0 && !group.planned && exponents.stuck(group.slip()) == blocks) {
+        if (loading > 0.0 && !group.planned && rests(group)) {
+            begin_creep(group);
             if (load_next(group)) continue;
             if (exponents.running) exponents.follow(group.slip(), load.time, true);
             return COMPLETED;
@@ -333,7 +330,6 @@ int Run::run_whole() {
             if (completed) remember();
         } else {
             advance(group, length);
-            if (find_resting(group)) change_due(group, now);
         }
         // At events, so that all solvers orthonormalise at the same times.
         if (exponents.running && (due || since_event >= LONGEST_FOLLOW * model.springs.unit))
@@ -346,15 +342,17 @@ int Run::run_whole() {
 // Advance the driver, which stops while blocks slip, until a block starts; false if the run ends before.
 bool Run::load_next(Group &group) {
     const Blocks &layout = group.layout;
-    Blocks::Rows left(layout.columns);
+    Blocks::Rows left(layout.columns), creep(layout.columns), rate(layout.columns);
+    for (int i = 0; i < blocks; i++) creep.lane(lane_of[i]) = alone[i].creep;
     double least = NEVER;
     for (int c = 0; c < layout.columns; c++) {
-        const mask pulled = layout.present[c] & (layout.driving[c] > vec{});
+        rate[c] = layout.driving[c] + layout.pull(creep.at(), c);
+        const mask pulled = layout.present[c] & (group.state.slip[c] == vec{}) & (rate[c] > vec{});
         const vec gap = largest(layout.threshold[c] - group.state.force(c), vec{});
-        left[c] = select(pulled, gap / (loading * layout.driving[c]), Blocks::splat(NEVER));
+        left[c] = select(pulled, gap / (loading * rate[c]), Blocks::splat(NEVER));
         least = std::min(least, least_lane(left[c]));
     }
-    // The state does not change from the last slip to the next start.
+    // The state does not change from the last slip to the next start, but for creep.
     const Clock from = alone[0].loaded;
     if (exponents.tangent.vectors > 0) exponents.begin_within(group.slip(), from.time, least);
     if (from.until(end) < least) {
@@ -365,16 +363,21 @@ bool Run::load_next(Group &group) {
     load = from.after(least);
     // A batch of exponents begins before an event.
     if (exponents.running) exponents.follow(group.slip(), load.time, false);
-    for (Block &block : alone) block.loaded = load;
+    for (int i = 0; i < blocks; i++) {
+        if (alone[i].creeps) add_creep(i, loading * least * alone[i].creep);
+        alone[i].loaded = load;
+        alone[i].creeps = false;
+        alone[i].creep = 0.0;
+    }
     due.assign(layout.columns, 0);
     for (int c = 0; c < layout.columns; c++) {
-        group.state.position[c] -= loading * least;
+        group.state.position[c] -= loading * least * (1.0 - creep[c]);
         due[c] = bits(left[c] == least);
     }
     if (exponents.running) {
         int first = 0;
         while (left.lane(first) != least) first++;
-        exponents.load_until_start(model.springs, first);
+        exponents.load_until_start(model.springs, first, &creep.lane(0), rate.lane(first));
     }
     change_due(group, now);
     while (!log.accumulating && settle(group, now)) {}

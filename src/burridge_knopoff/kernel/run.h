@@ -20,10 +20,13 @@ namespace bk {
 struct Block {
     double x, u, acceleration, age, slip, touching;
     Clock since, loaded;  // the time of this state, and the loading clock then
+    // Whether the block creeps, and its displacement relative to that of the driver, otherwise 0.
+    bool creeps = false;
+    double creep = 0.0;
 
     template <class A>
     void archive(A &values) {
-        values(x, u, acceleration, age, slip, touching, since, loaded);
+        values(x, u, acceleration, age, slip, touching, since, loaded, creeps, creep);
     }
 };
 
@@ -73,12 +76,13 @@ class Run {
     Exponents &exponents;
     const bool observing, local;
     const long long step_limit;
-    // Velocity of the driver while all blocks stick, under quasi-static loading, where v = 0; 0 under steady loading.
+    // Velocity of the driver while all blocks stick or creep, under quasi-static loading, where v = 0; 0 under steady
+    // loading.
     const double loading;
     int halting_block = -1;
     double end;
     Clock now;
-    // Under quasi-static loading, the loading clock: it runs while all blocks stick, `now` while some slip.
+    // Under quasi-static loading, the loading clock: it runs while all blocks stick or creep, `now` while some slip.
     Clock load;
     long long steps = 0;
     // The closed form between events, if it is used.
@@ -94,7 +98,7 @@ class Run {
           step_limit(step_limit), loading(loading), end(observer.end()), blocks(model.springs.blocks),
           first(observer.section ? observer.section - 1 : 0),
           last(observer.section ? observer.section : model.springs.blocks), law(model.law, 1), alone(blocks),
-          group_of(blocks, -1), lane_of(blocks, -1), version(blocks), begins(blocks) {
+          group_of(blocks, -1), lane_of(blocks, -1), version(blocks), row_of(blocks, -1), begins(blocks) {
         log.unit = model.springs.unit;
         exponents.interval = loading > 0.0 ? 0.0 : model.springs.unit;
         exponents.unit = model.springs.unit;
@@ -152,6 +156,7 @@ class Run {
     uint64_t versions = 0;                       // of groups, no two alike
     std::vector<std::unique_ptr<Group>> groups;  // nullptr if the memory was freed
     std::vector<int> spare, due;
+    std::vector<int> row_of;  // rows of blocks in a system of equations, −1 for other blocks
     // The next events at one instant: groups whose pieces end, and blocks without a group that start.
     std::vector<int> ending, starting;
 
@@ -172,18 +177,29 @@ class Run {
     void restart(double time);
     void settle_first();
     void state_of(int i, double &position, double &speed, double &direction);
-    double stuck_position(int i, const Clock &at) const;
+    double position_at_rest(int i, const Clock &at) const;
+    // Displacement of the driver relative to a block that sticks or creeps, on the loading clock.
+    double lag(int i) const { return loading * alone[i].loaded.until(load) * (1.0 - alone[i].creep); }
     Group &build(std::vector<int> members, const Clock &at);
+    Block block_in(Group &group, int lane, const Clock &loaded) const;
     void retire(Group &group);
     bool plan(Group &group);
     void change(Group &group, int lane, const Clock &at);
     bool settle(Group &group, const Clock &at);
     void find_due(Group &group);
-    bool find_resting(Group &group);
     void change_due(Group &group, const Clock &at);
     void remember();
     void start_modes(Group &group, const Mark &mark);
     int blocked() const;
+
+    // Creep, in creep.cpp.
+    void end_at_rest(Group &group);
+    bool rests(const Group &group) const;
+    void begin_creep(Group &group);
+    Group *release(Group &group);
+    std::vector<double> solve(const std::vector<int> &members, const std::vector<double> &right);
+    double creep_rate(int i) const;
+    void add_creep(int i, double distance);
 
     // One group.
     int run_whole();

@@ -202,7 +202,7 @@ struct Series {
             const mask young = (slip != vec{}) & ((state.touching[c] > 0.0) | (state.age[c] < layout.young));
             if (any(young)) acceleration = select(young, state.slip_acceleration(c, s), acceleration);
             u(1)[c] = acceleration;
-            g(0)[c] = slip * u(0)[c] + stuck[c] * (layout.threshold[c] - s);
+            g(0)[c] = slip * u(0)[c] + (slipping[c] * layout.creep_speed + stuck[c] * (layout.threshold[c] - s));
         }
         for (int c = 0; c < columns; c++) force[c] = state.force_rate(x(1), u(1), c);
     }

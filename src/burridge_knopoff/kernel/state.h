@@ -106,7 +106,7 @@ struct State {
         const vec zero{}, s = force(c);
         const mask touches = touching[c] > 0.0, stuck = slip[c] == zero;
         const vec rate = force_rate(c);
-        vec gap = slip[c] * velocity[c];
+        vec gap = slip[c] * velocity[c] + layout.creep_speed;
         mask stopping = gap < zero;
         const mask close = (gap <= coincidence) & ~stuck & ~stopping & ~touches & layout.present[c];
         if (any(close)) stopping |= close & (gap < -coincidence * (slip[c] * slip_acceleration(c, s)));
@@ -130,15 +130,12 @@ struct State {
         if (layout.damped) size = largest(size, layout.damping_diagonal[c] * fastest());
         return magnitude(s) - layout.threshold[c] <= AT_THRESHOLD * size;
     }
-    // Where a slip has come to rest within rounding: friction balances the force on the block, and the force of the
-    // dashpots is negligible as well. With a stationary driver an overdamped slip decays exponentially and has no other
-    // end.
-    mask at_rest(int c) const {
-        const vec zero{}, own = slip[c] * velocity[c];
-        const vec size = largest(layout.threshold[c], layout.diagonal[c] * magnitude(position[c]));
-        const vec balance = force(c) - slip[c] * (layout.threshold[c] * friction(own));
-        return (slip[c] != zero) &
-               (largest(magnitude(balance), layout.damping_diagonal[c] * own) <= AT_THRESHOLD * size);
+    // Where a block sticks, or its slip has become so slow that it creeps; fastest : the highest angular frequency of
+    // the chain, above the rate at which the speed of an overdamped slip decays
+    mask rests(int c, double fastest) const {
+        const vec zero{}, size = magnitude(slip_acceleration(c, force(c)));
+        return (slip[c] == zero) |
+               ((magnitude(velocity[c]) <= layout.creep_speed) & (size <= fastest * layout.creep_speed));
     }
     // The largest |U_i'| of all blocks.
     vec fastest() const {

@@ -85,8 +85,8 @@ def record_events(
     end : τ at the end of the run
     begin : events that begin earlier are left out, but count in the intervals; by default none is left out
     profiles : keep the slip of every block of each event
-    loading : steady: the driver always moves | quasistatic: the driver stops while any block slips; when all are at
-        rest it advances to the next slip
+    loading : steady: the driver always moves | quasistatic: the driver stops while any block slips; when all stick or
+        creep it advances to the next slip. An overdamped slip does not end: it creeps, and its event goes on
     solver, step : see `Settings`
 
     τ is the loading clock, the displacement of the driver divided by v. Blocks that slip at the start of the run belong

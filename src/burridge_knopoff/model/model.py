@@ -20,6 +20,8 @@ from burridge_knopoff.values import Unchanging, instance_of, read_only_copy
 LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
 
 CONTACTS = ("one_sided", "symmetric")
+#: steady: the driver moves at velocity v | quasistatic: the driver stops while any block slips
+LOADINGS = ("steady", "quasistatic")
 STARTS = ("moving", "tested")
 #: The choices of `start` and their meaning.
 START = (
@@ -112,16 +114,19 @@ class Model(Unchanging):
         """Positions e of uniform sliding relative to the driver, shape (blocks,)."""
         return read_only_copy(self.chain.sliding_offset(float(self.law(self.v))))
 
-    def begin(self, initial: InitialState, start: str = "moving") -> ChainState:
+    def begin(self, initial: InitialState, start: str = "moving", loading: str = "steady") -> ChainState:
         """Return the state at τ = 0 of a run from an initial state.
 
         start : moving or tested, see START
+        loading : steady or quasistatic; in the second case the driver rests, and dashpots to it pull at no block that
+            sticks
 
         Raises ValueError if the state does not fit the chain, or slips backward under one-sided contact.
         """
         OneOf(STARTS).form(start, "start")
+        OneOf(LOADINGS).form(loading, "loading")
         u, w = self.initial_coordinates(initial)
-        stuck = self.stuck_blocks(u, w, start)
+        stuck = self.stuck_blocks(u, w, start, self.v if loading == "steady" else 0.0)
         return ChainState(u - self.sliding_offset, np.where(stuck, 0.0, w), stuck)
 
     def initial_coordinates(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
@@ -143,12 +148,16 @@ class Model(Unchanging):
                 "forward; contact symmetric lets them slip backward"
             )
 
-    def stuck_blocks(self, position: np.ndarray, velocity: np.ndarray, start: str) -> np.ndarray:
+    def stuck_blocks(
+        self, position: np.ndarray, velocity: np.ndarray, start: str, driver_velocity: float | None = None
+    ) -> np.ndarray:
         """Return a mask of the blocks that stick at τ = 0 for a choice of `start`; U(0), U'(0) and mask: (…, blocks).
+
+        driver_velocity : by default v
 
         The force includes the dashpots, with the block at rest and its neighbours moving unless they stick as well.
         """
-        chain = self.chain
+        chain, v = self.chain, self.v if driver_velocity is None else driver_velocity
         # Spring forces from U itself: rounding in co-moving coordinates could move a block across its threshold.
         force = chain.force(position)
         stuck = np.zeros(position.shape, dtype=bool)
@@ -158,7 +167,7 @@ class Model(Unchanging):
             return force <= chain.thresholds
         for _ in range(self.blocks):
             speed = np.where(stuck, 0.0, velocity)
-            at_rest = force + chain.damping_force(speed, self.v) + chain.damping_diagonal * speed
+            at_rest = force + chain.damping_force(speed, v) + chain.damping_diagonal * speed
             more = stuck | (at_rest <= chain.thresholds)
             if np.array_equal(more, stuck):
                 break

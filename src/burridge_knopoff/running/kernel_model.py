@@ -35,4 +35,19 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         steepest=law.steepest_slope,
         v=v,
         symmetric=model.contact == "symmetric",
+        creep_speed=0.0 if loading == "steady" else creep_speed(model),
     )
+
+
+def creep_speed(model: Model) -> float:
+    """Return the speed below which a slip creeps under quasi-static loading; 0 if no slip of the model can creep.
+
+    It is a small fraction of the slowest speed at which a block slips after the drop of friction at its start, and far
+    above the speeds that rounding of forces causes.
+    """
+    chain, slope = model.chain, float(model.law.slope(0.0))
+    if not chain.is_damped and slope <= 0.0:
+        return 0.0
+    damping = chain.damping_diagonal + chain.thresholds * max(slope, 0.0)
+    resistance = np.maximum(np.sqrt(chain.diagonal * chain.masses), damping)
+    return 1e-6 * float((chain.thresholds * (1.0 - float(model.law(0.0))) / resistance).min())

@@ -2,11 +2,8 @@
 
 from __future__ import annotations
 
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import LOADINGS, Model
 from burridge_knopoff.model.ranges import OneOf
-
-#: steady: the driver moves at velocity v | quasistatic: the driver stops while any block slips
-LOADINGS = ("steady", "quasistatic")
 
 
 def is_quasistatic(loading: str, model: Model, solver: str) -> bool:
