@@ -174,7 +174,7 @@ def test_settings_fit_each_other(kind, values, key):
 
 
 def test_steps_may_be_equal():
-    assert ContinuationSettings(1e-5, 1e-5, 1e-5).largest_step == 1e-5
+    assert ContinuationSettings(**dict.fromkeys(STEPS, 1e-5)).largest_step == 1e-5
 
 
 def test_functions_have_the_defaults_of_the_classes():

@@ -29,6 +29,7 @@ from burridge_knopoff import (
     simulate,
     synchronized_orbit,
 )
+from tests.refused import refused
 
 MODEL = Model(Chain(3), law_of("linearized", 0.0865))
 STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
@@ -137,7 +138,7 @@ def test_every_public_function_is_tried():
 @pytest.mark.parametrize(("name", "argument"), [(name, key) for name, given in CALLS.items() for key in given])
 def test_a_wrong_type_is_refused_in_one_line(name, argument):
     call = getattr(burridge_knopoff, name)
-    refused = 0
+    count = 0
     for wrong in WRONG:
         try:
             call(**{**CALLS[name], argument: wrong})
@@ -145,9 +146,9 @@ def test_a_wrong_type_is_refused_in_one_line(name, argument):
             text = str(error)
             assert "\n" not in text, text
             assert len(text) < 400, text
-            refused += 1
+            count += 1
     # The others are allowed: None where there is a default, a number or a text where one is taken.
-    assert refused >= len(WRONG) - 3
+    assert count >= len(WRONG) - 3
 
 
 #: Methods with numbers that are settings, and arguments that they take.
@@ -173,6 +174,8 @@ FORMULAS = {
     "Model.check_directions",
 }
 TYPES = ("float", "int", "bool", "Any")
+INTERVALS = [("basin_map", "first_position"), ("basin_map", "last_position")]
+INTERVALS += [("follow", "interval"), ("follow_bifurcation", "interval")]
 
 
 def with_numbers(function, given):
@@ -181,9 +184,7 @@ def with_numbers(function, given):
     named = {name for name, item in shown.items() if re.search(rf"\b({'|'.join(TYPES)})\b", str(item.annotation))}
     numbers = {name for name, value in given.items() if isinstance(value, int | float)}
     varying = {name for name, item in shown.items() if item.kind == inspect.Parameter.VAR_KEYWORD}
-    return sorted(
-        (named | numbers) - varying - {"initial", "interval", "first_position", "last_position", "parameters"}
-    )
+    return sorted((named | numbers) - varying - {"initial", *(argument for _, argument in INTERVALS)})
 
 
 def public_methods():
@@ -232,6 +233,15 @@ def test_a_number_that_is_none_is_refused(name, argument, value):
     else:
         # The range of a slope may be open.
         assert value == default or value in (0, -1) or (argument == "high" and value == math.inf)
+
+
+@pytest.mark.parametrize(("name", "argument"), INTERVALS)
+@pytest.mark.parametrize(
+    "ends", [(math.nan, 1.0), (0.0, math.nan), (2.0, 1.0), ("x", 1.0), (None, 1.0), (True, 2.0), (1.0,), 0.5]
+)
+def test_ends_that_are_no_interval_are_refused(name, argument, ends):
+    with refused(match=f"^{argument}.*: got .*, expected"):
+        getattr(burridge_knopoff, name)(**{**CALLS[name], argument: ends})
 
 
 @pytest.mark.parametrize("kind", ["Chain", "Model", "InitialState", "Settings", "SearchSettings", "MotionSettings"])

@@ -205,6 +205,6 @@ def test_at_most_one_orbit_beyond_the_range_is_kept(walk):
 @pytest.mark.parametrize("parameter", ["a", "coupling"])
 def test_a_branch_ends_whatever_the_lengths_of_steps(steps, parameter):
     first, largest, smallest = steps
-    settings = ContinuationSettings(first, largest, smallest, max_orbits=5)
+    settings = ContinuationSettings(first_step=first, largest_step=largest, smallest_step=smallest, max_orbits=5)
     orbit = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.08)))
     assert 1 <= len(follow(orbit, (0.0, 10.0), settings, parameter=parameter)) <= 6

@@ -70,7 +70,11 @@ def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
     (first, high), gap = (size * end for end in RANGE), size * RESTART_GAP
     # `follow` measures its steps in the chain's own unit.
     share = size / orbits.model.chain.own_units.slope
-    settings = ContinuationSettings(share * FIRST_STEP, share * LARGEST_STEP, share * CONTINUATION.smallest_step)
+    settings = ContinuationSettings(
+        first_step=share * FIRST_STEP,
+        largest_step=share * LARGEST_STEP,
+        smallest_step=share * CONTINUATION.smallest_step,
+    )
     low, a = first, first
     while a < high:
         try:
