@@ -17,6 +17,7 @@ from burridge_knopoff.model.model import CONTACTS, STARTS
 from burridge_knopoff.motion.settings import MOTION
 from burridge_knopoff.summaries import all_laws, attractors, basins
 from tests.attractors.test_attractors import SETTINGS
+from tests.refused import refused
 
 SEARCH = replace(SETTINGS, samples=25, fraction_width=0.18)
 PLANE = BasinSettings(pixels=16, pairs=300, tiles=1)
@@ -114,6 +115,27 @@ def test_attractors_are_read_back_unchanged(searched, place, pairs):
         # Positions are stored relative to the driver.
         assert one.motion.returns == pytest.approx(other.motion.returns, abs=1e-15)
         assert one.motion.mirror_returns == pytest.approx(other.motion.mirror_returns, abs=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("other", "message"),
+    [
+        (replace(MODEL, law=law_of("nonlinear", 0.08)), "model.law: 'nonlinear', expected ['linearized'], as in"),
+        (MODEL.at(0.09), "model.a: 0.09, expected [0.08, 0.1], as in"),
+        (replace(MODEL, v=0.2), "model.v: 0.2, expected [0.1], as in"),
+        (replace(MODEL, contact="symmetric"), "model.contact: 'symmetric', expected ['one_sided'], as in"),
+        (replace(MODEL, chain=Chain(4)), "model.blocks: 4, expected [3], as in"),
+    ],
+)
+def test_files_of_another_model_are_refused(searched, other, message):
+    with refused(message):
+        known_attractors(*searched[:2], other)
+
+
+def test_returns_of_another_law_are_refused(searched):
+    table, returns, _ = searched
+    with refused("model.law: 'linearized', expected ['nonlinear'], as in"):
+        known_attractors(table, returns.assign_attrs(law="nonlinear"), MODEL)
 
 
 def test_without_attractors_all_states_are_undetermined(searched):

@@ -1,6 +1,8 @@
 """Every public call refuses a value of a wrong type in one line that names the argument."""
 
 import inspect
+import math
+import re
 
 import numpy as np
 import pytest
@@ -11,8 +13,11 @@ from burridge_knopoff import (
     Chain,
     ContinuationSettings,
     EdgeSettings,
+    FormulaLaw,
     InitialState,
     Model,
+    MotionSettings,
+    OrbitError,
     SearchSettings,
     Symmetry,
     find_attractors,
@@ -20,9 +25,11 @@ from burridge_knopoff import (
     law_of,
     limit_cycle,
     locate_bifurcations,
+    record_events,
     simulate,
     synchronized_orbit,
 )
+from tests.refused import refused
 
 MODEL = Model(Chain(3), law_of("linearized", 0.0865))
 STATE = MODEL.begin(InitialState("own", (-0.9, -1.1, -0.9), (0.1, 0.1, 0.1)))
@@ -116,7 +123,7 @@ def correct_calls():
             **QUICK,
         },
         "synchronized_orbit": {"model": MODEL},
-        "transverse_exponent": {"model": MODEL, "state": STATE, "alignment": 10.0, "window": 10.0},
+        "transverse_exponent": {"model": MODEL, "state": STATE, "alignment": 10.0, "window": 50.0},
     }
 
 
@@ -131,7 +138,7 @@ def test_every_public_function_is_tried():
 @pytest.mark.parametrize(("name", "argument"), [(name, key) for name, given in CALLS.items() for key in given])
 def test_a_wrong_type_is_refused_in_one_line(name, argument):
     call = getattr(burridge_knopoff, name)
-    refused = 0
+    count = 0
     for wrong in WRONG:
         try:
             call(**{**CALLS[name], argument: wrong})
@@ -139,9 +146,102 @@ def test_a_wrong_type_is_refused_in_one_line(name, argument):
             text = str(error)
             assert "\n" not in text, text
             assert len(text) < 400, text
-            refused += 1
+            count += 1
     # The others are allowed: None where there is a default, a number or a text where one is taken.
-    assert refused >= len(WRONG) - 3
+    assert count >= len(WRONG) - 3
+
+
+#: Methods with numbers that are settings, and arguments that they take.
+METHODS = {
+    "Catalogue.slope": lambda: (record_events(DROPPING, REST, 200.0), {"low": -9.0, "high": 9.0}),
+    "InitialState.coordinates": lambda: (InitialState("own", -0.9, 0.1), {"blocks": 3}),
+    "MotionSettings.scaled_by": lambda: (MotionSettings(), {"share": 0.5}),
+    "MotionSettings.scaled_to_velocity": lambda: (MotionSettings(), {"v": 0.05}),
+    "Model.at": lambda: (MODEL, {"v": 0.2}),
+    "Law.at": lambda: (MODEL.law, {}),
+    "FormulaLaw.at": lambda: (FormulaLaw(0.1, "1 - c*a*u", c=0.5), {"c": 0.4}),
+    "PeriodicOrbit.events_of": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
+    "PeriodicOrbit.start": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
+    "PeriodicOrbit.stick_time": lambda: (CALLS["follow"]["orbit"], {"block": 1}),
+    "Run.catalogue": lambda: (simulate(DROPPING, initial=REST, **QUICK), {"window": 5.0, "transient": 1.0}),
+}
+#: Functions of a physical quantity.
+FORMULAS = {
+    "Chain.damping_force",
+    "Chain.sliding_offset",
+    "Law.least_friction",
+    "FormulaLaw.least_friction",
+    "Model.check_directions",
+}
+TYPES = ("float", "int", "bool", "Any")
+INTERVALS = [("basin_map", "first_position"), ("basin_map", "last_position")]
+INTERVALS += [("follow", "interval"), ("follow_bifurcation", "interval")]
+
+
+def with_numbers(function, given):
+    """Return the parameters of a function that are numbers, or true or false."""
+    shown = inspect.signature(function).parameters
+    named = {name for name, item in shown.items() if re.search(rf"\b({'|'.join(TYPES)})\b", str(item.annotation))}
+    numbers = {name for name, value in given.items() if isinstance(value, int | float)}
+    varying = {name for name, item in shown.items() if item.kind == inspect.Parameter.VAR_KEYWORD}
+    return sorted((named | numbers) - varying - {"initial", *(argument for _, argument in INTERVALS)})
+
+
+def public_methods():
+    for name in burridge_knopoff.__all__:
+        kind = getattr(burridge_knopoff, name)
+        for method, function in inspect.getmembers(kind, inspect.isfunction) if inspect.isclass(kind) else ():
+            if not method.startswith("_") and function.__module__.startswith("burridge_knopoff"):
+                yield f"{name}.{method}", function
+
+
+def test_every_method_with_numbers_is_tried():
+    numbered = {name for name, function in public_methods() if set(with_numbers(function, {})) - {"self"}}
+    assert numbered - FORMULAS <= {*METHODS}
+
+
+NUMBERS = [(name, key) for name, given in CALLS.items() for key in with_numbers(getattr(burridge_knopoff, name), given)]
+OF_METHODS = [
+    (name, key)
+    for name, function in public_methods()
+    if name in METHODS
+    for key in with_numbers(function, METHODS[name]()[1])
+]
+
+
+@pytest.mark.parametrize(("name", "argument"), [*NUMBERS, *OF_METHODS])
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 0, -1, "x", None, True, 1j])
+def test_a_number_that_is_none_is_refused(name, argument, value):
+    """Every public function refuses it in a line that names the argument; 0 and negative numbers may be allowed."""
+    made, given = METHODS[name]() if name in METHODS else (burridge_knopoff, CALLS[name])
+    call = getattr(made, name.rpartition(".")[2])
+    shown = inspect.signature(call).parameters.get(argument)
+    truth = shown is not None and str(shown.annotation) == "bool"
+    default = shown.default if shown is not None else None
+    message = None
+    try:
+        call(**{**given, argument: value})
+    except ValueError as error:
+        message = str(error)
+    except OrbitError:
+        assert value in (0, -1)
+    if message is not None:
+        assert "\n" not in message
+        assert value in (0, -1, default) or argument in message.partition(":")[0], message
+    elif truth or value is True:
+        assert truth == (value is True)
+    else:
+        # The range of a slope may be open.
+        assert value == default or value in (0, -1) or (argument == "high" and value == math.inf)
+
+
+@pytest.mark.parametrize(("name", "argument"), INTERVALS)
+@pytest.mark.parametrize(
+    "ends", [(math.nan, 1.0), (0.0, math.nan), (2.0, 1.0), ("x", 1.0), (None, 1.0), (True, 2.0), (1.0,), 0.5]
+)
+def test_ends_that_are_no_interval_are_refused(name, argument, ends):
+    with refused(match=f"^{argument}.*: got .*, expected"):
+        getattr(burridge_knopoff, name)(**{**CALLS[name], argument: ends})
 
 
 @pytest.mark.parametrize("kind", ["Chain", "Model", "InitialState", "Settings", "SearchSettings", "MotionSettings"])

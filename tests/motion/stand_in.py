@@ -4,11 +4,12 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff import Attractor, MotionKind, SteadyMotion, Symmetry
+from burridge_knopoff import Attractor, Chain, Model, MotionKind, SteadyMotion, Symmetry, law_of
 from burridge_knopoff.motion.section_returns import Returns
 
 CLOSED = (MotionKind.PERIODIC, MotionKind.SYNCHRONIZED)
 ASYMMETRIC, SYMMETRIC, SYNCHRONIZED = Symmetry.ASYMMETRIC, Symmetry.SYMMETRIC, Symmetry.SYNCHRONIZED
+MODEL = Model(Chain(3), law_of("linearized", 0.08))
 #: Returns of an arbitrary motion.
 ROWS = np.random.default_rng(4).uniform(-1.0, 1.0, (40, 6))
 
@@ -18,7 +19,7 @@ def stand_in(
 ) -> Attractor:
     """Return an attractor whose last return has block 1 `ahead`; further features may be given."""
     of_attractor = {
-        key: features.pop(key) for key in ("slow", "close_returns", "patience", "radius") if key in features
+        key: features.pop(key) for key in ("model", "slow", "close_returns", "patience", "radius") if key in features
     }
     returns = np.array([[9.0, 9.0, 9.0, 0.0, 0.0, 0.0], [ahead, 0.0, 0.0, 0.0, 0.5, 0.25]])
     motion = {
@@ -33,8 +34,8 @@ def stand_in(
         "period": 10.0 if features.get("kind", MotionKind.PERIODIC) in CLOSED else np.nan,
         "exponent": np.array([0.0, -0.1, -0.2]),
     }
-    of_attractor = {"radius": 0.01, "close_returns": 8, **of_attractor}
-    return Attractor(SteadyMotion(**{**motion, **features}), symmetry, partner, **of_attractor)
+    of_attractor = {"model": MODEL, "radius": 0.01, "close_returns": 8, **of_attractor}
+    return Attractor(motion=SteadyMotion(**{**motion, **features}), symmetry=symmetry, partner=partner, **of_attractor)
 
 
 def shown(

@@ -199,3 +199,12 @@ def test_a_branch_has_at_most_the_requested_number_of_orbits(walk, most, count):
 def test_at_most_one_orbit_beyond_the_range_is_kept(walk):
     points, _ = walk([None], [[a_step(0.11), a_step(0.21), a_step(0.22)]], [])
     assert [point.orbit.a for point in points] == [0.1, 0.11, 0.21]
+
+
+@pytest.mark.parametrize("steps", [(1e6, 1e6, 1e6), (1e6, 1e6, 1e-300), (5e-324, 1e6, 5e-324)], ids=str)
+@pytest.mark.parametrize("parameter", ["a", "coupling"])
+def test_a_branch_ends_whatever_the_lengths_of_steps(steps, parameter):
+    first, largest, smallest = steps
+    settings = ContinuationSettings(first_step=first, largest_step=largest, smallest_step=smallest, max_orbits=5)
+    orbit = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.08)))
+    assert 1 <= len(follow(orbit, (0.0, 10.0), settings, parameter=parameter)) <= 6

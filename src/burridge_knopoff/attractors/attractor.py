@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.model.model import ChainState
+from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.period import orbit_length
 from burridge_knopoff.motion.section_returns import Returns
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import ROUNDING
+from burridge_knopoff.values import each_instance_of
 
 #: Successive returns within the capture radius after which a trajectory counts as captured. A trajectory that only
 #: passes by does not return that often.
@@ -23,7 +26,7 @@ LONGEST_ORBIT = 100
 
 @dataclass(frozen=True, eq=False)
 class Attractor:
-    """An attractor, represented by a settled motion.
+    """An attractor of a model, represented by a settled motion.
 
     partner : index of its mirror image among the attractors of the same a; its own index if the mirror image is the
         same set, or if there is none
@@ -43,6 +46,7 @@ class Attractor:
     ('SYMMETRIC', 1)
     """
 
+    model: Model
     motion: SteadyMotion
     symmetry: Symmetry
     partner: int
@@ -51,8 +55,22 @@ class Attractor:
     close_returns: int = field(kw_only=True)
     patience: float = 0.0
 
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        """Refuse a pickle of a version in which attractors did not know their model."""
+        if "model" not in state:
+            raise ValueError("attractor: got a pickle without its model, expected one of this version: search again")
+        vars(self).update(state)
+
     def __repr__(self) -> str:
         return f"<Attractor, {self.symmetry.name.lower()}: {self.motion.words}>"
+
+
+def attractors_of(model: Model, attractors: Sequence[Attractor]) -> list[Attractor]:
+    """Return a list of attractors; raises ValueError, one line, unless all are attractors of this model."""
+    attractors = each_instance_of(attractors, Attractor, "attractors")
+    for index, attractor in enumerate(attractors):
+        model.check_same(attractor.model, f"attractors[{index}].model")
+    return attractors
 
 
 def required_returns(found: Returns, tolerance: float) -> int:

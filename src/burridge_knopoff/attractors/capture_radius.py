@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Annotated
 
 import numpy as np
 
@@ -15,7 +16,9 @@ from burridge_knopoff.attractors.attractor import Attractor, perturb
 from burridge_knopoff.attractors.labels import advance, label
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.slow_set import SLOW_TIME
+from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.ranges import HUGE, Number
 from burridge_knopoff.motion.kind import CHAOS
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.motion.section_returns import state_of
@@ -57,20 +60,32 @@ def embedded_orbits(attractors: Sequence[Attractor], index: int, tolerance: floa
     ]
 
 
+@settings
 @dataclass(frozen=True)
 class Capture:
     """How capture radii are determined.
 
-    largest : largest radius, for v = 0.1, unless the returns are farther apart than that; a larger perturbation may
-        leave the basin of a thin attractor although all samples come back
-    recovery : factor by which trajectories have to come closer than they were perturbed; near a motion that neither
-        attracts nor repels the distance changes by much less
-    shrinking : factor by which the next radius that is tried is smaller
+    Raises ValueError, one line, for anything out of range.
     """
 
-    largest: float = 0.02
-    recovery: float = 10.0
-    shrinking: float = 2.0
+    largest: Annotated[
+        float,
+        Number(0.0, HUGE, above=True),
+        "largest radius, for v = 0.1, unless the returns are farther apart than that; a larger perturbation may leave "
+        "the basin of a thin attractor although all samples come back",
+    ] = 0.02
+    recovery: Annotated[
+        float,
+        Number(1.0, HUGE),
+        "factor by which trajectories have to come closer than they were perturbed; near a motion that neither "
+        "attracts nor repels the distance changes by much less",
+    ] = 10.0
+    shrinking: Annotated[
+        float, Number(1.0, HUGE, above=True), "factor by which the next radius that is tried is smaller"
+    ] = 2.0
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
     def recovery_distance(self, motion: SteadyMotion, radius: float) -> float:
         """Return how close to an attractor a trajectory perturbed by this radius has to come back."""

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.attractors.attractor import Attractor
+from burridge_knopoff.attractors.attractor import Attractor, attractors_of
 from burridge_knopoff.attractors.settings import SEARCH
 from burridge_knopoff.kernel._core import Clouds
 from burridge_knopoff.model.model import STARTS, ChainState, Model
@@ -16,7 +16,7 @@ from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.running.threads import map_in_threads
-from burridge_knopoff.values import each_instance_of, instance_of, real_array
+from burridge_knopoff.values import instance_of, real_array
 
 #: Label of a state that reaches no known attractor.
 UNDETERMINED = -1
@@ -104,13 +104,14 @@ def label_states(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the attractor that each initial state reaches, and the time τ at which this is certain, shape (n,) each.
 
-    model, attractors : as `find_attractors` takes and returns them
+    model, attractors : as `find_attractors` takes and returns them; the attractors are those of this model
     position, velocity : U(0) and U'(0), shape (n, blocks); start : moving or tested, see `Model.begin`
     time_limit : time by which a state has to reach one of them
     threads : number of threads that share the trajectories; the labels do not depend on it
 
-    A label is the index of an attractor, or −1 if none is reached. Raises ValueError, one line, for shapes, times or a
-    start that are not allowed, for numbers that are not finite, and for velocities below 0 under one-sided contact.
+    A label is the index of an attractor, or −1 if none is reached. Raises ValueError, one line, for attractors of
+    another model, for shapes, times or a start that are not allowed, for numbers that are not finite, and for
+    velocities below 0 under one-sided contact.
 
     >>> import numpy as np
     >>> from burridge_knopoff import Chain, Model, SearchSettings, find_attractors, label_states, law_of
@@ -124,7 +125,7 @@ def label_states(
     ([0, 1], [62.0, 355.0])
     """
     instance_of(model, Model, "model")
-    attractors = each_instance_of(attractors, Attractor, "attractors")
+    attractors = attractors_of(model, attractors)
     position, velocity = real_array(position, "position"), real_array(velocity, "velocity")
     if not position.shape == velocity.shape == (*position.shape[:1], model.blocks):
         raise ValueError(

@@ -264,7 +264,7 @@ class Search(Convergence):
             return
         enough = required_returns(found, self.tolerance)
         if synchronized:
-            new = [Attractor(motion, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=enough)]
+            new = [Attractor(self.model, motion, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=enough)]
         else:
             new = self._images(motion, self.is_symmetric(found) or self.is_eventually_symmetric(found), enough)
         yield Candidate(new, SMALLEST_RADIUS, self.capture)
@@ -288,12 +288,12 @@ class Search(Convergence):
         """
         index = len(self.attractors)
         if not self.model.chain.is_mirror_symmetric:
-            return [Attractor(motion, Symmetry.ASYMMETRIC, index, close_returns=enough)]
+            return [Attractor(self.model, motion, Symmetry.ASYMMETRIC, index, close_returns=enough)]
         if symmetric:
-            return [Attractor(motion.symmetrized(), Symmetry.SYMMETRIC, index, close_returns=enough)]
+            return [Attractor(self.model, motion.symmetrized(), Symmetry.SYMMETRIC, index, close_returns=enough)]
         return [
-            Attractor(motion, Symmetry.ASYMMETRIC, index + 1, close_returns=enough),
-            Attractor(motion.mirrored(), Symmetry.ASYMMETRIC, index, close_returns=enough),
+            Attractor(self.model, motion, Symmetry.ASYMMETRIC, index + 1, close_returns=enough),
+            Attractor(self.model, motion.mirrored(), Symmetry.ASYMMETRIC, index, close_returns=enough),
         ]
 
     def _slow_synchrony(self) -> Iterator[Candidate]:
@@ -310,7 +310,7 @@ class Search(Convergence):
         exact = self.classifier(self.settings.transient, self.settings.window).measure(orbit.reference)
         if exact is None:
             return
-        found = Attractor(exact, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=CLOSE_RETURNS)
+        found = Attractor(self.model, exact, Symmetry.SYNCHRONIZED, len(self.attractors), close_returns=CLOSE_RETURNS)
         yield Candidate([found], SMALLEST_RADIUS, replace(self.capture, recovery=SLOW_RECOVERY))
 
     def accept(self, candidate: Candidate) -> list[Attractor] | None:

@@ -21,6 +21,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.values import format_value, refusal
 
 _RETURN = ("section_return", "block")
 VARIABLES = {
@@ -86,7 +87,20 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
 
     attractors : `attractors.nc`, with the law and the a of the model
     returns : the section returns under that law, from the same search
+
+    Raises ValueError, one line, if the files are not of this law, a, v, contact and number of blocks.
     """
+    held = [
+        ("law", model.law.name, attractors["law"].values.tolist()),
+        ("law", model.law.name, [returns.attrs.get("law", model.law.name)]),
+        ("a", model.a, attractors["a"].values.tolist()),
+        ("v", model.v, [attractors.attrs["v"]]),
+        ("contact", model.contact, [attractors.attrs["contact"]]),
+        ("blocks", model.blocks, [attractors.sizes["block"]]),
+    ]
+    for name, value, values in held:
+        if value not in values:
+            raise refusal(f"model.{name}", value, f"{format_value(values)}, as in the files")
     found = attractors.sel(law=model.law.name, a=model.a)
     slots = np.flatnonzero(found["branch"].values != UNDETERMINED)
     branch, side = found["branch"].values[slots], found["side"].values[slots]
@@ -121,5 +135,5 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
         )
         fixed = {name: one[name].item() for name in ("radius", "close_returns", "patience")}
         symmetry = Symmetry(one["symmetry"].item())
-        result.append(Attractor(motion, symmetry, partner, slow=bool(one["slow"].item()), **fixed))
+        result.append(Attractor(model, motion, symmetry, partner, slow=bool(one["slow"].item()), **fixed))
     return KnownAttractors(model, result, branch, side)

@@ -19,7 +19,7 @@ from functools import cached_property
 
 import numpy as np
 
-from burridge_knopoff.attractors.attractor import Attractor
+from burridge_knopoff.attractors.attractor import Attractor, attractors_of
 from burridge_knopoff.attractors.labels import UNDETERMINED, label, label_arrays
 from burridge_knopoff.attractors.search import find_attractors
 from burridge_knopoff.attractors.settings import SEARCH
@@ -38,7 +38,7 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import check_state
 from burridge_knopoff.running.settings import LONGEST
-from burridge_knopoff.values import each_instance_of, instance_of
+from burridge_knopoff.values import instance_of
 
 # A boundary is first followed for the longest time divided by this number, and then for twice as long each time, until
 # an orbit is found.
@@ -149,8 +149,8 @@ def edge_state(
     third basin, the boundary may be that with the third one: `sides` names the attractors. An orbit that attracts only
     weakly within the boundary, or has a period longer than half of the duration, is not distinguished from a torus.
 
-    Raises ValueError, one line, for a wrong argument and for states that reach the same attractor or none; OrbitError
-    if the boundary is lost, which happens if not all attractors are known.
+    Raises ValueError, one line, for a wrong argument, for attractors of another model, and for states that reach the
+    same attractor or none; OrbitError if the boundary is lost, which happens if not all attractors are known.
 
     Source: J. D. Skufca, J. A. Yorke and B. Eckhardt, Phys. Rev. Lett. 96 (2006) 174101.
 
@@ -167,7 +167,7 @@ def edge_state(
     for state in (state_a, state_b):
         check_state(model, state)
     attractors = find_attractors(model)[0] if attractors is None else attractors
-    attractors = each_instance_of(attractors, Attractor, "attractors")
+    attractors = attractors_of(model, attractors)
     instance_of(settings, EdgeSettings, "settings")
     time_limit = Number(0.0, 10.0 * LONGEST, above=True).form(time_limit, "time_limit")
     for share in RADIUS_SHARES:

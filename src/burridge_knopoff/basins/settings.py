@@ -12,6 +12,7 @@ from burridge_knopoff.model.random_numbers import SEED
 from burridge_knopoff.model.ranges import Number, Several, Whole
 from burridge_knopoff.model.sampling import POSITION, POSITIONS, SAMPLES
 from burridge_knopoff.running.settings import TIME
+from burridge_knopoff.values import instance_of
 
 
 @settings
@@ -44,6 +45,7 @@ class BasinSettings:
 
     def __post_init__(self) -> None:
         check_fields(self)
+        instance_of(self.initial, InitialState, "initial")
         if self.tiles > self.pixels:
             raise ValueError(f"tiles: got {self.tiles}, expected at most the {self.pixels} rows of a map")
 

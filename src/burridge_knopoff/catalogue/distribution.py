@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
+
+from burridge_knopoff.values import real_number, refusal
 
 #: Width and edges of the bins of magnitudes and of logarithms of intervals.
 WIDTH = 0.5
@@ -26,8 +29,11 @@ def fit_range(
     affected by the size of a block, and at its maximum it is not yet exponential (J. Woessner and S. Wiemer, Bull.
     Seismol. Soc. Am. 95 (2005) 684). The range ends below the bin with the fewest events between there and the bin that
     releases most moment, that of the largest events; in many chains this bin lies in a gap. The ends are equal, or NaN,
-    if there is no such range.
+    if there is no such range. Raises ValueError, one line, for an end that is not a number.
     """
+    for key, end in (("low", low), ("high", high)):
+        if end is not None and math.isnan(real_number(end)):
+            raise refusal(key, end, "a number")
     several = magnitude[blocks > 1]
     if not len(several):
         return (np.nan if low is None else low), (np.nan if high is None else high)

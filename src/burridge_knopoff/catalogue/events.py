@@ -11,9 +11,9 @@ from burridge_knopoff.kernel._core import Catalogue
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number, OneOf, TrueOrFalse
 from burridge_knopoff.running.runner import FIXED_STEP_SOLVERS, Runner, new_observer
-from burridge_knopoff.running.settings import SOLVERS, check_step
+from burridge_knopoff.running.settings import SOLVERS, TIME, check_step
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_number, refusal
+from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
 
 #: Largest number of events, and of slips in profiles, that a run stores.
 MOST_EVENTS = MOST_NUMBERS / 10
@@ -125,8 +125,7 @@ def record_events(
         raise refusal("end", end, f"a time after begin ({begin:g})")
     profiles = TrueOrFalse().form(profiles, "profiles")
     solver = OneOf((*SOLVERS, "euler")).form(solver, "solver")
-    if not real_number(step) > 0.0:
-        raise refusal("step", step, "a number above 0")
+    step = TIME.form(step, "step")
     stepping = solver in FIXED_STEP_SOLVERS
     if stepping:
         check_step(step, LONGEST_STEP, end - start.time, model.chain)

@@ -63,7 +63,8 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
     bw/2 or more. p is sensitive to the rounding as well.
 
     Raises ValueError for fewer than MIN_EVENTS events in the range, if all magnitudes are equal or too close to each
-    other for b to be finite, if a magnitude in the range is infinite or any is NaN, and if `low` is not finite.
+    other for b to be finite, if a magnitude in the range is infinite or any is NaN, if `low` is not
+    finite, and if `high` is below `low`.
 
     References: K. Aki, Bull. Earthq. Res. Inst. 43 (1965) 237; for two ends, R. Page, Bull. Seismol. Soc. Am. 58 (1968)
     1131; H. W. Lilliefors, J. Am. Stat. Assoc. 62 (1967) 399 and 64 (1969) 387; for bins, T. Utsu, Geophys. Bull.
@@ -82,8 +83,8 @@ def fit_slope(magnitude: ArrayLike, low: float, high: float = math.inf) -> Slope
         raise refusal("magnitude", math.nan, "numbers")
     if not math.isfinite(real_number(low)):
         raise refusal("low", low, "a finite number")
-    if math.isnan(real_number(high)):
-        raise refusal("high", high, "a number")
+    if not real_number(high) >= real_number(low):
+        raise refusal("high", high, f"a number of at least low ({real_number(low):g})")
     low, high = float(low), float(high)
     inside = np.sort(magnitude[(magnitude >= low) & (magnitude <= high)])
     where = f"between {low:g} and {high:g}"

@@ -153,6 +153,8 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     instance_of(model, Model, "model")
     instance_of(start, ChainState, "start")
     end = TIMES.form(end, "end")
+    if end <= start.time:
+        raise refusal("end", end, f"a time after the start ({start.time:g})")
     blocks = model.blocks
     perturbations = np.vstack([np.eye(blocks), np.zeros((blocks, blocks))])
     runner = Runner(model, perturbations=perturbations, loading=loading, groups=False)

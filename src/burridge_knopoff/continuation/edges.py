@@ -166,7 +166,11 @@ def approach(model: Model, state: ChainState, edges: Sequence[Edge], branch: int
 
     model, state : the model near a crisis, and a state on the attractor; branch : its branch
     edges : at the nearest a at which the attractor exists
+
+    Raises ValueError, one line, for an edge state of a model that differs in more than a.
     """
+    for index, edge in enumerate(edges):
+        model.at(edge.a).check_same(edge.state.model, f"edges[{index}].model")
     found = visit(model, state, 0.0, APPROACH)
     if found is None:
         return Approach()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -32,12 +33,14 @@ def follow_law(first: Model, second: Model, start: ChainState, settings: SearchS
     first, second : models that differ only in the law; start : a state on an attractor of the first
 
     The law is changed in steps, along the straight line between both. None if the motion does not continue smoothly: it
-    does not settle, or settles on a set that is not close to the one before.
+    does not settle, or settles on a set that is not close to the one before. Raises ValueError, one line, for models
+    that differ in more than the law.
     """
+    first.check_same(replace(second, law=first.law), "second")
     before: Returns | None = None
     for share in np.linspace(0.0, 1.0, STEPS + 1).tolist():
         law = second.law if share == 1.0 else blend(first.law, second.law, share)
-        model = Model(first.chain, law, first.v, first.contact)
+        model = replace(first, law=law)
         found = visit(model, start, settings.transient, settings.window)
         if found is None:
             return None

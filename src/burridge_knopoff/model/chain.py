@@ -190,11 +190,23 @@ class Chain(Unchanging):
 
         A network is never equivalent to a row, because a row has a mirror image.
         """
-        if self.is_network != other.is_network:
-            return False
-        of_blocks = ("driving", "driver_damping", "thresholds", "masses")
-        pairs = [(getattr(self, name), getattr(other, name)) for name in of_blocks]
-        return all(np.array_equal(*pair) for pair in (*pairs, *zip(self.neighbours, other.neighbours, strict=True)))
+        return self.different_key(other) is None
+
+    def different_key(self, other: Chain) -> str | None:
+        """Return a key in which another chain differs; None if it is equivalent, see `is_equivalent_to`."""
+        if self.blocks != other.blocks:
+            return "blocks"
+        start, index, strength, damping = (
+            np.array_equal(*pair) for pair in zip(self.neighbours, other.neighbours, strict=True)
+        )
+        if not (self.is_network == other.is_network and start and index):
+            return next(key for key in ("grid", "springs", "ends") if getattr(self, key) != getattr(other, key))
+        for key in BLOCK_PARAMETERS:
+            if not np.array_equal(self.parameter_values(key), other.parameter_values(key)):
+                return key
+        if strength and damping:
+            return None
+        return "springs" if self.springs != other.springs else "damping" if strength else "coupling"
 
     def parameter_count(self, key: str) -> int:
         """Return how many values a parameter has: one for each spring of a row or a ring, or one for each block."""

@@ -9,9 +9,9 @@ import numpy as np
 
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.random_numbers import Numbers, RandomNumbers, block_values
-from burridge_knopoff.model.ranges import Either, Number, Several, Text
+from burridge_knopoff.model.ranges import Either, Number, Several, Text, Whole
 from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
-from burridge_knopoff.values import format_value
+from burridge_knopoff.values import format_value, instance_of
 
 STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
 COORDINATE = Number(-1e6, 1e6)
@@ -46,6 +46,7 @@ class InitialState:
     ]
 
     def __post_init__(self) -> None:
+        instance_of(self.name, str, "name")
         check_fields(self)
         lengths = [len(values) for values in (self.position, self.velocity) if isinstance(values, tuple)]
         if len({*lengths}) > 1:
@@ -63,6 +64,7 @@ class InitialState:
 
         Raises ValueError, one line, if the state has lists of another length.
         """
+        blocks = Whole(1, MAXIMUM_BLOCKS).form(blocks, "blocks")
         for values, words in ((self.position, "positions"), (self.velocity, "velocities")):
             if isinstance(values, tuple) and len(values) != blocks:
                 given = f"the number of {words} of the initial state {self.name!r}"

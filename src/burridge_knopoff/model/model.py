@@ -15,7 +15,7 @@ from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.parameters import set_parameters
 from burridge_knopoff.model.ranges import Number, OneOf, Text
-from burridge_knopoff.values import Unchanging, instance_of, read_only_copy
+from burridge_knopoff.values import Unchanging, format_value, instance_of, read_only_copy, refusal
 
 LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
 
@@ -88,6 +88,20 @@ class Model(Unchanging):
         Raises ValueError, one line, as `parameters.set_parameters` does.
         """
         return set_parameters(self, parameters if a is None else {"a": a, **parameters})
+
+    def check_same(self, other: Model, key: str) -> None:
+        """Check that another model is the same, whatever the form in which its chain is given.
+
+        Raises ValueError, one line, with a part in which it differs and `key` as its name.
+        """
+        part = self.chain.different_key(other.chain)
+        if part is not None:
+            name, own, others = f"chain.{part}", getattr(self.chain, part), getattr(other.chain, part)
+        else:
+            values = ((name, getattr(self, name), getattr(other, name)) for name in ("a", "law", "v", "contact"))
+            name, own, others = next((item for item in values if item[1] != item[2]), ("", None, None))
+        if name:
+            raise refusal(f"{key}.{name}", others, f"{format_value(own)}, as in the model")
 
     @property
     def has_closed_form(self) -> bool:

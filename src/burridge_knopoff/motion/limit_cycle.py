@@ -16,7 +16,7 @@ from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_period
 from burridge_knopoff.periodic_orbits.return_map import mirror_order
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.running.settings import DURATION
+from burridge_knopoff.running.settings import DURATION, TIME
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of
 
@@ -56,7 +56,7 @@ def limit_cycle(model: Model, state: ChainState, settling: float = 0.0, window: 
     (157.2451, 'SYMMETRIC', (20, 54, 20))
     """
     instance_of(model, Model, "model")
-    window = WINDOW * model.chain.own_units.time if window is None else DURATION.form(window, "window")
+    window = WINDOW * model.chain.own_units.time if window is None else TIME.form(window, "window")
     return orbit_of_motion(model, state, DURATION.form(settling, "settling"), window)
 
 

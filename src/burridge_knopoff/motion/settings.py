@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
 from burridge_knopoff.model.fields import check_fields, fields_of, settings
-from burridge_knopoff.model.ranges import SHARE, TOLERANCE, Number
+from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.ranges import HUGE, SHARE, TOLERANCE, Number
 from burridge_knopoff.running.section import SUM, Section, SectionRange
 from burridge_knopoff.running.settings import TIME, Settings
 
@@ -69,6 +70,7 @@ class MotionSettings:
 
     def scaled_to_velocity(self, v: float) -> MotionSettings:
         """Return the settings for a driver velocity v: below 0.1 motion is smaller and slower in proportion."""
+        v = fields_of(Model)["v"].range.form(v, "v")
         share = min(1.0, v / 0.1)
         return replace(
             self.scaled_by(share),
@@ -78,6 +80,7 @@ class MotionSettings:
 
     def scaled_by(self, share: float) -> MotionSettings:
         """Return settings with the thresholds of exponents multiplied by a factor."""
+        share = Number(0.0, HUGE).form(share, "share")
         return replace(self, zero_exponent=share * self.zero_exponent, chaotic_exponent=share * self.chaotic_exponent)
 
 

@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
+from burridge_knopoff.model.fields import check_fields, settings
+from burridge_knopoff.model.ranges import Number, TrueOrFalse, Whole
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.border_collision import approach_grazing, smooth_step, switch_branch
 from burridge_knopoff.periodic_orbits.floquet import critical_values
@@ -23,7 +25,10 @@ REDUCTION_DISTANCE = 3e-2
 # Factor by which the length of a step grows after a successful step.
 STEP_GROWTH = 2.0
 
+LENGTH = Number(0.0, 1e6, above=True)
 
+
+@settings
 @dataclass(frozen=True)
 class ContinuationSettings:
     """Settings of the continuation: lengths of steps along the branch, mostly in a, and the maximum number of orbits.
@@ -34,15 +39,24 @@ class ContinuationSettings:
     Along another parameter, the unit of length is the change that moves the return of the orbit by about as much as a
     change of 1 in a does for a short orbit. For long orbits, whose return changes faster, the unit is smaller.
 
+    Raises ValueError, one line, for anything out of range, and unless smallest_step ≤ first_step ≤ largest_step.
+
     >>> from burridge_knopoff import ContinuationSettings
     >>> ContinuationSettings(max_orbits=20).largest_step
     0.0005
     """
 
-    first_step: float = 1e-4
-    largest_step: float = 5e-4
-    smallest_step: float = 1e-9
-    max_orbits: int = 200
+    first_step: Annotated[float, LENGTH, "length of the first step, and of the first step after a grazing"] = 1e-4
+    largest_step: Annotated[float, LENGTH, "largest length of a step"] = 5e-4
+    smallest_step: Annotated[float, LENGTH, "length of a step below which the branch is given up"] = 1e-9
+    max_orbits: Annotated[int, Whole(1, 10**9), "largest number of orbits of a branch"] = 200
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        for key, limit in (("smallest_step", "first_step"), ("first_step", "largest_step")):
+            value, most = getattr(self, key), getattr(self, limit)
+            if value > most:
+                raise refusal(key, value, f"at most {limit} ({most:g})")
 
 
 CONTINUATION = ContinuationSettings()
@@ -92,6 +106,9 @@ def follow(
     low, high = interval_ends(interval)
     instance_of(orbit, PeriodicOrbit, "orbit")
     instance_of(settings, ContinuationSettings, "settings")
+    upward = TrueOrFalse().form(upward, "upward")
+    if not callable(is_complete):
+        raise refusal("is_complete", is_complete, "a function")
     line = line_of(orbit, parameter)
     if not low <= line.value(orbit.model) <= high:
         raise OrbitError(f"{line.place(orbit.model)}: not within the range {low!r} to {high!r}")

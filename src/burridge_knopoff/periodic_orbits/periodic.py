@@ -19,13 +19,13 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.ranges import Number
+from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, mean_distance, rate
 from burridge_knopoff.periodic_orbits.parameter_line import ParameterLine, line_along_a
 from burridge_knopoff.periodic_orbits.return_map import ReturnMap, allowed_directions, mirror_order
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.runner import check_state
-from burridge_knopoff.running.settings import LONGEST
+from burridge_knopoff.running.settings import TIME
 from burridge_knopoff.values import instance_of
 
 #: Largest difference of a position or velocity after a return, times v if v > 1, all in the chain's own units. Below it
@@ -105,7 +105,8 @@ class PeriodicOrbit:
         return [(time, int(block), int(kind)) for time, block, kind in self.event_rows.tolist()]
 
     def events_of(self, block: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return times and kinds of the events of one block, each of shape (events,)."""
+        """Return times and kinds of the events of one block, numbered from 0, each of shape (events,)."""
+        block = Whole(0, self.model.blocks - 1).form(block, "block")
         time, moved, kind = self.event_rows.T
         return time[moved == block], kind[moved == block]
 
@@ -143,7 +144,7 @@ class PeriodicOrbit:
         return mean_distance(self.model, self.reference, self.period)
 
     def start(self, block: int) -> ChainState:
-        """Return the state at the first stop of a block after the reference; raises OrbitError if there is none."""
+        """Return the state at the first stop of a block, numbered from 0; raises OrbitError if there is none."""
         time, kind = self.events_of(block)
         if not (kind == 0).any():
             raise OrbitError(f"block = {block!r}: it never stops on this orbit")
@@ -279,7 +280,8 @@ def find_periodic_orbit(model: Model, guess: ChainState, return_time: float, sym
     (0.081, 157.2682)
     """
     instance_of(model, Model, "model")
-    return_time, symmetry = Number(0.0, LONGEST, above=True).form(return_time, "return_time"), Symmetry(symmetry)
+    return_time = TIME.form(return_time, "return_time")
+    symmetry = Symmetry(Whole(0, len(Symmetry) - 1).form(symmetry, "symmetry"))
     if symmetry != Symmetry.ASYMMETRIC and not model.chain.is_mirror_symmetric:
         raise ValueError(
             f"symmetry: got {symmetry.name.lower()!r}, expected asymmetric in a chain that is not its own mirror image"

@@ -18,7 +18,7 @@ from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
 from burridge_knopoff.periodic_orbits.floquet import critical_values, multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, state_after
-from burridge_knopoff.periodic_orbits.following import ContinuationSettings, follow
+from burridge_knopoff.periodic_orbits.following import CONTINUATION, ContinuationSettings, follow
 from burridge_knopoff.periodic_orbits.grazing_distances import grazing_distances
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits, nearby_orbit
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
@@ -70,7 +70,11 @@ def _each_bifurcation(orbits: KnownOrbits) -> Iterator[Bifurcation]:
     (first, high), gap = (size * end for end in RANGE), size * RESTART_GAP
     # `follow` measures its steps in the chain's own unit.
     share = size / orbits.model.chain.own_units.slope
-    settings = ContinuationSettings(first_step=share * FIRST_STEP, largest_step=share * LARGEST_STEP)
+    settings = ContinuationSettings(
+        first_step=share * FIRST_STEP,
+        largest_step=share * LARGEST_STEP,
+        smallest_step=share * CONTINUATION.smallest_step,
+    )
     low, a = first, first
     while a < high:
         try:

@@ -1,0 +1,83 @@
+"""An attractor knows its model: functions that take attractors refuse those of another model."""
+
+import pickle
+from dataclasses import replace
+from operator import attrgetter
+
+import numpy as np
+import pytest
+
+from burridge_knopoff import Chain, InitialState, Model, edge_state, find_attractors, label_states, law_of
+from burridge_knopoff.attractors.attractor import attractors_of
+from burridge_knopoff.continuation.law_homotopy import follow_law
+from burridge_knopoff.values import format_value
+from tests.motion.stand_in import stand_in
+from tests.refused import refused
+
+MODEL = Model(Chain(3), law_of("linearized", 0.08))
+#: Models that differ in one part.
+OTHERS = {
+    "a": MODEL.at(0.1),
+    "law": replace(MODEL, law=law_of("nonlinear", 0.08)),
+    "v": replace(MODEL, v=0.2),
+    "contact": replace(MODEL, contact="symmetric"),
+    "chain.blocks": Model(Chain(2), MODEL.law),
+    "chain.mass": MODEL.at(**{"mass[3]": 1.1}),
+    "chain.threshold": MODEL.at(threshold=1.5),
+    "chain.coupling": MODEL.at(coupling=1.5),
+    "chain.damping": MODEL.at(damping=0.1),
+    "chain.pulling": MODEL.at(pulling=1.0),
+    "chain.pulling_damping": MODEL.at(pulling_damping=0.1),
+    "chain.ends": Model(Chain(3, ends="ring"), MODEL.law),
+    "chain.grid": Model(Chain(grid=(3, 1)), MODEL.law),
+}
+POSITION, VELOCITY = np.array([[-0.989, -0.993, -0.991], [0.989, -0.993, -0.991]]), np.full((2, 3), 0.1)
+
+
+def label(model, attractors):
+    return label_states(model, attractors, POSITION[:, : model.blocks], VELOCITY[:, : model.blocks])
+
+
+def boundary(model, attractors):
+    states = [model.begin(InitialState("own", [u] * model.blocks, [0.1] * model.blocks)) for u in (-0.9, -1.1)]
+    return edge_state(model, *states, attractors, time_limit=100.0)
+
+
+@pytest.mark.parametrize("call", [label, boundary])
+@pytest.mark.parametrize("part", OTHERS)
+def test_attractors_of_another_model_are_refused(part, call):
+    models = MODEL, OTHERS[part]
+    own, other = (format_value(attrgetter(part)(model)) for model in models)
+    mixed = [stand_in(model=model) for model in models]
+    with refused(f"attractors[1].model.{part}: {other}, expected {own}, as in the model"):
+        call(MODEL, mixed)
+    with refused(f"attractors[0].model.{part}: {own}, expected {other}, as in the model"):
+        call(OTHERS[part], mixed)
+
+
+def test_a_chain_in_another_form_is_the_same():
+    attractors, _ = find_attractors(MODEL, starts=["minus", "plus"], samples=0, transient=500, window=500)
+    same = Chain(3, coupling=(1.0, 1.0), pulling=(1, 2, 1), mass=[1, 1, 1], threshold=1, damping=[0, 0])
+    for model in (MODEL, Model(same, law_of("linearized", 0.08)), MODEL.at(0.1).at(0.08)):
+        assert label(model, attractors)[0].tolist() == [0, 1]
+    copied = pickle.loads(pickle.dumps(attractors))
+    assert [one.model for one in copied] == [MODEL] * 2
+    assert attractors_of(MODEL, copied) == copied
+
+
+def test_a_pickle_without_a_model_is_refused():
+    attractor = stand_in()
+    del vars(attractor)["model"]
+    kept = pickle.dumps(attractor)
+    with refused(match="^attractor: got a pickle without its model, expected"):
+        pickle.loads(kept)
+
+
+@pytest.mark.parametrize(
+    "other", [replace(MODEL, v=0.2), MODEL.at(coupling=2.0), replace(MODEL, contact="symmetric")], ids=str
+)
+def test_an_attractor_is_not_followed_to_another_chain(other):
+    state = stand_in().motion.state()
+    other = replace(other, law=law_of("nonlinear", 0.08))
+    with refused(match=r"^second\..*: got .*, expected .* as in the model$"):
+        follow_law(MODEL, other, state, None)

@@ -1,0 +1,181 @@
+"""Settings: every field of every class takes the ends of its range and refuses, in one line, what lies outside.
+
+The classes are found in the package. config/README.md has the ranges and defaults of those that a config sets;
+tests/study/test_keys.py compares it with the fields.
+"""
+
+import dataclasses
+import importlib
+import inspect
+import math
+import pkgutil
+
+import numpy as np
+import pytest
+
+import burridge_knopoff
+from burridge_knopoff import (
+    Chain,
+    ContinuationSettings,
+    InitialState,
+    Model,
+    MotionSettings,
+    SearchSettings,
+    Settings,
+    law_of,
+)
+from burridge_knopoff.attractors.settings import SEARCH
+from burridge_knopoff.basins.settings import BasinSettings
+from burridge_knopoff.catalogue.settings import CatalogueSettings
+from burridge_knopoff.model.fields import fields_of
+from burridge_knopoff.model.ranges import Interval, Number, OneOf, Several, TrueOrFalse, Whole
+from burridge_knopoff.motion.chain_settings import Sample
+from burridge_knopoff.motion.settings import MOTION
+from burridge_knopoff.running.section import Section, SectionRange
+from tests.refused import refused
+
+#: Values of the required fields.
+REQUIRED = {
+    Model: {"chain": Chain(3), "law": law_of("linearized", 0.08)},
+    InitialState: {"name": "own", "position": -0.9, "velocity": 0.1},
+}
+STEPS = ("smallest_step", "first_step", "largest_step")
+
+
+def classes():
+    """Return all dataclasses of the package that have fields with ranges, and all that are named settings."""
+    found = set()
+    for module in pkgutil.walk_packages(burridge_knopoff.__path__, "burridge_knopoff."):
+        if module.name.rpartition(".")[2] not in ("_core", "__main__"):
+            found |= {kind for _, kind in inspect.getmembers(importlib.import_module(module.name), inspect.isclass)}
+    own = [kind for kind in found if dataclasses.is_dataclass(kind) and kind.__module__.startswith("burridge_knopoff")]
+    return sorted(
+        (kind for kind in own if kind.__name__.endswith("Settings") or has_ranges(kind)), key=lambda kind: kind.__name__
+    )
+
+
+def has_ranges(kind):
+    try:
+        return bool(fields_of(kind))
+    except NameError:
+        # Types that are imported for type checkers only: no settings.
+        return False
+
+
+CLASSES = classes()
+FIELDS = [(kind, item.name) for kind in CLASSES for item in dataclasses.fields(kind)]
+
+
+def made(kind, **values):
+    return kind(**{**REQUIRED.get(kind, {}), **values})
+
+
+def test_all_classes_of_settings_are_found():
+    public = {getattr(burridge_knopoff, name) for name in burridge_knopoff.__all__ if name.endswith("Settings")}
+    assert public | {BasinSettings, CatalogueSettings, Sample, Chain, Model, InitialState} <= {*CLASSES}
+
+
+@pytest.mark.parametrize(("kind", "name"), FIELDS)
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 0, -1, "x", None, True, 1j, [math.nan], object()])
+def test_a_field_takes_no_value_that_it_does_not_keep(kind, name, value):
+    """What is accepted is finite, has the type of the default, and is kept as it was given."""
+    field = fields_of(kind).get(name)
+    default = getattr(made(kind), name)
+    try:
+        kept, message = getattr(made(kind, **{name: value}), name), None
+    except ValueError as error:
+        message = str(error)
+    if message is not None:
+        assert "\n" not in message
+        assert name in message.partition(":")[0]
+        return
+    if value is None:
+        # The value follows from other fields.
+        assert next(item.default for item in dataclasses.fields(kind) if item.name == name) is None
+        return
+    assert kept == value
+    assert isinstance(kept, str) or math.isfinite(kept)
+    assert isinstance(value, bool) == (field is not None and isinstance(field.range, TrueOrFalse))
+    if default is not None and not isinstance(value, float | int):
+        assert isinstance(kept, type(default))
+
+
+def limits(kind, name):
+    """Return values that a field accepts, and values that it refuses."""
+    allowed = fields_of(kind)[name].range
+    if isinstance(allowed, Interval):
+        low, high = allowed.ends.least, allowed.ends.most
+        bad = [(low - 1.0, high), (low, high + 1.0), (high, high), (high, low), (low,), (low, 1.0, high), ("0", "1")]
+        return [(low, high), (high - 1.0, high)], [*bad, 1.0]
+    if isinstance(allowed, Whole):
+        # A tile has at least one row of pixels, and the symmetric samples are among all samples.
+        most = {"tiles": BasinSettings().pixels, "symmetric_samples": Sample().samples}.get(name, allowed.most)
+        return [allowed.least, most], [allowed.least - 1, allowed.most + 1, allowed.least + 0.5, True, "3"]
+    if isinstance(allowed, SectionRange):
+        return [Section(), Section("block", 2)], [1, None, ["sum"]]
+    if isinstance(allowed, OneOf):
+        return list(allowed.words), ["x", 1, None, [allowed.words[0]]]
+    if isinstance(allowed, TrueOrFalse):
+        return [True, False], [0, 1, "true", None]
+    if isinstance(allowed, Several):
+        inner = allowed.each
+        least = np.nextafter(inner.least, np.inf) if inner.above else inner.least
+        return [(least, inner.most)], [(), (least, least), least, (inner.most, math.nan), (inner.most + 1.0,), "x"]
+    assert isinstance(allowed, Number)
+    least, most = allowed.least, allowed.most
+    good = [np.nextafter(least, np.inf), most] + ([] if allowed.above else [least])
+    bad = [np.nextafter(least, -np.inf), np.nextafter(most, np.inf), np.nan, np.inf, True, "3"]
+    return good, bad + ([least] if allowed.above else [])
+
+
+def companions(kind, name, value):
+    """Return values of other fields that are compatible with a value of one field."""
+    if kind is ContinuationSettings:
+        return {key: value for key in STEPS if key != name} if name in STEPS else {}
+    others = {BasinSettings: {"tiles": 1}, Sample: {"symmetric_samples": 1}}.get(kind, {})
+    if kind is Settings:
+        # A run has a limited number of samples.
+        others = {"sampling": 1e3, "trajectory_sampling": 1e3}
+        others |= {"transient": 0.0, "window": 1.0, "trajectory": 1.0} if name in others else {}
+    return {key: item for key, item in others.items() if key != name}
+
+
+@pytest.mark.parametrize(
+    ("kind", "name"),
+    [(kind, name) for kind in CLASSES if kind not in (Chain, InitialState) for name in fields_of(kind)],
+)
+def test_a_setting_accepts_its_range_and_nothing_else(kind, name):
+    good, bad = limits(kind, name)
+    for value in good:
+        taken = getattr(made(kind, **companions(kind, name, value), **{name: value}), name)
+        assert np.array_equal(taken, value)
+    for value in bad:
+        with refused(match=rf"^{name}(\[\d+\])?: got .*, expected"):
+            made(kind, **{name: value})
+
+
+@pytest.mark.parametrize(
+    ("kind", "values", "key"),
+    [
+        (ContinuationSettings, {"smallest_step": 2e-4}, "smallest_step"),
+        (ContinuationSettings, {"smallest_step": 1.0}, "smallest_step"),
+        (ContinuationSettings, {"first_step": 6e-4}, "first_step"),
+        (ContinuationSettings, {"largest_step": 5e-5}, "first_step"),
+        (ContinuationSettings, {"largest_step": 1e-10}, "first_step"),
+        (BasinSettings, {"pixels": 2, "tiles": 3}, "tiles"),
+        (BasinSettings, {"initial": "minus"}, "initial"),
+        (Sample, {"samples": 3}, "symmetric_samples"),
+        (CatalogueSettings, {"low": 2.0, "high": 2.0}, "high"),
+    ],
+)
+def test_settings_fit_each_other(kind, values, key):
+    with refused(match=rf"^{key}: got .*, expected"):
+        kind(**values)
+
+
+def test_steps_may_be_equal():
+    assert ContinuationSettings(**dict.fromkeys(STEPS, 1e-5)).largest_step == 1e-5
+
+
+def test_functions_have_the_defaults_of_the_classes():
+    assert (MotionSettings(), SearchSettings()) == (MOTION, SEARCH)
