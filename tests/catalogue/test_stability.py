@@ -3,7 +3,16 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff import Chain, ChainState, Model, event_exponents, event_multipliers, law_of, record_events
+from burridge_knopoff import (
+    Chain,
+    ChainState,
+    InitialState,
+    Model,
+    event_exponents,
+    event_multipliers,
+    law_of,
+    record_events,
+)
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
@@ -94,6 +103,36 @@ def test_one_block_under_a_steady_driver_has_the_exponent_zero(v):
     assert found.error[0] < 1e-6
 
 
+@pytest.mark.parametrize("law", ["linearized", "nonlinear"])
+def test_one_block_has_the_exponent_zero_wherever_the_window_ends(law):
+    """It slips for almost half of the time; the last batch once ended within a slip."""
+    model = Model(Chain(1, pulling=1.0), law_of(law, 0.3), 0.1)
+    start = model.begin(InitialState("rest", (-0.8,), 0.0), "tested")
+    found = [event_exponents(model, start, end, loading="steady") for end in np.arange(300.0, 310.0, 0.25)]
+    assert len({item.events for item in found}) > 1
+    assert [item.exponent[0] for item in found] == pytest.approx(np.zeros(40), abs=1e-10)
+    assert [item.error[0] for item in found] == pytest.approx(np.zeros(40), abs=1e-10)
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("blocks", [3, 7])
+def test_a_window_that_ends_within_a_slip_counts_up_to_the_last_rest(blocks, seed):
+    """In longer chains events overlap: one that ends before the window does may leave others that do not."""
+    model = Model(Chain(blocks, coupling=3.0, pulling=1.0), law_of("carlson_langer", 1.5), 0.1 / blocks)
+    start, latest = rough(model, seed), 600.0 * blocks
+    runner = Runner(model, keep_events=True)
+    runner.begin(start)
+    assert runner.run(latest) == Status.COMPLETED
+    time, _, kind = runner.events()
+    moving = np.cumsum(np.where(kind == 1, 1, -1))
+    still = 0.5 * (time[:-1] + time[1:])[moving[:-1] == 0]
+    for end in 0.5 * (time[:-1] + time[1:])[moving[:-1] > 0][-8:]:
+        last = still[still < end][-1]
+        found, expected = (event_exponents(model, start, t, begin=100.0, loading="steady") for t in (end, last))
+        assert found.events == expected.events > 20
+        assert found.exponent[0] == pytest.approx(expected.exponent[0], rel=1e-9)
+
+
 @pytest.mark.parametrize("loading", ["steady", "quasistatic"])
 @pytest.mark.parametrize("blocks", [3, 24])
 def test_exponents_per_event_depend_on_no_unit(blocks, loading):
@@ -169,6 +208,36 @@ def test_multipliers_begin_at_rest(loading, share):
         assert expected[keep] == pytest.approx(1.0, abs=1e-5)
         expected, found = np.delete(expected, keep), found[:-1]
     assert found == pytest.approx(expected, rel=1e-4, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("share", "contact", "loading", "refused"),
+    [
+        (0.97, "one_sided", "steady", True),
+        (0.94, "one_sided", "steady", False),
+        (0.97, "one_sided", "quasistatic", False),
+        # The dashpot of a moving driver relieves a backward pull.
+        (-1.03, "symmetric", "steady", False),
+        (-1.06, "symmetric", "steady", True),
+        (-1.03, "symmetric", "quasistatic", True),
+    ],
+)
+def test_multipliers_count_the_dashpots_to_the_driver(share, contact, loading, refused):
+    """A block beyond its threshold because of its dashpot was once taken for one at rest."""
+    chain = Chain(2, coupling=2.0, pulling=1.0, pulling_damping=(0.5, 0.0))
+    model = Model(chain, law_of("carlson_langer", 1.0), 0.1, contact)
+    position = np.linalg.solve(chain.stiffness, -np.array([share, -0.2]))
+    start = ChainState(position - model.sliding_offset, np.zeros(2), np.ones(2, dtype=bool))
+    events = record_events(model, start, 200.0, loading=loading)
+    assert bool(events.time[0] == 0.0) is refused
+    ended = events.time + (events.duration if loading == "steady" else 0.0)
+    gap = np.flatnonzero(ended[:-1] < events.time[1:])[2]
+    end = 0.5 * (ended[gap] + events.time[gap + 1])
+    if refused:
+        with pytest.raises(ValueError, match="^start: got .*, expected a state in which all blocks stick"):
+            event_multipliers(model, start, end, loading=loading)
+    else:
+        assert np.isfinite(event_multipliers(model, start, end, loading=loading)).all()
 
 
 def test_the_exponent_of_two_blocks_is_that_of_their_map():

@@ -96,6 +96,12 @@ def test_the_chain_of_the_paper():
         ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for at least one block"),
         ({"pulling": [0, 0, 0]}, "chain.pulling: got (0.0, 0.0, 0.0), expected"),
         ({"pulling": 1e-7}, "chain.pulling: got 1e-07, expected neighbours or 0 or a number between 1e-06"),
+        (
+            {"pulling": (1e-7, 0.0, 1e-8)},
+            "chain.pulling: got (1e-07, 0.0, 1e-08), expected a number above 0 for at least",
+        ),
+        ({"pulling": (1.0, 1e-31, 1.0)}, "chain.pulling[1]: got 1e-31, expected 0 or a number between 1e-30 and 1e+06"),
+        ({"damping": 1e-31}, "chain.damping: got 1e-31, expected 0 or a number between 1e-30 and 1e+06"),
         ({"blocks": 1, "ends": "ring"}, "chain.ends: got ring, expected open for one block"),
     ],
 )

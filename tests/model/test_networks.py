@@ -247,6 +247,10 @@ def test_refused_networks(tmp_path):
     for options, message in (
         ({"pulling": 0.0}, "chain.pulling: got 0.0, expected a number above 0 for at least one block"),
         ({"pulling": [1, 0, 0, 0]}, "chain.pulling: got 0 for all of the 2 blocks connected to block 3, expected"),
+        (
+            {"pulling": [1, 0, 1e-7, 0]},
+            "chain.pulling: got 1e-07 for all of the 2 blocks connected to block 3, expected",
+        ),
         ({"blocks": 5}, "chain.pulling: got 0 for all of the 1 blocks connected to block 5, expected"),
         ({"blocks": 3, "pulling": 1}, "chain.springs: got block 4, expected at most chain.blocks (3)"),
         ({"coupling": 2.0}, "chain.coupling: got 2.0, expected none together with chain.springs"),

@@ -74,6 +74,52 @@ def test_an_orbit_is_followed_to_other_dashpots():
     assert again.period == pytest.approx(reached.period, rel=1e-11)
 
 
+@pytest.mark.parametrize("start", [0.0, 1e-9, 1e-4, 2e-3])
+def test_dashpots_grow_from_0_as_a_falls(start):
+    """The orbit at γ is that at a − γ without dashpots: loss of synchrony, and a branch that turns at a grazing."""
+    synchronized = synchronized_orbit(Model(Chain(3, pulling_damping=start), law_of("linearized", CRITICAL + 0.0075)))
+    branch = follow(synchronized, (0.0, 0.02), parameter="pulling_damping")
+    assert branch[0].value == start
+    assert branch[-1].value > 0.02
+    assert len(branch) < 60
+    (found,) = locate_bifurcations(branch)
+    assert (found.kind, found.at.value) == (BifurcationKind.PITCHFORK, pytest.approx(0.0075, abs=2e-11))
+    for point in branch[::10]:
+        plain = synchronized_orbit(Model(Chain(3), law_of("linearized", CRITICAL + 0.0075 - point.value)))
+        assert point.orbit.period == pytest.approx(plain.period, rel=1e-11)
+
+
+@pytest.fixture(scope="module")
+def plain():
+    """Return the orbit of (20, 54, 20) stops that the paper's second state reaches at a = 0.08."""
+    model = Model(Chain(3), law_of("linearized", 0.08))
+    return limit_cycle(model, model.begin(PAPER_STATES["plus"]), settling=1000.0)
+
+
+def test_a_branch_that_turns_back_to_0_is_that_along_a(plain):
+    """Without dashpots it begins and ends, on either side of the grazing at which it turns."""
+    branch = follow(plain, (0.0, 0.2), parameter="pulling_damping")
+    along_a = follow(plain, (0.07, 0.08), upward=False)
+    turns = [next(point.value for point in points if point.is_grazing) for points in (branch, along_a)]
+    assert turns[0] == pytest.approx(0.08 - turns[1], abs=1e-9)
+    assert branch[-1].value < 1e-9
+    back = next(point for point in along_a[::-1] if point.orbit.stop_counts == branch[-1].orbit.stop_counts)
+    again = find_periodic_orbit(plain.model, back.orbit.reference, back.orbit.return_time, back.orbit.symmetry)
+    assert branch[-1].orbit.period == pytest.approx(again.period, rel=1e-9)
+
+
+@pytest.mark.parametrize("parameter", ["damping", "damping[1]", "pulling_damping[2]", "pulling[2]"])
+def test_a_parameter_grows_from_0(parameter):
+    """Motion settles on the orbits of the branch. Steps were once a share of the parameter, or failed at 0."""
+    start = synchronized_orbit(Model(Chain(3), law_of("linearized", 0.05)).at(**{parameter: 0.0}))
+    branch = follow(start, (0.0, 0.02), parameter=parameter)
+    assert branch[0].value == 0.0
+    assert branch[-1].value > 0.02
+    for point in branch[1::20]:
+        orbit = point.orbit
+        assert orbit.period == pytest.approx(limit_cycle(orbit.model, orbit.reference, 3000.0).period, rel=1e-9)
+
+
 def test_derivatives_along_the_motion():
     """Force, acceleration and their rates, with a stuck block among slipping ones."""
     chain = Chain(4, damping=0.3, pulling_damping=0.1, mass=(1.0, 2.0, 1.0, 1.0))

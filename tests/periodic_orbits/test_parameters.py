@@ -14,6 +14,8 @@ from burridge_knopoff import (
     Chain,
     ChainState,
     ContinuationSettings,
+    FormulaLaw,
+    InitialState,
     Model,
     follow,
     follow_bifurcation,
@@ -38,6 +40,8 @@ SCALED = {
     "v": ((0.09, 0.11), lambda a, v: a),
     "threshold": ((0.95, 1.05), lambda a, threshold: a * threshold),
     "mass": ((0.98, 1.02), lambda a, mass: a / np.sqrt(mass)),
+    # Dashpots to the driver, with the coefficient γ at all blocks: U′ − v obeys the equations of a − γ.
+    "pulling_damping": ((0.0, 0.02), lambda a, damping: a - damping),
 }
 
 
@@ -76,7 +80,7 @@ def test_curves_of_the_synchronized_orbit_under_the_linearized_law(families, par
     check_curve(bifurcation, kind, parameter, a, accuracy)
 
 
-@pytest.mark.parametrize("parameter", ["v", "threshold"])
+@pytest.mark.parametrize("parameter", ["v", "threshold", "pulling_damping"])
 @pytest.mark.parametrize(
     ("kind", "a", "accuracy"), [("FOLD", 0.153732155463, 1e-11), ("GRAZING", 0.136770810812, 2e-10)]
 )
@@ -100,6 +104,49 @@ def check_curve(bifurcation, kind, parameter, a, accuracy):
     assert curve.errors.max() < 1e-9
     for orbit, (first, second) in zip(curve.orbits, curve.values, strict=True):
         assert (orbit.model, orbit.residual < 1e-10) == (MODEL.at(**{"a": first, parameter: second}), True)
+
+
+@pytest.mark.parametrize("parameter", ["damping", "pulling_damping", "pulling_damping[2]"])
+@pytest.mark.parametrize("first", [True, False])
+def test_curves_begin_at_0(parameter, first):
+    """The parameter is either of the two of the curve; along it no root is bracketed at 0."""
+    start = MODEL.at(**{parameter: 0.0})
+    critical = critical_a(bifurcations_of(synchronized_orbits(start)))
+    bifurcation = bifurcation_near(synchronized_orbit(start.at(critical - 1e-3)), critical)
+    if first:
+        curve = follow_bifurcation(bifurcation, (parameter, "a"), (critical - 0.01, critical + 0.01))
+        values, a = curve.values.T
+    else:
+        a, values = follow_bifurcation(bifurcation, ("a", parameter), (0.0, 0.01)).values.T
+    assert values[np.abs(a - critical).argmin()] == 0.0
+    assert values.max() > 1e-3
+    for k in (len(a) // 2, -1):
+        model = start.at(**{parameter: values[k]})
+        assert a[k] == pytest.approx(critical_a(bifurcations_of(synchronized_orbits(model))), abs=1e-9)
+
+
+def test_steps_in_a_weak_coupling_do_not_depend_on_it():
+    """Two blocks that move alike do so at any coupling."""
+    for coupling in (1e-6, 1e-3):
+        model = Model(Chain(2, coupling=coupling, pulling=1.0), law_of("linearized", 0.3))
+        orbit = limit_cycle(model, model.begin(InitialState("alike", (-0.9, -0.9), (0.1, 0.1))), settling=200.0)
+        branch = follow(orbit, (0.0, 0.02), parameter="coupling")
+        assert (branch[-1].value > 0.02, len(branch) < 60) == (True, True)
+        assert branch[-1].orbit.period == pytest.approx(orbit.period, rel=1e-12)
+
+
+def test_a_parameter_of_a_law_passes_through_0():
+    """The law 1 − (a − b)u, and a parameter with a default of its own."""
+    law = FormulaLaw(0.09, "1 - a*u + b*u", b=-1e-4)
+    branch = follow(synchronized_orbit(Model(Chain(3), law)), (-0.01, 0.01), parameter="b")
+    assert (branch[0].value, branch[-1].value > 0.01, len(branch) < 40) == (-1e-4, True, True)
+    (found,) = locate_bifurcations(branch)
+    assert (found.kind, found.value) == (BifurcationKind.PITCHFORK, pytest.approx(0.09 - CRITICAL, abs=2e-11))
+    stribeck = Model(Chain(3), law_of("stribeck", 0.05, {"eta": 0.0}))
+    branch = follow(synchronized_orbit(stribeck), (0.0, 0.02), parameter="eta")
+    assert branch[-1].value > 0.02
+    again = synchronized_orbit(branch[-1].orbit.model)
+    assert branch[-1].orbit.period == pytest.approx(again.period, rel=1e-10)
 
 
 def test_the_mirror_image_of_an_orbit_has_the_same_curve(seven_stops):

@@ -131,6 +131,12 @@ def test_a_branch_scales(branch, time, length):
     )
     first, second = ([point.value for point in points] for points in along)
     assert np.array(second) * length == pytest.approx(np.array(first), abs=1e-7)
+    damping = (
+        follow(points[0].orbit, (0.0, 1e-3 * size), parameter="pulling_damping")
+        for points, size in ((one, 1.0), (other, time / length))
+    )
+    first, second = ([point.value for point in points] for points in damping)
+    assert np.array(second) * length / time == pytest.approx(np.array(first), abs=1e-9)
 
 
 @pytest.mark.parametrize(("time", "length"), [(2.0**10, 2.0**10), (2.0**-9, 2.0**-18), (8.0, 0.125)])

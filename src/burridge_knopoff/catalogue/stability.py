@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -110,25 +111,18 @@ def _rest_times(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarra
 
     At rest all blocks stick. The result is empty if this never happens, or if the run fails.
     """
-    catalogue = Catalogue(model.blocks, start.time, False, MOST_EVENTS)
-    runner = Runner(model, catalogue=catalogue, groups=False)
+    # A catalogue lacks the slips of the start and the events that have not ended.
+    runner = Runner(model, keep_events=True, events_from=math.inf, groups=False)
     runner.begin(start)
     if runner.run(edges[-1]) != Status.COMPLETED:
         return edges[:0]
-    table = catalogue.take()
-    order = np.argsort(table["time"], kind="stable")
-    begins = np.append(table["time"][order], edges[-1])
-    ends = np.append(start.time, (table["time"] + table["duration"])[order])
-    # Events in different parts of the chain overlap.
-    ends = np.maximum(np.maximum.accumulate(ends), edges[0])
-    middle = (0.5 * (begins + ends))[begins > ends]
-    if len(middle):
-        middle = np.unique(middle[np.abs(middle - edges[:, None]).argmin(axis=1)])
-    if start.stuck.all():
-        return middle
-    # Blocks that slip at the start belong to no event.
-    runner.begin(start)
-    return middle[[runner.run(time) == Status.COMPLETED and bool(runner.state().stuck.all()) for time in middle]]
+    log = runner.log.earlier_events
+    time = np.concatenate([[start.time], log.times(), edges[-1:]])
+    more_stuck = np.where(log.values()[:, 1] == 0, 1, -1)
+    resting = np.cumsum(np.append(np.count_nonzero(start.stuck), more_stuck)) == model.blocks
+    begins, ends = np.maximum(time[:-1], edges[0]), time[1:]
+    middle = (0.5 * (begins + ends))[resting & (begins < ends)]
+    return np.unique(middle[np.abs(middle - edges[:, None]).argmin(axis=1)]) if len(middle) else middle
 
 
 def event_multipliers(model: Model, start: ChainState, end: float, *, loading: str = "quasistatic") -> np.ndarray:
@@ -159,7 +153,9 @@ def event_multipliers(model: Model, start: ChainState, end: float, *, loading: s
     perturbations = np.vstack([np.eye(blocks), np.zeros((blocks, blocks))])
     runner = Runner(model, perturbations=perturbations, loading=loading, groups=False)
     runner.begin(start)
-    force = model.chain.force(start.position + model.sliding_offset)
+    # Stuck blocks bear the dashpots to the driver, which moves under steady loading only.
+    driver = model.v if loading == "steady" else 0.0
+    force = model.chain.force(start.position + model.sliding_offset) + model.chain.driver_damping * driver
     pulled = np.abs(force) if model.contact == "symmetric" else force
     if not start.stuck.all() or (pulled > model.chain.thresholds * (1.0 + THRESHOLD_TOLERANCE)).any():
         raise refusal("start", start, "a state in which all blocks stick, none beyond its threshold")

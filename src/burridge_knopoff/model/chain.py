@@ -41,10 +41,12 @@ BLOCKS = 3
 _STRENGTHS = Either((STRENGTH, Several(STRENGTH)))
 _BLOCK_VALUES = Either((STRENGTH, Several(STRENGTH), RandomNumbers(STRENGTH)))
 _PULLING = Number(STRENGTH.least, STRENGTH.most, or_zero=True)
+# Other blocks hold a chain in which some blocks are pulled weakly, or not at all.
+_BLOCK_PULLING = Number(DAMPING.least, STRENGTH.most, or_zero=True)
 _DAMPING = Either((DAMPING, Several(DAMPING)))
 #: Parameters of each spring between neighbours, and of each block, with their ranges.
 SPRING_PARAMETERS = {"coupling": STRENGTH, "damping": DAMPING}
-BLOCK_PARAMETERS = {"pulling": _PULLING, "threshold": STRENGTH, "mass": STRENGTH, "pulling_damping": DAMPING}
+BLOCK_PARAMETERS = {"pulling": _BLOCK_PULLING, "threshold": STRENGTH, "mass": STRENGTH, "pulling_damping": DAMPING}
 _SIDE = Whole(1, MAXIMUM_BLOCKS)
 
 
@@ -94,7 +96,7 @@ class Chain(Unchanging):
     ] = 1.0
     pulling: Annotated[
         float | Sequence[float] | str,
-        Either((OneOf((NEIGHBOURS,)), _PULLING, Several(_PULLING))),
+        Either((OneOf((NEIGHBOURS,)), _PULLING, Several(_BLOCK_PULLING))),
         "springs to the driver: one number for all blocks, or one per block (0: no spring); neighbours: the number of "
         "the block's neighbours, as in the paper (1 for a single block)",
     ] = NEIGHBOURS
@@ -142,8 +144,9 @@ class Chain(Unchanging):
                 )
         if self.blocks == 1 and self.ends == "ring":
             raise ValueError("chain.ends: got ring, expected open for one block")
-        if not isinstance(self.pulling, str) and not np.any(self.pulling):
-            raise ValueError(f"chain.pulling: got {self.pulling!r}, expected a number above 0 for at least one block")
+        if not isinstance(self.pulling, str) and np.max(self.pulling) < STRENGTH.least:
+            allowed = f"a number above 0 for at least one block, {STRENGTH.least:g} or more"
+            raise refusal("chain.pulling", self.pulling, allowed)
         if is_new:
             self.check_springs()
 
@@ -177,12 +180,12 @@ class Chain(Unchanging):
         from scipy.sparse.csgraph import connected_components
 
         part = connected_components(self._springs.adjacency, directed=False)[1]
-        slack = np.flatnonzero(np.bincount(part, self.driving)[part] == 0.0)
+        slack = np.flatnonzero(np.bincount(part, self.driving >= STRENGTH.least)[part] == 0.0)
         if len(slack):
-            count = int((part == part[slack[0]]).sum())
+            driving = self.driving[part == part[slack[0]]]
             raise ValueError(
-                f"chain.pulling: got 0 for all of the {count} blocks connected to block {slack[0] + 1}, expected a "
-                "number above 0 for at least one of them"
+                f"chain.pulling: got {driving.max():g} for all of the {len(driving)} blocks connected to block "
+                f"{slack[0] + 1}, expected a number above 0 for at least one of them, {STRENGTH.least:g} or more"
             )
 
     def is_equivalent_to(self, other: Chain) -> bool:

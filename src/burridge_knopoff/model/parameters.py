@@ -69,6 +69,23 @@ def parameter_value(model: Model, name: str) -> float:
     return number
 
 
+def parameter_scale(model: Model, name: str) -> float:
+    """Return the natural size of a parameter, whatever its value, which may be 0.
+
+    It is the chain's own unit for a parameter of the chain, 1 for one of the law, and 0 for v, whose size is its value.
+    """
+    units, key = model.chain.own_units, (parse_indexed_name(name) or (name,))[0]
+    if name in model.law.parameters:
+        return 1.0
+    if key == "threshold":
+        return units.force
+    if key == "mass":
+        return units.force / units.acceleration
+    if key in CHAIN_PARAMETERS:
+        return units.force / (units.velocity if key in ("damping", "pulling_damping") else units.length)
+    return 0.0
+
+
 def set_parameters(model: Model, parameters: Mapping[str, float]) -> Model:
     """Return the same model at other values of some of its parameters.
 

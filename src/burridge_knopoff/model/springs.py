@@ -17,7 +17,8 @@ from burridge_knopoff.values import read_only_copy
 #: Limit on the number of blocks.
 MAXIMUM_BLOCKS = 10**6
 STRENGTH = Number(1e-6, 1e6)
-DAMPING = Number(STRENGTH.least, STRENGTH.most, or_zero=True)
+#: Values that may be 0. They may also be much smaller than strengths, since continuation varies them from 0.
+DAMPING = Number(1e-30, STRENGTH.most, or_zero=True)
 _LINES = (
     f"lines `block block strength` or `block block strength damping`, with blocks from 1 to {MAXIMUM_BLOCKS}, "
     f"strength {STRENGTH} and damping {DAMPING}"

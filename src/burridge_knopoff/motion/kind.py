@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.motion.period import has_diverging_cycles, period_of
+from burridge_knopoff.motion.period import repetition_of
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.status import Status
 
@@ -71,6 +71,9 @@ def merge_chaos(kind: np.ndarray) -> np.ndarray:
 
 # Largest error of an exponent, in units of `chaotic_exponent`, for which exponents can decide the kind.
 LARGEST_ERROR = 3.0
+
+# Factor by which the distance between successive cycles grows if a run leaves an unstable orbit.
+DIVERGENCE = 2.0
 
 
 def is_zero_exponent(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> np.ndarray:
@@ -133,23 +136,26 @@ def motion_of_completed_run(run: Mapping[str, Any], mean_distance: float, settin
 
     The rules, in this order:
 
-    - Motion whose section points repeat is periodic, even if an exponent is positive: a symmetric state can stay on an
-      orbit that repels all other states (`unstable`), and chaos may have ended within the window. If successive cycles
-      diverge, the run is leaving such an orbit: it is undetermined unless an exponent shows chaos.
+    - Motion whose state repeats is periodic, even if an exponent is positive: a symmetric state can stay on an orbit
+      that repels all other states (`unstable`), and chaos may have ended within the window. If successive cycles
+      diverge, the run is leaving such an orbit: it is undetermined unless an exponent shows chaos. Cycles diverge if
+      their distance has grown by the factor DIVERGENCE, or at all if the largest exponent is above `zero_exponent`.
     - Motion is chaotic if the largest exponent is above `chaotic_exponent` and above its error.
-    - Otherwise the largest exponent must be 0, that of the flow. The motion is then periodic if its states repeat or if
-      the next exponent is negative, and quasiperiodic if the next exponent is 0 as well and the errors are small. If
-      the end blocks are synchronized, which is rare on a torus, the next exponent must be 0 within one standard error.
+    - Otherwise the largest exponent must be 0, that of the flow, and at most `zero_exponent`. The motion is then
+      periodic if the next exponent is negative, and quasiperiodic if the next exponent is 0 as well and the errors are
+      small. If the end blocks are synchronized, which is rare on a torus, the next exponent must be 0 within one
+      standard error.
     - Periodic motion is synchronized, or periodic up to the longest period and quasiperiodic beyond.
-    - All other motion is undetermined. This includes a largest exponent above `chaotic_exponent` but within its error,
-      and attracting uniform sliding, which has no exponent 0 and whose section points are rounding.
+    - All other motion is undetermined. This includes a largest exponent above `zero_exponent` but within its error, and
+      attracting uniform sliding, which has no exponent 0 and whose section points are rounding.
     """
     exponents = run["lyapunov_exponent"], run["lyapunov_error"]
-    points, period = period_of(run, settings)
-    if points and has_diverging_cycles(run, points, settings):
-        found = motion_from_period(0, math.nan, mean_distance, *exponents, settings)
-        return found if found.kind in CHAOS else Motion(MotionKind.UNDETERMINED)
-    return motion_from_period(points, period, mean_distance, *exponents, settings)
+    found = repetition_of(run, settings)
+    is_zero = not len(exponents[0]) or not exponents[0][0] > settings.zero_exponent
+    if found.divergence <= (DIVERGENCE if is_zero else 1.0):
+        return motion_from_period(found.points, found.period, mean_distance, *exponents, settings)
+    motion = motion_from_period(0, math.nan, mean_distance, *exponents, settings)
+    return motion if motion.kind in CHAOS else Motion(MotionKind.UNDETERMINED)
 
 
 def motion_from_period(
@@ -186,7 +192,8 @@ def _kind_by_exponents(
     """Return the kind of motion that is not chaotic and has not repeated; None if it attracts as periodic orbits do."""
     known = np.flatnonzero(~np.isnan(exponent))
     zero = is_zero_exponent(exponent, error, settings)
-    if len(known) and not zero[0]:
+    # An exponent above its threshold may be 0 within its error, but then the error allows weak chaos as well.
+    if len(known) and (not zero[0] or exponent[0] > settings.zero_exponent):
         return MotionKind.UNDETERMINED
     # Errors above the threshold of chaos leave the kind undetermined: chaos may have ended within the window.
     if len(known) and settings.standard_errors * np.nanmax(error[:2]) > LARGEST_ERROR * settings.chaotic_exponent:
@@ -195,11 +202,7 @@ def _kind_by_exponents(
         return None
     if len(known) > 1 and mean_distance < settings.synchronization_threshold and exponent[1] < -error[1]:
         return MotionKind.UNDETERMINED
-    return (
-        MotionKind.QUASIPERIODIC
-        if len(known) > 1 and exponent[0] <= settings.chaotic_exponent
-        else MotionKind.UNDETERMINED
-    )
+    return MotionKind.QUASIPERIODIC if len(known) > 1 else MotionKind.UNDETERMINED
 
 
 def _is_positive(exponent: np.ndarray, error: np.ndarray, settings: MotionSettings) -> bool:

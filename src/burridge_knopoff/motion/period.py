@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -19,10 +20,9 @@ REPETITIONS = 3
 # The distance between cycles of a period must be less than that of any shorter period by this factor.
 IMPROVEMENT = 0.1
 
-# Cycles diverge if their distance in the last of PARTS parts of a run exceeds that in another part by the factor
-# DIVERGENCE, and exceeds ROUNDING times the tolerance.
+# The distance between cycles in the last of PARTS parts of a run is compared with the smallest one. Distances below
+# ROUNDING times the tolerance are rounding.
 PARTS = 8
-DIVERGENCE = 2.0
 ROUNDING = 1e-5
 
 #: The arrays from which a period is determined, by their names in point files.
@@ -32,47 +32,58 @@ SECTION = (
 )
 
 
-def period_of(run: Mapping[str, np.ndarray], settings: MotionSettings) -> tuple[int, float]:
-    """Return the number of upward section points, and the time, after which the state of all blocks repeats.
+@dataclass(frozen=True)
+class Repetition:
+    """The repetition of the state of all blocks in a run.
+
+    points, period : number of upward section points, and time, after which the state repeats; 0 and NaN if it does not.
+        The number is determined up to `longest_period`. For longer periods, and for motion that rarely crosses the
+        section, only the time is determined, from the states at the stops
+    divergence : factor by which the distance between successive cycles has grown. It is at most 1 if they approach each
+        other down to rounding, as they do if the orbit attracts. In weak chaos a run may pass so close to a weakly
+        unstable orbit that it repeats within the tolerance for the whole window
+    """
+
+    points: int = 0
+    period: float = math.nan
+    divergence: float = 0.0
+
+
+def repetition_of(run: Mapping[str, np.ndarray], settings: MotionSettings) -> Repetition:
+    """Return the repetition of the state in a run.
 
     run : arrays of a run named in SECTION; the events must include all stops
-
-    Returns 0 and NaN if the state does not repeat. The number of section points is determined up to `longest_period`.
-    For longer periods, and for motion that rarely crosses the section, only the time is determined, from the states at
-    the stops.
     """
     points = section_period(run, settings)
-    upward = run["crossing_time"][run["crossing_direction"] > 0]
+    upward = run["crossing_direction"] > 0
+    time = run["crossing_time"][upward]
     if points:
-        return points, float(upward[-1] - upward[-1 - points])
+        divergence = _divergence(run["crossing_velocity"][upward][:, None], points, settings)
+        return Repetition(points, float(time[-1] - time[-1 - points]), divergence)
     # If states are known for the last events only, they do not cover a long enough time.
-    late = len(upward) >= REPETITIONS and run["event_time"][:1] > upward[len(upward) // 2]
+    late = len(time) >= REPETITIONS and run["event_time"][:1] > time[len(time) // 2]
     stops = (run["event_kind"] == 0) & ~np.any(late)
     block = run["event_block"][stops].astype(int)
     if not len(block):
-        return 0, math.nan
+        return Repetition()
     stop_count = np.bincount(block, minlength=run["event_position"].shape[1] + 1)[1:]
     own = np.flatnonzero(stops)[block == section_blocks(stop_count)[0]]
     states = np.concatenate([run["event_position"][own], run["event_velocity"][own]], axis=1)
     length = orbit_length(states, settings.period_tolerance, len(states))
+    if length == len(states):
+        return Repetition()
     time = run["event_time"][own]
-    return 0, float(time[-1] - time[-1 - length]) if length < len(states) else math.nan
+    return Repetition(0, float(time[-1] - time[-1 - length]), _divergence(states, length, settings))
 
 
-def has_diverging_cycles(run: Mapping[str, np.ndarray], points: int, settings: MotionSettings) -> bool:
-    """Return whether successive cycles of a run diverge, because the run is leaving an unstable periodic orbit.
-
-    run, points : a run that repeats after this number of section points
-
-    Cycles approach each other, down to rounding, if the orbit attracts. In weak chaos a run may pass so close to a
-    weakly unstable orbit that it repeats within the tolerance for the whole window.
-    """
-    velocity = run["crossing_velocity"][run["crossing_direction"] > 0]
-    apart = np.abs(velocity[points:] - velocity[:-points])
-    if len(apart) < PARTS * points:
-        return False
-    largest = [part.max() for part in np.array_split(apart, PARTS)]
-    return bool(largest[-1] > max(ROUNDING * settings.period_tolerance, DIVERGENCE * min(largest)))
+def _divergence(sequence: np.ndarray, length: int, settings: MotionSettings) -> float:
+    """Return the `Repetition.divergence` of rows that repeat after `length` rows."""
+    apart = np.abs(sequence[length:] - sequence[:-length]).max(axis=1)
+    parts = min(PARTS, len(apart) // length)
+    if parts < 2:
+        return 0.0
+    largest = np.array([part.max() for part in np.array_split(apart, parts)])
+    return float(largest[-1] / max(largest.min(), ROUNDING * settings.period_tolerance))
 
 
 def section_period(run: Mapping[str, np.ndarray], settings: MotionSettings) -> int:

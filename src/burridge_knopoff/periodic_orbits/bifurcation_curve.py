@@ -104,9 +104,12 @@ def follow_bifurcation(
     ends = interval_ends(interval)
     plane = BifurcationPlane(bifurcation, names)
     orbit = plane.orbit
-    first = plane.point(
-        orbit, np.array([0.0, 1.0]), orbit.model, orbit.reference, orbit.return_time, settings.first_step
-    )
+    start = orbit.model, orbit.reference, orbit.return_time, settings.first_step
+    try:
+        first = plane.point(orbit, np.array([0.0, 1.0]), *start)
+    except OrbitError:
+        # At an end of the range of the first parameter no root is bracketed along it.
+        first = plane.point(orbit, np.array([1.0, 0.0]), *start)
     ways = [list(_follow_one_way(plane, first, side, settings, ends)) for side in (-1.0, 1.0)]
     points = [*ways[0][::-1], first, *ways[1]]
     values = np.array([[parameter_value(point.orbit.model, name) for name in names] for point in points])

@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.model.parameters import parameter_value, set_parameters
+from burridge_knopoff.model.parameters import parameter_scale, parameter_value, set_parameters
 from burridge_knopoff.periodic_orbits.floquet import Multipliers, multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow, rate
 from burridge_knopoff.periodic_orbits.grazing_distances import GrazingDistances, grazing_distances
@@ -39,9 +39,12 @@ TIME_WEIGHT = 1e-4
 PART = 1e-6
 
 # Change of the return of an orbit, for v = 0.1, in a step of length 1: about that of a change of 1 in a if all blocks
-# stop once in a period. A step of length 1 is at most LONGEST times the parameter.
+# stop once in a period. A step of length 1 is at most LONGEST times the parameter or its natural size, if larger.
 CHANGE = 0.25
 LONGEST = 10.0
+
+# Share of its natural size below which a parameter counts as 0 for the step of a finite difference.
+SMALL = 1e-3
 
 # Cosine of the largest angle between the tangents at both ends of a step; sharper turns need shorter steps.
 STRAIGHT = 0.8
@@ -109,7 +112,8 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
         return line_along_a(orbit.model.chain)
     units = orbit.model.chain.own_units
     own = units.state(orbit.model.blocks)
-    size, change = abs(value) or 1.0, 0.0
+    scale, change = parameter_scale(orbit.model, parameter), 0.0
+    size = abs(value) if abs(value) > SMALL * scale else scale
     for step in (PART * size, -PART * size):
         try:
             model = set_parameters(orbit.model, {parameter: value + step})
@@ -122,7 +126,8 @@ def line_of(orbit: PeriodicOrbit, parameter: str) -> ParameterLine:
             continue
         difference = end.vector() / model.scale - orbit.returned.vector() / orbit.model.scale
         change = max(change, float(np.abs(difference * units.velocity / own).max() / abs(step)))
-    return ParameterLine((parameter,), (value,), (min(LONGEST * size, CHANGE / max(change, 1e-300)),), units=units)
+    longest = max(LONGEST * abs(value), scale)
+    return ParameterLine((parameter,), (value,), (min(longest, CHANGE / max(change, 1e-300)),), units=units)
 
 
 def weights(model: Model, line: ParameterLine) -> np.ndarray:

@@ -68,21 +68,22 @@ class ReturnMap:
 
         The derivative is a finite difference. At a grazing, where it jumps, the side of the orbit is used. It does not
         jump where two blocks stop at the same time and their order changes. Raises OrbitError if every step changes the
-        stops and starts.
+        stops and starts, or leads to no model.
         """
-        step, here = STEP, line.coordinate(self.model)
+        step, here, failure = STEP, line.coordinate(self.model), "no model at any step of this parameter"
         while step > SMALLEST_STEP:
             for there in (here + step, here - step):
                 try:
                     model = line.model(self.model, there)
                 except OrbitError:
                     continue
+                failure = "stops and starts change at every step of this parameter"
                 runner = Runner(model, keep_events=True)
                 moved = self._mirrored(state_after(runner, start, time))
                 if np.array_equal(_by_block(np.stack(runner.events()[1:], axis=1)), _by_block(events)):
                     return (moved.vector() - end.vector()) / (there - here)
             step *= 0.1
-        raise OrbitError(f"{line.place(self.model)}: stops and starts change at every step of this parameter")
+        raise OrbitError(f"{line.place(self.model)}: {failure}")
 
     def time_derivative(self, end: ChainState) -> np.ndarray:
         """Return the derivative of the end with respect to the time, shape (2 blocks,)."""
