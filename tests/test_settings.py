@@ -159,9 +159,8 @@ def test_a_setting_accepts_its_range_and_nothing_else(kind, name):
     [
         (ContinuationSettings, {"smallest_step": 2e-4}, "smallest_step"),
         (ContinuationSettings, {"smallest_step": 1.0}, "smallest_step"),
-        (ContinuationSettings, {"first_step": 6e-4}, "first_step"),
-        (ContinuationSettings, {"largest_step": 5e-5}, "first_step"),
-        (ContinuationSettings, {"largest_step": 1e-10}, "first_step"),
+        (ContinuationSettings, {"first_step": 1e-10}, "smallest_step"),
+        (ContinuationSettings, {"largest_step": 1e-10}, "smallest_step"),
         (BasinSettings, {"pixels": 2, "tiles": 3}, "tiles"),
         (BasinSettings, {"initial": "minus"}, "initial"),
         (Sample, {"samples": 3}, "symmetric_samples"),
@@ -173,8 +172,9 @@ def test_settings_fit_each_other(kind, values, key):
         kind(**values)
 
 
-def test_steps_may_be_equal():
+def test_steps_may_be_equal_and_the_first_one_the_largest():
     assert ContinuationSettings(**dict.fromkeys(STEPS, 1e-5)).largest_step == 1e-5
+    assert ContinuationSettings(first_step=1e-3).first_step > ContinuationSettings(largest_step=5e-5).largest_step
 
 
 def test_functions_have_the_defaults_of_the_classes():

@@ -64,8 +64,8 @@ def event_exponents(
     of perturbations between two such times does not depend on units, since all velocities are 0. In a chain that never
     rests the boundaries of batches lie within slips.
 
-    Under quasi-static loading N blocks have N − 1 finite exponents: the state at the start of an event has N positions,
-    one of which is fixed by the threshold.
+    Under quasi-static loading N blocks have at most N − 1 finite exponents: the state at the start of an event has N
+    positions, one of which is fixed by the threshold, and those of blocks that creep by the others.
 
     Raises ValueError, one line, as `record_events` does, and for more exponents than perturbations.
 

@@ -39,7 +39,7 @@ class ContinuationSettings:
     Along another parameter, the unit of length is the change that moves the return of the orbit by about as much as a
     change of 1 in a does for a short orbit. For long orbits, whose return changes faster, the unit is smaller.
 
-    Raises ValueError, one line, for anything out of range, and unless smallest_step ≤ first_step ≤ largest_step.
+    Raises ValueError, one line, for anything out of range, and for a smallest step above the first or the largest one.
 
     >>> from burridge_knopoff import ContinuationSettings
     >>> ContinuationSettings(max_orbits=20).largest_step
@@ -53,10 +53,9 @@ class ContinuationSettings:
 
     def __post_init__(self) -> None:
         check_fields(self)
-        for key, limit in (("smallest_step", "first_step"), ("first_step", "largest_step")):
-            value, most = getattr(self, key), getattr(self, limit)
-            if value > most:
-                raise refusal(key, value, f"at most {limit} ({most:g})")
+        for limit in ("first_step", "largest_step"):
+            if self.smallest_step > (most := getattr(self, limit)):
+                raise refusal("smallest_step", self.smallest_step, f"at most {limit} ({most:g})")
 
 
 CONTINUATION = ContinuationSettings()
