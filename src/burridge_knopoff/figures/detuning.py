@@ -55,21 +55,23 @@ def _ratios(panel: Axes, rotation: xarray.Dataset) -> None:
     """Draw the ratios where both end blocks have one frequency, and those of the modes."""
     for detuning in rotation["detuning"].values:
         one = rotation.sel(detuning=detuning)
-        modes = one["mode_end_ratio"].values
-        for branch in one["branch"].values.tolist():
-            own = one.sel(branch=branch)
-            kept, ratio = has_one_frequency(own["detuned_frequency"].values), own["detuned_end_ratio"].values
-            if not kept.any():
-                continue
-            look: Any = {"color": BRANCHES[branch % len(BRANCHES)], "markerfacecolor": "none", "markersize": 3.0}
-            panel.plot(
-                own["a"].values[kept], ratio[kept], MARKERS[branch % len(MARKERS)], label=f"branch {branch}", **look
-            )
-            nearest = np.abs(modes)[own["detuned_mode_share"].values[kept].mean(axis=0).argmax()]
-            panel.axhline(nearest, color="0.4", linewidth=0.6, zorder=0)
-            panel.annotate(
-                f"$d$ = {detuning:g}", (1.0, nearest), xycoords=("axes fraction", "data"), xytext=(-3, 2), ha="right",
-                textcoords="offset points", fontsize=8.0,
-            )  # fmt: skip
+        kept = has_one_frequency(one["detuned_frequency"].values)
+        if not kept.any():
+            continue
+        most = one["detuned_mode_share"].values[kept].mean(axis=0).argmax()
+        of_mode = abs(one["mode_end_ratio"].values[most])
+        panel.axhline(of_mode, color="0.4", linewidth=0.6, zorder=0)
+        panel.annotate(
+            f"$d$ = {detuning:g}", (1.0, of_mode), xycoords=("axes fraction", "data"), xytext=(-3, 2), ha="right",
+            textcoords="offset points", fontsize=8.0,
+        )  # fmt: skip
+        for place, branch in enumerate(one["branch"].values.tolist()):
+            drawn = kept[:, place]
+            if drawn.any():
+                look: Any = {"color": BRANCHES[branch % len(BRANCHES)], "markerfacecolor": "none", "markersize": 3.0}
+                panel.plot(
+                    one["a"].values[drawn], one["detuned_end_ratio"].values[drawn, place],
+                    MARKERS[branch % len(MARKERS)], label=f"branch {branch}", **look,
+                )  # fmt: skip
     if not panel.lines:
         say(panel, "no branch without synchrony was found")
