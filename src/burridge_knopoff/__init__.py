@@ -23,8 +23,8 @@ Periodic orbits: `limit_cycle`, `find_periodic_orbit` and `synchronized_orbit` r
 
 Exponents: a `Trajectory` contains its Lyapunov exponents. `transverse_exponent` is the exponent of synchrony.
 
-Locking: `block_frequencies` returns the mean frequency of each block; locked blocks keep their ratio of frequencies
-when one of the blocks is changed.
+Locking: `block_frequencies` returns the frequency of each block, and `mode_amplitudes` the `ModeAmplitudes` of the
+chain's normal modes, which tell locked blocks from blocks that move in one mode.
 
 Bifurcations: `follow` continues a periodic orbit in any parameter, with `ContinuationSettings`, and returns its
 branch as `BranchOrbit`s. `locate_bifurcations` finds each `Bifurcation` on the branch and its `BifurcationKind`.

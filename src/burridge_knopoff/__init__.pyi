@@ -31,6 +31,8 @@ from .motion.chain_synchronization import transverse_exponent as transverse_expo
 from .motion.frequency import block_frequencies as block_frequencies
 from .motion.kind import MotionKind as MotionKind
 from .motion.limit_cycle import limit_cycle as limit_cycle
+from .motion.modes import ModeAmplitudes as ModeAmplitudes
+from .motion.modes import mode_amplitudes as mode_amplitudes
 from .motion.observables import SteadyMotion as SteadyMotion
 from .motion.settings import MotionSettings as MotionSettings
 from .motion.synchronized_orbit import synchronized_orbit as synchronized_orbit

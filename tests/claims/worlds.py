@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray
 
@@ -249,26 +251,25 @@ def _rotation() -> xarray.Dataset:
     """Return a plateau at 1/2 over all values of a of both laws, and end blocks that stay locked if detuned."""
     refined = _refined()
     there = np.isfinite(refined["a"].values)
+
+    def detuned(values: Sequence[float]) -> np.ndarray:
+        return np.where(there[..., None, None, None], np.ones((2, 3, 1)) * values, np.nan)
+
+    axes = ("law", "value", "branch", "detuning")
     data = {
         "a": refined["a"],
         "in_grid": refined["in_grid"],
         "rotation_number": (("law", "value"), np.where(there, 0.5, np.nan)),
         "rotation_error": (("law", "value"), np.where(there, 1e-3, np.nan)),
         "locked": (("law", "value"), np.where(there, 1, -1).astype("i1")),
-        "detuned_frequency": (
-            ("law", "value", "detuning", "block"),
-            there[..., None, None] * np.ones((2, 1)) * [0.22, 0.34, 0.22],
-        ),
-        "detuned_exponent": (
-            ("law", "value", "detuning", "exponent"),
-            there[..., None, None] * np.ones((2, 1)) * [0.0, 0.0, -0.02],
-        ),
-        "detuned_exponent_error": (
-            ("law", "value", "detuning", "exponent"),
-            there[..., None, None] * np.full((2, 3), 0.0005),
-        ),
+        "detuned_frequency": ((*axes, "block"), detuned([0.22, 0.34, 0.22])),
+        "detuned_exponent": ((*axes, "exponent"), detuned([0.0, 0.0, -0.02])),
+        "detuned_exponent_error": ((*axes, "exponent"), detuned([0.0005] * 3)),
+        "detuned_mode_share": ((*axes, "mode"), detuned([0.2, 0.8, 0.0])),
+        "detuned_end_ratio": (axes, detuned([1.0])[..., 0]),
+        "mode_end_ratio": (("detuning", "mode"), np.ones((3, 1)) * [1.2, -0.8, 0.9]),
     }
-    coordinates = {"law": list(LAWS), "detuning": [0.1, 0.8], "block": BLOCKS}
+    coordinates = {"law": list(LAWS), "branch": [1, 2], "detuning": [0.1, 0.3, 0.8], "block": BLOCKS}
     return xarray.Dataset(data, coordinates, {"detuned_transient": 4000.0, "detuned_window": 4000.0})
 
 

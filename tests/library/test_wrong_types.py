@@ -91,6 +91,7 @@ def correct_calls():
         "label_states": {"model": MODEL, "attractors": [], "position": np.ones((1, 3)), "velocity": np.ones((1, 3))},
         "law_of": {"name": "linearized", "a": 0.08, "description": {}},
         "locate_bifurcations": {"branch": branch},
+        "mode_amplitudes": {"model": MODEL, "state": STATE, "duration": 10.0},
         "multipliers": {"orbit": orbit},
         "open_study": {"results": "results/nothing"},
         "record_events": {

@@ -7,6 +7,8 @@ from scipy.linalg import eigh
 from burridge_knopoff import (
     Chain,
     ChainState,
+    FormulaLaw,
+    InitialState,
     Model,
     block_frequencies,
     law_of,
@@ -17,6 +19,9 @@ from tests.refused import refused
 from tests.scipy_flow import model_events
 
 THREE = Chain(3)
+
+#: Sliding friction of 2/3 at every velocity, below the static friction of 1.
+DROPPING = FormulaLaw(0.5, "1/(1 + a)")
 
 
 def detuned_model(a, detuning, law="linearized"):
@@ -94,6 +99,139 @@ def test_the_frequency_is_the_winding_rate_of_the_phase():
     rate = np.polyfit(run.trajectory_time - run.trajectory_time.mean(), turn, 1)[0]
     begin = simulate(model, initial="plus", transient=0.0, window=6000.0).final
     assert block_frequencies(model, begin)[0] == pytest.approx(-rate / (2.0 * np.pi), abs=2e-7)
+
+
+def relaxation_period(law, v):
+    """Return the time from slip to slip of one block whose sliding friction φ is constant and below its threshold.
+
+    It slips from x = −1 with x'' = −x − φ until U' = 0, and is then pulled back at v.
+    """
+    drop = 1.0 - law(0.5)
+    slip = 2.0 * (np.pi - np.arctan(drop / v))
+    end = -law(0.5) - drop * np.cos(slip) - v * np.sin(slip)
+    return slip + (end + 1.0) / v
+
+
+@pytest.mark.parametrize("v", [1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 0.1])
+@pytest.mark.parametrize("cycles", [3.2, 6.1, 60.3])
+def test_the_frequency_of_a_relaxation_oscillation_is_the_rate_of_slips(v, cycles):
+    """At small v the lines of its spectrum have nearly one height, and any of them may be the highest."""
+    model = Model(Chain(1, pulling=1.0), DROPPING, v=v)
+    period = relaxation_period(DROPPING, v)
+    start = model.begin(InitialState("rest", (-0.5,), (0.0,)), "tested")
+    settled = simulate(model, initial=start, transient=0.0, window=2.4 * period, lyapunov_exponents=0).final
+    frequency, error = block_frequencies(model, settled, cycles * period)
+    assert abs(frequency[0] - 1.0 / period) <= error[0]
+    # In short slips, the error is that of a sampling interval in the duration; in three smooth cycles, a third.
+    assert error[0] * period < (0.25 if cycles < 4.0 and v > 0.05 else 0.02)
+
+
+@pytest.mark.parametrize("cycles", [0.4, 0.9, 1.3, 1.8])
+@pytest.mark.parametrize("v", [3e-4, 1e-2, 0.1])
+def test_less_than_two_cycles_have_no_frequency(v, cycles):
+    model = Model(Chain(1, pulling=1.0), DROPPING, v=v)
+    period = relaxation_period(DROPPING, v)
+    start = model.begin(InitialState("rest", (-0.5,), (0.0,)), "tested")
+    for phase in np.linspace(2.0, 3.0, 9):
+        settled = simulate(model, initial=start, transient=0.0, window=phase * period, lyapunov_exponents=0).final
+        assert np.isnan(block_frequencies(model, settled, cycles * period)).all()
+
+
+def stop_rates(model, state, duration):
+    run = simulate(
+        model, initial=state, transient=0.0, window=duration, event_window=0.0, trajectory=0.0, lyapunov_exponents=0
+    )
+    stops = run.earlier_event_block[run.earlier_event_kind == 0]
+    return np.bincount(stops, minlength=model.blocks + 1)[1:] / duration
+
+
+@pytest.mark.parametrize(
+    ("chain", "v", "state", "never"),
+    [
+        (Chain(2), 3e-4, (-0.5, -0.6), []),
+        # Two slips of different size in a period.
+        (Chain(2, pulling=1.0, threshold=(1.0, 1.3)), 3e-4, (-0.5, -0.6), []),
+        # The middle block is dragged by a dashpot and never stops: it is pushed by either neighbour.
+        (Chain(3, pulling=1.0, pulling_damping=(0.0, 5.0, 0.0)), 1e-3, (-0.5, -0.6, -0.7), [1]),
+        (Chain(3, pulling=1.0, threshold=(1.0, 0.05, 1.0)), 1e-3, (-0.5, -0.6, -0.7), []),
+        # Slips of many sizes, and chaos.
+        (
+            Chain(3, pulling=1.0, threshold=(1.0, 1.1, 1.3), pulling_damping=(0.0, 3.0, 0.0)),
+            1e-3,
+            (-0.5, -0.6, -0.7),
+            [],
+        ),
+    ],
+)
+def test_in_short_slips_the_frequencies_are_the_rates_of_stops(chain, v, state, never):
+    model = Model(chain, DROPPING, v=v)
+    at = simulate(model, initial=model.begin(InitialState("rest", state, (0.0,) * chain.blocks), "tested"),
+                  transient=0.0, window=20_000.0, lyapunov_exponents=0).final  # fmt: skip
+    rate = stop_rates(model, at, 200_000.0)
+    assert list(np.flatnonzero(rate == 0.0)) == never
+    rate[never] = rate.sum()
+    # One stop more or less in the duration.
+    allowed = 1.0 / 200_000.0
+    for duration in (2500.0, 4000.0, 20_000.0, 100_000.0):
+        frequency, error = block_frequencies(model, at, duration)
+        known = np.isfinite(frequency)
+        assert (np.abs(frequency - rate)[known] <= 1.5 * error[known] + allowed).all()
+        assert known.all() or duration < 20_000.0
+    assert (error < 0.03 * frequency).all()
+
+
+def test_short_slips_of_two_blocks_are_not_locked_at_a_ratio_of_harmonics():
+    model = Model(Chain(2), DROPPING, v=3e-4)
+    state = model.begin(InitialState("rest", (-0.5, -0.6), (0.0, 0.0)), "tested")
+    at = simulate(model, initial=state, transient=0.0, window=20_000.0, lyapunov_exponents=0).final
+    frequency, error = block_frequencies(model, at)
+    assert frequency == pytest.approx(8.991e-4, abs=1e-7)
+    assert (error < 1e-6).all()
+
+
+@pytest.mark.parametrize(
+    ("law", "a", "v"), [("linearized", 0.234, 0.1), ("nonlinear", 0.25, 0.1), ("nonlinear", 0.3, 1.0)]
+)
+def test_in_chaos_the_errors_contain_the_differences_of_successive_times(law, a, v):
+    model = Model(THREE, law_of(law, a), v)
+    state = simulate(model, initial="minus", transient=0.0, window=6000.0, lyapunov_exponents=0).final
+    measured = []
+    for _ in range(6):
+        measured.append(block_frequencies(model, state, 3000.0))
+        state = simulate(model, initial=state, transient=0.0, window=3000.0, lyapunov_exponents=0).final
+    frequency, error = np.array(measured).transpose(1, 0, 2)
+    assert np.isfinite(frequency).all()
+    assert (np.abs(np.diff(frequency, axis=0)) <= error[1:] + error[:-1]).mean() > 0.9
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_random_oscillations_are_as_accurate_as_they_say_or_unknown(seed):
+    """Two modes of a random chain at a = 0, over a cycle to a hundred: the frequency of the larger one, or none."""
+    random = np.random.default_rng(seed)
+    blocks = int(random.integers(1, 6))
+    chain = Chain(blocks, pulling=random.uniform(0.3, 2.0, blocks), mass=random.uniform(0.3, 3.0, blocks))
+    model = Model(chain, law_of("linearized", 0.0))
+    squares, shapes = eigh(chain.stiffness, np.diag(chain.masses))
+    omega, size = np.sqrt(squares), np.zeros(blocks)
+    size[random.permutation(blocks)[:2]] = (1.0, random.uniform(0.0, 0.6))[: min(blocks, 2)]
+    speed = shapes * omega * size
+    size *= 0.9 * model.v / np.abs(speed).sum(axis=1).max()
+    phase = random.uniform(-np.pi, np.pi, blocks)
+    state = ChainState(
+        shapes @ (size * np.cos(phase)), model.v - shapes @ (omega * size * np.sin(phase)), np.zeros(blocks, bool)
+    )
+    lines = np.sort(np.abs(speed), axis=1)
+    clear = (lines[:, -1] > 1.5 * lines[:, -2] if blocks > 1 else np.ones(blocks, bool)) & (lines[:, -1] > 1e-6)
+    true = omega[np.abs(speed).argmax(axis=1)] / (2.0 * np.pi)
+    for cycles in np.geomspace(0.5, 100.0, 12):
+        frequency, error = block_frequencies(model, state, cycles / true.min())
+        known = np.isfinite(frequency) & clear
+        # In few cycles two lines are hardly resolved.
+        few = 0.05 * true * (cycles * true < 8.0 * true.min())
+        assert (np.abs(frequency - true)[known] <= np.maximum(2.0 * error, few)[known]).all()
+        assert (error[known] <= 0.25 * frequency[known]).all()
+        assert not known[cycles * true / true.min() < 1.0].any()
+    assert known[clear].all()
 
 
 def test_uniform_sliding_has_no_frequency():

@@ -20,7 +20,8 @@ CATEGORIES = {
     "Synchronization": ["bifurcation_diagram.png", "lyapunov.png", "mean_distance.png", "orbits.png", "proof.txt"],
     "Attractors": [
         *("attractor_kinds.png", "attractors.txt", "basin_fractions.png", "basins.png", "basins.txt"),
-        *("bifurcations.png", "bifurcations.txt", "branches_reached.png", "phases.png", "rotation.png"),
+        *("bifurcations.png", "bifurcations.txt", "branches_reached.png"),
+        *("detuning.png", "phases.png", "rotation.png"),
     ],
     "Friction laws": ["agreement.csv", "agreement.png", "agreement.txt", "solvers.png", "two_blocks.png"],
 }

@@ -273,7 +273,7 @@ def test_leftovers_of_a_larger_study_are_recognized_by_name(results, key, name):
         (
             "attractors",
             "(figure_)?(attractors|refined|returns|rotation|attractor_kinds|bifurcations|basins|basin_fractions|"
-            "branches_reached|phases)",
+            "branches_reached|detuning|phases)",
         ),
         ("bifurcations", "(figure_)?bifurcations"),
         ("solvers", "(figure_)?solvers|simulate_solver"),

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.claims.conventions import combine_readings, judge_readings
 from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence
 from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.verdict import (
@@ -18,6 +19,7 @@ from burridge_knopoff.claims.verdict import (
     Verdict,
     count_share,
     describe_where,
+    extremes,
     format_shares,
     join_words,
     judge_share,
@@ -28,32 +30,36 @@ from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.motion.kind import CHAOS, REGULAR, MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries.detuning import has_one_frequency
 from burridge_knopoff.summaries.plateaux import plateaux
 
 if TYPE_CHECKING:
     import xarray
 
-# End blocks whose frequencies differ by no more have one frequency; on tori frequencies are known to a tenth of this.
 # An exponent is negative if it is below 0 by this many standard errors.
-FREQUENCY_TOLERANCE = 1e-6
 STANDARD_ERRORS = 3.0
+
+#: The two readings of «frequency locking».
+ONE_FREQUENCY, NO_MODE = "one frequency with attracting phases", "locking, not a normal mode"
 
 TORUS = "quasiperiodic motion, or chaos too weak to be distinguished from it,"
 UNFOLLOWED = "a periodic orbit too long to be continued, or a torus near it,"
 
 
 @judge("rotation")
-def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: float) -> Verdict:
-    """Judge whether the end blocks of branch 1, which is not synchronized, are locked at all a of a range.
+def branch_locked(evidence: Evidence, a: Range, detuning: float, mode_share: float, loose_share: float) -> Verdict:
+    """Judge whether the end blocks are locked without synchrony, on branches 1 and 2, at all a of a range.
 
     The paper speaks of the phases of the lateral blocks. At equal masses their equal frequencies would show nothing,
-    since the motion is its own mirror image. They are locked if they keep one frequency when the mass of one of them
-    becomes 1 + `detuning` times as large, and if a perturbation of their relative phase decays: without any locking,
-    three blocks would have three Lyapunov exponents of 0.
+    since the motion is its own mirror image: the mass of one of them is therefore 1 + `detuning` times as large. The
+    statement has two readings. Frequency locking may mean that they keep one frequency, and that a perturbation of
+    their relative phase decays: three blocks that oscillate freely would have three Lyapunov exponents of 0. It may
+    mean locking as opposed to a normal mode, in which all blocks have one frequency without any locking. They are then
+    locked if no mode carries the share `mode_share` of the kinetic energy of their common oscillation.
 
-    If they are locked to the middle block as well, the rotation number is a ratio of whole numbers that is constant in
-    a. The verdict reports where, but does not depend on it. The fraction of a is taken over the values of the grid. A
-    value with an undetermined kind of motion does not count.
+    If the end blocks of branch 1 are locked to the middle block, the rotation number is a ratio of whole numbers that
+    is constant in a. The verdict reports where, but does not depend on it. Fractions of a are taken over the values of
+    the grid. A value with an undetermined kind of motion does not count.
 
     loose_share : fraction of a from which the claim holds loosely
     """
@@ -61,57 +67,69 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, loose_share: fl
     rotation = evidence.summary("rotation")
     if detuning not in rotation["detuning"].values:
         raise NotTestableError(f"rotation.nc has no motion with a detuning of {detuning:g}")
-    shares: dict[str, Share] = {}
+    shares: dict[str, dict[str, Share]] = {ONE_FREQUENCY: {}, NO_MODE: {}}
     measured, where = [], []
     for law in PAPER_LAWS:
         found = rotation.sel(law=law)
-        inside = a.choose(found["a"].values)
-        known = inside & (found["in_grid"].values == 1) & (found["locked"].values >= 0)
-        if known.sum() < MIN_VALUES:
-            raise NotTestableError(f"branch 1 is regular motion at fewer than {MIN_VALUES} values of a ({law})")
-        grid = found["a"].values[known]
-        detuned = found.sel(detuning=detuning).isel(value=known)
-        detuned_difference = np.abs(
-            detuned["detuned_frequency"].values[:, -1] - detuned["detuned_frequency"].values[:, 0]
-        )
-        third, error = (detuned[name].values[:, 2] for name in ("detuned_exponent", "detuned_exponent_error"))
-        are_locked = (detuned_difference <= FREQUENCY_TOLERANCE) & (third < -STANDARD_ERRORS * error)
-        shares[law] = count_share(are_locked)
-        measured.append(
-            Measured(f"share of a at which the end blocks are locked to each other, {law}", shares[law].value)
-        )
-        for name, values in (("difference of their frequencies", detuned_difference), ("third exponent", third)):
-            if np.isfinite(values).any():
-                measured.append(Measured(f"largest {name}, {law}", float(np.nanmax(values))))
-        where += describe_where("the end blocks are not locked to each other", grid, ~are_locked, law)
-        locked = found["locked"].values[known] == 1
-        measured.append(
-            Measured(f"share of a at which they are locked to the middle block, {law}", count_share(locked).value)
-        )
-        number = found["rotation_number"].values[inside]
-        measured += [
-            Measured(f"smallest rotation number, {law}", float(np.nanmin(number))),
-            Measured(f"largest rotation number, {law}", float(np.nanmax(number))),
-        ]
-        found_plateaux = [one for one in plateaux(found.isel(value=inside)) if one.last > one.first]
-        if found_plateaux:
-            measured.append(
+        own = a.choose(found["a"].values) & (found["in_grid"].values == 1)
+        for branch in rotation["branch"].values.tolist():
+            name = f"branch {branch}, {law}"
+            detuned = found.sel(branch=branch, detuning=detuning)
+            detuned = detuned.isel(value=own & np.isfinite(detuned["detuned_exponent"].values[:, 2]))
+            if detuned.sizes["value"] < MIN_VALUES:
+                raise NotTestableError(f"branch {branch} is regular at fewer than {MIN_VALUES} values of a ({law})")
+            grid, frequency = detuned["a"].values, detuned["detuned_frequency"].values
+            third, error = (detuned[key].values[:, 2] for key in ("detuned_exponent", "detuned_exponent_error"))
+            largest = detuned["detuned_mode_share"].values.max(axis=1)
+            one = has_one_frequency(frequency) & (third < -STANDARD_ERRORS * error)
+            locked = one & (largest < mode_share)
+            shares[ONE_FREQUENCY][name], shares[NO_MODE][name] = count_share(one), count_share(locked)
+            measured += [
+                Measured(f"share of a at which the end blocks keep one frequency, {name}", one.mean()),
+                Measured(f"share of a at which they are locked, {name}", locked.mean()),
                 Measured(
-                    f"width in a of all plateaux that were found, {law}", sum(p.last - p.first for p in found_plateaux)
-                )
-            )
-            widest = max(found_plateaux, key=lambda one: one.last - one.first)
-            where.append(
-                f"the widest plateau, {widest.ratio}, reaches from a = {widest.first:.5g} to {widest.last:.5g} ({law})"
-            )
-        where += describe_where("locked to the middle block", grid, locked, law)
+                    f"largest difference of their frequencies, {name}", np.ptp(frequency[:, [0, -1]], axis=1).max()
+                ),
+                Measured(f"largest third exponent, {name}", third.max()),
+                Measured(f"smallest share of the largest mode, {name}", largest.min()),
+            ]
+            where += describe_where("the end blocks do not keep one frequency with attracting phases", grid, ~one, name)
+            where += describe_where("the end blocks are locked", grid, locked, name)
+        of_law, further = _locked_to_middle(found, a, law)
+        measured, where = measured + of_law, where + further
+    verdicts = judge_readings(shares, loose_share)
+    kept, locked_shares = (format_shares(shares[reading]) for reading in (ONE_FREQUENCY, NO_MODE))
     reason = (
-        f"With {100 * detuning:g} % more mass on one end block, the end blocks of branch 1 keep one frequency, and a "
-        f"perturbation of their relative phase decays (the third Lyapunov exponent is negative), at "
-        f"{format_shares(shares)} of the values of a with {a}. Each motion was followed for "
+        f"With {100 * detuning:g} % more mass on one of them, the end blocks keep one frequency, and a perturbation of "
+        f"their relative phase decays (the third Lyapunov exponent is negative), at {kept} of the values of a with {a} "
+        f"({verdicts[ONE_FREQUENCY]}). They are locked, with less than {100 * mode_share:g} % of the energy of this "
+        f"oscillation in any normal mode, at {locked_shares} ({verdicts[NO_MODE]}). Each motion was followed for "
         f"{rotation.attrs['detuned_transient'] + 2.0 * rotation.attrs['detuned_window']:g} time units."
     )
-    return Verdict(judge_worst_share(shares, loose_share), reason, measured, "; ".join(where))
+    return combine_readings(verdicts, reason, measured, where)
+
+
+def _locked_to_middle(rotation: xarray.Dataset, a: Range, law: str) -> tuple[list[Measured], list[str]]:
+    """Return the numbers that tell where branch 1 is locked to the middle block under a law, and describe where."""
+    inside = a.choose(rotation["a"].values)
+    known = inside & (rotation["in_grid"].values == 1) & (rotation["locked"].values >= 0)
+    locked = rotation["locked"].values[known] == 1
+    share = count_share(locked).value if known.any() else np.nan
+    measured = [Measured(f"share of a at which branch 1 is locked to the middle block, {law}", share)]
+    number = rotation["rotation_number"].values[inside]
+    if np.isfinite(number).any():
+        measured += extremes("rotation number", number[np.isfinite(number)], law)
+    where = []
+    found = [one for one in plateaux(rotation.isel(value=inside)) if one.last > one.first]
+    if found:
+        width = sum(one.last - one.first for one in found)
+        measured.append(Measured(f"width in a of all plateaux that were found, {law}", width))
+        widest = max(found, key=lambda one: one.last - one.first)
+        where.append(
+            f"the widest plateau, {widest.ratio}, reaches from a = {widest.first:.5g} to {widest.last:.5g} ({law})"
+        )
+    where += describe_where("branch 1 is locked to the middle block", rotation["a"].values[known], locked, law)
+    return measured, where
 
 
 @judge("bifurcations", "refined")

@@ -34,6 +34,7 @@ SHARES = {
     "share": "the required share of states",
     "loose_share": "the share from which the claim holds loosely",
     "correlation": "the correlation that counts as antiphase",
+    "mode_share": "the share of the energy that makes an oscillation one of a mode",
 }
 
 # Parameters with data for a few values only: their description, and the summary whose coordinate lists these values.

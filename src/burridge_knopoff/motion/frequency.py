@@ -1,7 +1,10 @@
-"""The frequency of each block: that of the strongest line in the spectrum of its velocity.
+"""The frequency of each block: that of the strongest line in the spectrum of its velocity, or the rate of its slips.
+
+On a torus the strongest line of a block is that of one mode. A block that moves in short slips has a spectrum of many
+lines of nearly one height; which of them is the highest means nothing, and its frequency is the rate of its slips.
 
 Blocks that are locked to each other have frequencies in a ratio of whole numbers, and keep this ratio when their
-masses, springs or thresholds are made different. On a torus the strongest line of a block is that of one mode.
+masses, springs or thresholds are made different. So do blocks that move in a single mode, see `motion.modes`.
 """
 
 from __future__ import annotations
@@ -30,6 +33,17 @@ SPACING = 2.0
 # A velocity whose relative variation is at most this is constant: the variation is rounding.
 ROUNDING = 1e-10
 
+# A block moves in short slips if it is faster than its mean velocity for a smaller fraction of the time. With one slip
+# of the shape 1 − cos in each period, the second line is then more than 0.7 times as high as the first.
+SHORT_SLIPS = 0.25
+
+# The fewest cycles that have a frequency, and the number of parts of the time that are compared.
+LEAST_CYCLES = 2
+PARTS = 4
+
+# A frequency with a larger relative error is unknown.
+LARGEST_ERROR = 0.25
+
 
 def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0) -> tuple[np.ndarray, np.ndarray]:
     """Return the frequency of each block of a motion, and its error, in cycles per unit time, each of shape (blocks,).
@@ -38,12 +52,19 @@ def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0)
     duration : time of observation, in units of 1/ω
 
     The frequency is that of the strongest line in the spectrum of U', refined by the phases of this line in the two
-    halves of the time. It is NaN for a block whose velocity is constant. The error is the difference between the
-    frequencies in the two halves; the true error is smaller, on a periodic orbit or a torus by orders of magnitude.
+    halves of the time. If a block is faster than on average for less than a quarter of the time, as in a relaxation
+    oscillation, its frequency is the rate of its slips. The error is the largest deviation in four successive parts of
+    the time, for slips with the sampling interval added; the true error is smaller, on a periodic orbit or a torus by
+    orders of magnitude.
+
+    Both are NaN for a block whose velocity is constant, and for a block that is not observed to complete two cycles:
+    because the driver moves by less than twice the range of its position, because it slips fewer than three times,
+    because the spectrum is higher at a lower frequency, or because the error exceeds a quarter of the frequency.
 
     Raises ValueError, one line, for a duration or a state that is not allowed.
 
-    Source: J. Laskar, Physica D 67 (1993) 257 (fundamental frequencies of quasiperiodic motion).
+    Sources: J. Laskar, Physica D 67 (1993) 257 (fundamental frequencies of quasiperiodic motion); S. Das, Y. Saiki, E.
+    Sander and J. A. Yorke, Nonlinearity 30 (2017) 4111 (weighted averages, here of the times between slips).
 
     >>> from burridge_knopoff import Chain, Model, block_frequencies, law_of, simulate
     >>> model = Model(Chain(3), law_of("linearized", 0.06)).at(**{"mass[3]": 1.1})
@@ -55,41 +76,108 @@ def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0)
     True
     """
     instance_of(model, Model, "model")
+    time, position, velocity = sampled_motion(model, state, duration)
+    unrepeated = LEAST_CYCLES * np.ptp(position, axis=0) > model.v * time[-1]
+    per_sample = np.array([_frequency(one) for one in velocity.T])
+    frequency, error = np.where(unrepeated, math.nan, per_sample.T / time[1])
+    return frequency, error
+
+
+def sampled_motion(model: Model, state: ChainState, duration: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return an even number of equal time steps from 0 to a duration, x and U' there: (n + 1,), (n + 1, blocks) twice.
+
+    Raises ValueError, one line, for a duration or a state that is not allowed.
+    """
     duration = Number(0.0, LONGEST, above=True).form(duration, "duration")
     check_state(model, state)
     count = 2 * math.ceil(0.5 * duration / (SPACING * longest_spacing(model.chain)))
     if 2 * count * model.blocks > MOST_NUMBERS:
         raise refusal("duration", duration, f"a shorter one: {model.blocks} blocks are stored at {count} times")
+    time = np.linspace(0.0, duration, count + 1)
     start = (state.position[None], state.velocity[None], state.stuck[None].astype(bool))
-    velocity = new_ensemble(model).run(*start, np.linspace(0.0, duration, count + 1).tolist())["velocity"][0]
-    first = np.array([leading_frequency(one, duration) for one in velocity.T])
-    interval = duration / count
-    whole, *halves = (
-        np.array([_frequency_offset(one, found * interval) for one, found in zip(part.T, first, strict=True)])
-        / interval
-        for part in (velocity, velocity[: count // 2], velocity[count // 2 :])
-    )
-    return first + whole, np.abs(halves[0] - halves[1])
+    motion = new_ensemble(model).run(*start, time.tolist())
+    return time, motion["position"][0], motion["velocity"][0]
+
+
+def _frequency(values: np.ndarray) -> tuple[float, float]:
+    """Return the frequency of equidistant samples in cycles per sample, and its error; NaN without two full cycles."""
+    if is_constant(values):
+        return math.nan, math.nan
+    slips = has_short_slips(values)
+    whole = np.diff(slip_times(values)) if slips else values
+    cycles = len(whole) if slips else int(np.nan_to_num(_line_frequency(values)) * len(values))
+    if cycles < LEAST_CYCLES:
+        return math.nan, math.nan
+    # Each part has two cycles if the whole has four.
+    parts = np.array_split(whole, min(max(cycles // 2, 2), PARTS))
+    frequency, *others = (mean_rate(part) if slips else _line_frequency(part) for part in (whole, *parts))
+    error = float(np.abs(np.subtract(others, frequency)).max())
+    if slips:
+        error += frequency / len(values)
+    return (frequency, error) if error <= LARGEST_ERROR * frequency else (math.nan, math.nan)
 
 
 def leading_frequency(values: np.ndarray, duration: float) -> float:
     """Return the frequency of the highest peak of the spectrum of equidistant samples that last for `duration`.
 
     The mean is taken off, a Hann window put on, and the peak's place is that of the parabola through the logarithms of
-    the power around it. NaN if the values are constant, or no peak has a full cycle within the duration.
+    the power around it. Of short slips it is their rate. NaN if the values are constant, if no peak has a full cycle
+    within the duration, and for fewer than three short slips.
     """
     if is_constant(values) or len(values) < 4:
         return math.nan
     interval = duration / (len(values) - 1)
+    if has_short_slips(values):
+        cycles = np.diff(slip_times(values))
+        return mean_rate(cycles) / interval if len(cycles) >= LEAST_CYCLES else math.nan
+    return _highest_peak(values, duration)[0]
+
+
+def _highest_peak(values: np.ndarray, duration: float) -> tuple[float, bool]:
+    """Return the frequency of the highest peak of the spectrum, and whether the spectrum is nowhere higher."""
     length = next_fast_len(PADDING * len(values), real=True)
+    interval = duration / (len(values) - 1)
     frequency, power = periodogram(values, 1.0 / interval, window="hann", nfft=length, detrend="constant")
     peaks = find_peaks(power)[0]
     peaks = peaks[frequency[peaks] * duration >= 1.0]
     if not len(peaks):
-        return math.nan
+        return math.nan, False
     top = peaks[np.argmax(power[peaks])]
     left, middle, right = (math.log(power[k]) for k in (top - 1, top, top + 1))
-    return float(frequency[top] + 0.5 * (left - right) / (left - 2.0 * middle + right) * frequency[1])
+    offset = 0.5 * (left - right) / (left - 2.0 * middle + right)
+    return float(frequency[top] + offset * frequency[1]), bool(power[top] == power.max())
+
+
+def has_short_slips(values: np.ndarray) -> bool:
+    """Return whether a velocity exceeds its mean for so little of the time that its spectrum is a comb."""
+    return bool((values > values.mean()).mean() < SHORT_SLIPS)
+
+
+def slip_times(values: np.ndarray) -> np.ndarray:
+    """Return the times, in samples, at which a velocity rises through its mean."""
+    above = values - values.mean()
+    before = np.flatnonzero((above[:-1] <= 0.0) & (above[1:] > 0.0))
+    return before + above[before] / (above[before] - above[before + 1])
+
+
+def mean_rate(cycles: np.ndarray) -> float:
+    """Return the mean rate of successive cycles of given durations; more accurate than their number on a torus."""
+    weight = smooth_weight(len(cycles))
+    return float(weight.sum() / (weight @ cycles))
+
+
+def smooth_weight(count: int) -> np.ndarray:
+    """Return weights of equidistant samples with which averages over quasiperiodic motion converge fastest."""
+    place = (np.arange(count) + 0.5) / count
+    return np.exp(-1.0 / (place * (1.0 - place)))
+
+
+def _line_frequency(values: np.ndarray) -> float:
+    """Return the frequency of the strongest line in cycles per sample, refined by its phases; NaN if it is too low."""
+    if is_constant(values) or len(values) < 4:
+        return math.nan
+    frequency, is_strongest = _highest_peak(values, len(values) - 1.0)
+    return frequency + _frequency_offset(values, frequency) if is_strongest else math.nan
 
 
 def _frequency_offset(values: np.ndarray, frequency: float) -> float:
@@ -100,8 +188,7 @@ def _frequency_offset(values: np.ndarray, frequency: float) -> float:
     if math.isnan(frequency):
         return math.nan
     half = len(values) // 2
-    place = (np.arange(half) + 0.5) / half
-    line = np.exp(-1.0 / (place * (1.0 - place)) - 2j * math.pi * frequency * np.arange(half))
+    line = smooth_weight(half) * np.exp(-2j * math.pi * frequency * np.arange(half))
     first, second = (line @ (values[start : start + half] - values.mean()) for start in (0, half))
     advance = np.angle(second / first * np.exp(-2j * math.pi * frequency * half))
     return float(advance) / (2.0 * math.pi * half)

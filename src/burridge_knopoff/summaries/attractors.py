@@ -74,7 +74,7 @@ VARIABLES = {
     "velocity_frequency": _V(
         (*_SLOT, "block"),
         "f8",
-        "frequency, in cycles per unit time, of the highest peak of the spectrum of U'",
+        "frequency, in cycles per unit time, of the highest peak of the spectrum of U', or of short slips",
         ALONG_COMMENT,
     ),
     "rounded_branch": _V(

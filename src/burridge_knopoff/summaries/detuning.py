@@ -1,10 +1,10 @@
-"""Motion after detuning: are the end blocks locked to each other if their masses differ?
+"""Motion after detuning: do the end blocks keep one frequency if their masses differ, and in which mode do they move?
 
-If a motion is its own mirror image, its end blocks have the same frequency by symmetry, whether they are locked or not.
-Locked blocks keep a common frequency if their natural frequencies are made to differ, up to some detuning. Under
-constant friction, blocks that move in a single mode of the springs have a common frequency as well, but neighbouring
-motions have other frequencies. Locking is attracting. If N blocks oscillate freely, none of their phases decays and N
-Lyapunov exponents are 0; each locked relation between the phases makes one of them negative.
+If a motion is its own mirror image, its end blocks have one frequency by symmetry. If they keep it with different
+masses, and perturbations of their relative phase decay, they may be locked oscillators, or the friction may select one
+mode of the springs, in which all blocks have one frequency. The shares of the modes in the common oscillation decide
+(`motion.modes`). If N blocks oscillate freely, none of their phases decays and N Lyapunov exponents are 0; each locked
+relation between the phases, and each mode that is suppressed, makes one of them negative.
 
 Reference: A. Pikovsky, M. Rosenblum and J. Kurths, Synchronization (Cambridge University Press, 2001), chapter 8:
 mutual synchronization of two self-sustained oscillators, and its range of detuning.
@@ -12,18 +12,23 @@ mutual synchronization of two self-sustained oscillators, and its range of detun
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.frequency import block_frequencies
+from burridge_knopoff.motion.modes import mode_amplitudes
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
-#: Time for which the motion settles after the detuning, and time for which its exponents, and then its frequencies, are
-#: measured.
+#: Time for which the motion settles after the detuning, and time for which its exponents, and then its frequencies and
+#: modes, are measured.
 TRANSIENT, WINDOW = 4000.0, 4000.0
+
+# End blocks whose frequencies differ by no more have one frequency; on tori frequencies are known to a tenth of this.
+FREQUENCY_TOLERANCE = 1e-6
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,12 +37,26 @@ class DetunedMotion:
 
     frequency, frequency_error : of each block, see `block_frequencies`, shape (blocks,)
     exponent, exponent_error : Lyapunov exponents, the largest first, shape (exponents,)
+    mode_share : of each mode in the oscillation with the frequency of the first block, see
+        `ModeAmplitudes.line_shares`, shape (modes,)
+    end_ratio, end_phase : amplitude of the last block over that of the first in this oscillation, and phase difference
+        in degrees, from 0 to 360
+    final : the state at which frequencies and modes were measured
     """
 
     frequency: np.ndarray
     frequency_error: np.ndarray
     exponent: np.ndarray
     exponent_error: np.ndarray
+    mode_share: np.ndarray
+    end_ratio: float
+    end_phase: float
+    final: ChainState
+
+
+def detuned_model(model: Model, detuning: float) -> Model:
+    """Return the model with the mass of its last block multiplied by 1 + detuning."""
+    return model.at(**{f"mass[{model.blocks}]": model.chain.masses[-1] * (1.0 + detuning)})
 
 
 def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: int) -> DetunedMotion:
@@ -45,8 +64,7 @@ def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: 
 
     start : state at which the mass is multiplied by 1 + detuning; exponents : number of exponents to compute
     """
-    masses = model.chain.masses
-    detuned = model.at(**{f"mass[{model.blocks}]": masses[-1] * (1.0 + detuning)})
+    detuned = detuned_model(model, detuning)
     settings = Settings(
         transient=TRANSIENT,
         window=WINDOW,
@@ -58,4 +76,23 @@ def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: 
     )
     settled = run(detuned, start, settings, section_only=True)
     frequency, error = block_frequencies(detuned, settled.final, WINDOW)
-    return DetunedMotion(frequency, error, settled.lyapunov_exponent, settled.lyapunov_error)
+    share, ratio = np.full(model.blocks, math.nan), complex(math.nan)
+    if np.isfinite(frequency[0]):
+        modes = mode_amplitudes(detuned, settled.final, WINDOW)
+        share, line = modes.line_shares(frequency[0]), modes.line(frequency[0]) @ modes.shape
+        ratio = complex(line[-1] / line[0])
+    return DetunedMotion(
+        frequency,
+        error,
+        settled.lyapunov_exponent,
+        settled.lyapunov_error,
+        share,
+        abs(ratio),
+        math.degrees(np.angle(ratio)) % 360.0,
+        settled.final,
+    )
+
+
+def has_one_frequency(frequency: np.ndarray) -> np.ndarray:
+    """Return whether the end blocks have one frequency, from the frequencies of the blocks, shape (…, blocks)."""
+    return np.abs(frequency[..., -1] - frequency[..., 0]) <= FREQUENCY_TOLERANCE

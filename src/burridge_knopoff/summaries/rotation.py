@@ -1,9 +1,10 @@
-"""Locking of the blocks on branch 1: its rotation number over (law, a), and its frequencies after detuning.
+"""Frequencies without synchrony: the rotation number of branch 1 over (law, a), and branches 1 and 2 after detuning.
 
-Branch 1 is the motion without synchrony that `plus` reaches at a = 0.08. Its rotation number (`motion.rotation`), at
-all values of `refined`, shows whether its end blocks are locked to the middle block. To show whether the end blocks are
-locked to each other, the mirror symmetry that makes their frequencies equal is broken by changing the mass of the last
-block (`summaries.detuning`), at the values of the grid; their frequencies and the Lyapunov exponents then decide.
+Branch 1 is the motion that `plus` reaches at a = 0.08; on branch 2 the end blocks move in antiphase. The rotation
+number of branch 1 (`motion.rotation`), at all values of `refined`, shows whether its end blocks are locked to the
+middle block. To show whether end blocks are locked to each other, the mirror symmetry that makes their frequencies
+equal is broken by changing the mass of the last block (`summaries.detuning`), at the values of the grid; their
+frequencies, the Lyapunov exponents and the shares of the normal modes then decide.
 """
 
 from __future__ import annotations
@@ -17,23 +18,28 @@ from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
+from burridge_knopoff.motion.modes import sliding_modes
 from burridge_knopoff.motion.rotation import rotation_number
 from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.summaries.detuning import TRANSIENT, WINDOW, detuned_motion
+from burridge_knopoff.summaries.detuning import TRANSIENT, WINDOW, detuned_model, detuned_motion
 
-TITLE = "Rotation number of branch 1, and its frequencies after detuning"
+TITLE = "Rotation number of branch 1, and branches 1 and 2 after detuning"
+
+#: The branch with a rotation number, and the branches that are detuned.
 BRANCH = 1
+DETUNED_BRANCHES = (1, 2)
 
 #: Time for which the motion is followed at each a. The error is usually below 1e-5, and far smaller on periodic orbits.
 DURATION = 1000.0
 
-#: Detunings of branch 1, from small to large.
+#: Detunings, from small to large; each motion begins at the last state of the one before.
 DETUNINGS = (0.1, 0.3, 0.8)
 
 _WHERE = "NaN at values of a outside the grid of the study, and where there is no such motion"
 
 _VALUE = ("law", "value")
-_DETUNED = (*_VALUE, "detuning")
+_DETUNED = (*_VALUE, "branch", "detuning")
+_MODE = ("detuning", "mode")
 VARIABLES = {
     "a": Variable(_VALUE, "f8", "friction parameter a, ascending; NaN beyond the last value of a law"),
     "in_grid": Variable(_VALUE, "i1", "whether a is in the grid of the study", YES_OR_NO),
@@ -50,12 +56,10 @@ VARIABLES = {
     "detuned_frequency": Variable(
         (*_DETUNED, "block"),
         "f8",
-        "frequency, in cycles per unit time, of the strongest line in the spectrum of U' after detuning",
+        "frequency of a block after detuning, in cycles per unit time",
         {"ancillary_variables": "detuned_frequency_error", "comment": _WHERE},
     ),
-    "detuned_frequency_error": Variable(
-        (*_DETUNED, "block"), "f8", "difference of this frequency between the two halves of the time"
-    ),
+    "detuned_frequency_error": Variable((*_DETUNED, "block"), "f8", "error of this frequency, from parts of the time"),
     "detuned_exponent": Variable(
         (*_DETUNED, "exponent"),
         "f8",
@@ -63,38 +67,67 @@ VARIABLES = {
         {"ancillary_variables": "detuned_exponent_error", "comment": _WHERE},
     ),
     "detuned_exponent_error": Variable((*_DETUNED, "exponent"), "f8", "standard error of this exponent"),
+    "detuned_mode_share": Variable(
+        (*_DETUNED, "mode"),
+        "f8",
+        "share of a normal mode in the kinetic energy of the oscillation with the frequency of block 1",
+        {"comment": _WHERE},
+    ),
+    "detuned_end_ratio": Variable(
+        _DETUNED, "f8", "amplitude of the last block over that of block 1 in this oscillation", {"comment": _WHERE}
+    ),
+    "detuned_end_phase": Variable(
+        _DETUNED, "f8", "phase of the last block minus that of block 1 in this oscillation", {"units": "degree"}
+    ),
+    "mode_frequency": Variable(_MODE, "f8", "frequency of a normal mode, in cycles per unit time, ascending"),
+    "mode_end_ratio": Variable(_MODE, "f8", "displacement of the last block over that of block 1 in a normal mode"),
 }
-DETUNING = Variable(("detuning",), "f8", "relative increase of the mass of the last block", coordinate=True)
+COORDINATES = {
+    "branch": Variable(("branch",), "i2", "number of the branch", coordinate=True),
+    "detuning": Variable(("detuning",), "f8", "relative increase of the mass of the last block", coordinate=True),
+}
 
 
 def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Dataset:
-    """Return the rotation number of branch 1 at all values of a, whether it is locked, and its motion after detuning.
+    """Return the rotation number of branch 1, whether it is locked, and the branches without synchrony after detuning.
 
     refined : the summary of that name; models : one for each of its laws, at any a
     """
     exponents = Settings().exponent_count(models[0].chain)
-    sizes = {**refined.sizes, "detuning": len(DETUNINGS), "exponent": exponents}
+    sizes = {
+        **refined.sizes,
+        "branch": len(DETUNED_BRANCHES),
+        "detuning": len(DETUNINGS),
+        "exponent": exponents,
+        "mode": models[0].blocks,
+    }
     values = {
         name: np.full([sizes[key] for key in item.dimensions], -1 if item.dtype == "i1" else np.nan, item.dtype)
         for name, item in VARIABLES.items()
     }
     values["a"], values["in_grid"] = refined["a"].values, refined["in_grid"].values
+    for k, detuning in enumerate(DETUNINGS):
+        values["mode_frequency"][k], shape = sliding_modes(detuned_model(models[0], detuning).chain)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            values["mode_end_ratio"][k] = shape[:, -1] / shape[:, 0]
     # Where the middle block oscillates an odd number of times in a period, the branch is a mirror pair: use one side.
-    slots = (refined["branch"].values == BRANCH) & (refined["side"].values >= 0)
+    slots = np.isin(refined["branch"].values, DETUNED_BRANCHES) & (refined["side"].values >= 0)
     slots &= np.isin(refined["kind"].values, REGULAR)
     for law, value, slot in np.argwhere(slots).tolist():
         at = law, value
         one = refined.isel(law=law, value=value, attractor=slot)
         model, velocity = models[law].at(float(values["a"][at])), one["velocity"].values
         start = ChainState(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
-        values["rotation_number"][at], values["rotation_error"][at] = rotation_number(model, start, DURATION)
-        values["locked"][at] = one["kind"].item() == MotionKind.PERIODIC
-        if not values["in_grid"][at]:
-            continue
-        for k, detuning in enumerate(DETUNINGS):
+        branch = one["branch"].item()
+        if branch == BRANCH:
+            values["rotation_number"][at], values["rotation_error"][at] = rotation_number(model, start, DURATION)
+            values["locked"][at] = one["kind"].item() == MotionKind.PERIODIC
+        for k, detuning in enumerate(DETUNINGS if values["in_grid"][at] else ()):
             found = detuned_motion(model, start, detuning, exponents)
-            for name in ("frequency", "frequency_error", "exponent", "exponent_error"):
-                values[f"detuned_{name}"][*at, k] = getattr(found, name)
+            start = found.final
+            for name in ("frequency", "frequency_error", "exponent", "exponent_error", "mode_share", "end_ratio",
+                         "end_phase"):  # fmt: skip
+                values[f"detuned_{name}"][*at, DETUNED_BRANCHES.index(branch), k] = getattr(found, name)
     attributes = {
         "branch": BRANCH,
         "duration": DURATION,
@@ -104,9 +137,10 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
     }
     coordinates = {
         "law": refined["law"].variable,
-        "detuning": ("detuning", np.array(DETUNINGS), DETUNING.all_attributes()),
+        "branch": ("branch", np.array(DETUNED_BRANCHES, "i2"), COORDINATES["branch"].all_attributes()),
+        "detuning": ("detuning", np.array(DETUNINGS), COORDINATES["detuning"].all_attributes()),
         "block": refined["block"].variable,
     }
     return summary(
-        "Rotation number and detuning of branch 1", VARIABLES, values, coordinates, attributes, module=__name__
+        "Rotation number of branch 1, and detuned branches", VARIABLES, values, coordinates, attributes, module=__name__
     )

@@ -37,8 +37,8 @@ VARIABLES = {
     "velocity_frequency": Variable(
         _BLOCK,
         "f8",
-        "frequency, in cycles per unit time, of the highest peak of the spectrum of U' over the time of events with "
-        "states",
+        "frequency, in cycles per unit time, of the highest peak of the spectrum of U', or of short slips, over the "
+        "time of events with states",
         {"ancillary_variables": "velocity_frequency_error", "comment": RECOMPUTED},
     ),
     "velocity_frequency_error": Variable(

@@ -1,0 +1,77 @@
+"""The amplitudes of end blocks of unequal mass, compared with the normal modes: locked, or moved by one mode?"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from burridge_knopoff.figures.palette import BRANCHES, MARKERS
+from burridge_knopoff.figures.style import (
+    label_panels,
+    legend_below,
+    legend_entries,
+    new_figure,
+    page_width,
+    say,
+    show_all,
+    styled,
+)
+from burridge_knopoff.summaries.detuning import has_one_frequency
+
+TITLE = "End blocks of unequal mass"
+CATEGORY = "Attractors"
+INPUTS = ("rotation",)
+CAPTION = """\
+Are the end blocks locked to each other without synchrony? With a mass of block 3 larger by the detuning d, the
+amplitude of block 3 over that of block 1 in their common oscillation, on branches 1 and 2, where both have one
+frequency. Lines: the same ratio in the normal mode of the sliding chain that has most of the energy. In a normal mode
+the ratio follows the masses; oscillators that are locked to each other have amplitudes of their own.
+"""
+
+
+@styled
+def draw(rotation: xarray.Dataset) -> Figure:
+    """Draw the amplitude ratio after detuning versus a for each law, in the colours of the branches."""
+    laws = [str(law) for law in rotation["law"].values]
+    figure, panels = new_figure(page_width(len(laws)), 3.4, columns=len(laws))
+    grid = np.unique(rotation["a"].values[rotation["in_grid"].values == 1])
+    for panel, law in zip(panels, laws, strict=True):
+        _ratios(panel, rotation.sel(law=law))
+        show_all(panel, grid)
+        panel.set_xlabel("$a$")
+    panels[0].set_ylabel("amplitude of block 3 over that of block 1")
+    label_panels(panels, [f"{law} law" for law in laws])
+    handles, _ = legend_entries(panels)
+    if handles:
+        legend_below(figure, handles)
+    return figure
+
+
+def _ratios(panel: Axes, rotation: xarray.Dataset) -> None:
+    """Draw the ratios where both end blocks have one frequency, and those of the modes."""
+    for detuning in rotation["detuning"].values:
+        one = rotation.sel(detuning=detuning)
+        kept = has_one_frequency(one["detuned_frequency"].values)
+        if not kept.any():
+            continue
+        most = one["detuned_mode_share"].values[kept].mean(axis=0).argmax()
+        of_mode = abs(one["mode_end_ratio"].values[most])
+        panel.axhline(of_mode, color="0.4", linewidth=0.6, zorder=0)
+        panel.annotate(
+            f"$d$ = {detuning:g}", (1.0, of_mode), xycoords=("axes fraction", "data"), xytext=(-3, 2), ha="right",
+            textcoords="offset points", fontsize=8.0,
+        )  # fmt: skip
+        for place, branch in enumerate(one["branch"].values.tolist()):
+            drawn = kept[:, place]
+            if drawn.any():
+                look: Any = {"color": BRANCHES[branch % len(BRANCHES)], "markerfacecolor": "none", "markersize": 3.0}
+                panel.plot(
+                    one["a"].values[drawn], one["detuned_end_ratio"].values[drawn, place],
+                    MARKERS[branch % len(MARKERS)], label=f"branch {branch}", **look,
+                )  # fmt: skip
+    if not panel.lines:
+        say(panel, "no branch without synchrony was found")

@@ -1,0 +1,132 @@
+"""Amplitudes and phases of normal modes, compared with closed forms, energies, and fits of sines."""
+
+import numpy as np
+import pytest
+from scipy.linalg import eigh
+
+from burridge_knopoff import Chain, ChainState, Model, law_of, limit_cycle, mode_amplitudes, simulate
+from tests.refused import refused
+
+RANDOM = np.random.default_rng(11)
+
+#: Rows, a ring, a grid, blocks without a spring to the driver, and unequal springs, thresholds and masses.
+CHAINS = [
+    Chain(1, pulling=0.7, mass=1.9),
+    Chain(3),
+    Chain(3, mass=(1.0, 1.0, 1.3)),
+    Chain(2, coupling=3.0, pulling=(1.0, 0.0), mass=(0.4, 2.5)),
+    Chain(5, mass=RANDOM.uniform(0.3, 3.0, 5), coupling=RANDOM.uniform(0.5, 2.0, 4), pulling=RANDOM.uniform(0.2, 2, 5)),
+    Chain(6, ends="ring", pulling=1.0, threshold=RANDOM.uniform(0.8, 1.2, 6), mass=RANDOM.uniform(0.5, 2.0, 6)),
+    Chain(grid=(3, 2), pulling=0.5, mass=RANDOM.uniform(0.5, 2.0, 6)),
+]
+
+
+def free(chain, a=0.0):
+    """Return a model, and its modes with the scale of SciPy: frequencies, and shapes in rows."""
+    square, columns = eigh(chain.stiffness, np.diag(chain.masses))
+    return Model(chain, law_of("linearized", a)), np.sqrt(square), columns.T
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+def test_constant_friction_leaves_each_mode_its_amplitude_and_its_frequency(chain):
+    """At a = 0 all modes at once, from random amplitudes and phases at which no block stops."""
+    model, omega, shape = free(chain)
+    size = RANDOM.uniform(0.2, 1.0, len(omega))
+    size *= 0.9 * model.v / np.abs(shape * (omega * size)[:, None]).sum(axis=0).max()
+    phase = RANDOM.uniform(-np.pi, np.pi, len(omega))
+    state = ChainState(
+        (size * np.cos(phase)) @ shape, model.v - (omega * size * np.sin(phase)) @ shape, np.zeros(len(omega), bool)
+    )
+    modes = mode_amplitudes(model, state, 200.0)
+    assert modes.frequency == pytest.approx(omega / (2.0 * np.pi), rel=1e-12)
+    assert modes.shape @ np.diag(chain.masses) @ modes.shape.T == pytest.approx(np.eye(len(omega)), abs=1e-12)
+    assert chain.stiffness @ modes.shape.T == pytest.approx(chain.masses[:, None] * modes.shape.T * omega**2, abs=1e-11)
+    sign = np.sign((modes.shape * shape).sum(axis=1))
+    assert np.abs(modes.amplitude - size).max() < 1e-11
+    turned = np.exp(1j * (modes.phase - phase - modes.time[:, None] * omega)) * sign
+    assert np.abs(turned - 1.0).max() < 1e-9
+
+
+@pytest.mark.parametrize("chain", CHAINS)
+@pytest.mark.parametrize("a", [0.05, 0.3])
+def test_the_energies_of_the_modes_add_up_to_that_of_the_chain(chain, a):
+    """Through sticks and slips, from positions and velocities of a run and without any mode."""
+    model, _, _ = free(chain, a)
+    at = simulate(model, initial={"position": [-0.7] * model.blocks, "velocity": [0.1] * model.blocks}, window=50.0)
+    modes = mode_amplitudes(model, at.final, 60.0)
+    every = simulate(
+        model, initial=at.final, transient=0.0, window=60.0, trajectory=60.0, trajectory_sampling=modes.time[1]
+    )
+    assert every.event_count > 5
+    x, u = every.position - model.sliding_offset, every.velocity - model.v
+    energy = 0.5 * (u**2 @ chain.masses + np.einsum("ti,ij,tj->t", x, chain.stiffness, x))
+    assert modes.energy.sum(axis=1) == pytest.approx(energy, rel=1e-7, abs=1e-10)
+    assert (modes.amplitude * np.cos(modes.phase)) @ modes.shape == pytest.approx(x, abs=1e-8)
+
+
+def test_the_lines_of_a_periodic_orbit_are_its_fourier_coefficients():
+    """With a mass larger by half the motion at a = 0.06 is periodic; the coefficients are sums over one period."""
+    model = Model(Chain(3), law_of("linearized", 0.06)).at(**{"mass[3]": 1.5})
+    orbit = limit_cycle(model, simulate(model, initial="plus", transient=0.0, window=6000.0).final, settling=3000.0)
+    period, count = orbit.period, 20_000
+    run = simulate(
+        model,
+        initial=orbit.reference,
+        transient=0.0,
+        window=period,
+        trajectory=period,
+        trajectory_sampling=period / count,
+    )
+    coefficients = 2.0 * np.fft.rfft((run.position - model.sliding_offset)[:count], axis=0) / count
+    modes = mode_amplitudes(model, orbit.reference)
+    # Without the mean.
+    strongest = 1 + np.abs(coefficients[1:]).sum(axis=1).argsort()[-4:]
+    for k in strongest:
+        line = modes.line(k / period)
+        assert line @ modes.shape == pytest.approx(coefficients[k], abs=1e-6)
+        kinetic = np.abs(coefficients[k]) ** 2 @ model.chain.masses
+        assert modes.line_shares(k / period) == pytest.approx(np.abs(line) ** 2 / kinetic, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("position", "expected"),
+    [
+        # Vertices of the polyhedron of admissible amplitudes, as A ω of block 1, or of block 2 in the fast mode.
+        ((0.079, 0.0578, 0.079), (1.0, 0.0, 0.0)),
+        ((0.0705, 0.0, -0.0705), (0.0, 1.0, 0.0)),
+        ((0.06, -0.044, -0.027), (0.0, 0.5 * (3.0 - np.sqrt(3.0)), 1.0)),
+    ],
+)
+def test_as_a_vanishes_the_amplitudes_are_those_of_the_vertices(position, expected):
+    model = Model(Chain(3), law_of("linearized", 0.001))
+    state = ChainState(np.array(position), np.full(3, model.v), np.zeros(3, bool))
+    settled = simulate(model, initial=state, transient=0.0, window=20000.0, lyapunov_exponents=0).final
+    modes = mode_amplitudes(model, settled, 1000.0)
+    greatest = np.abs(modes.shape).max(axis=1)
+    speed = 2.0 * np.pi * modes.frequency * modes.amplitude.mean(axis=0) * greatest / model.v
+    assert speed == pytest.approx(expected, abs=0.02)
+
+
+@pytest.mark.parametrize("detuning", [0.1, 0.3, 0.5])
+def test_no_mode_carries_end_blocks_of_equal_amplitudes(detuning):
+    """Locked oscillators: no share exceeds that of antiphase, 0.93 at a detuning of 0.3, and it falls away from it."""
+    masses = np.array([1.0, 1.0, 1.0 + detuning])
+    _, _, shape = free(Chain(3, mass=masses))
+    greatest = []
+    for shift in (0.0, 0.25 * np.pi, 0.5 * np.pi):
+        share = np.abs(shape @ (masses * [1.0, 0.0, -np.exp(1j * shift)])) ** 2
+        greatest.append(share.max() / share.sum())
+    assert greatest[0] > greatest[1] > greatest[2]
+    assert greatest[0] < {0.1: 0.995, 0.3: 0.93, 0.5: 0.84}[detuning]
+
+
+def test_a_state_or_a_chain_that_does_not_fit_is_refused():
+    model = Model(Chain(3), law_of("linearized", 0.06))
+    state = ChainState(np.zeros(3), np.full(3, model.v), np.zeros(3, bool))
+    with refused("duration: 0", match="expected a number above 0"):
+        mode_amplitudes(model, state, 0)
+    with refused("state", match="ChainState of 4 blocks"):
+        mode_amplitudes(Model(Chain(4), law_of("linearized", 0.06)), state)
+    long = Model(Chain(20_000), law_of("linearized", 0.06))
+    with refused("model.blocks: 20000", match="at most 10000"):
+        mode_amplitudes(long, state)
