@@ -115,7 +115,8 @@ def test_altered_data_changes_the_verdict(compare):
     settled = "minus, nonlinear law: the run has not reached the attractor of its initial state at a = 0.08"
     assert agreement.digest(dataset).endswith(f": {words}; the kind of motion differs at 1.\n{settled}\n")
     _, dataset = compare({("nonlinear", a): {"mean_distance": 0.2} for a in (0.05, 0.08)})
-    assert "they agree at 0 of 2 values of a and disagree first at a = 0.05 and last at 0.08" in agreement.digest(dataset)
+    text = "they agree at 0 of 2 values of a and disagree first at a = 0.05 and last at 0.08"
+    assert text in agreement.digest(dataset)
     # Laws may agree again beyond the first value at which they disagree.
     _, dataset = compare({("nonlinear", 0.05): {"mean_distance": 0.2}})
     assert "they agree at 1 of 2 values of a and disagree at a = 0.05" in agreement.digest(dataset)

@@ -208,7 +208,7 @@ def table(dataset: xarray.Dataset) -> str:
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return a line for each other law and initial state: at how many a, and where, the law disagrees with the first."""
+    """Return a line for each other law and initial state: at how many a it agrees with the first, and where not."""
     first, others = dataset["law"].values[0], dataset["other_law"].values
     lines = [] if len(others) else [f"The {first} law is the only one: there is nothing to compare."]
     for other in others:
