@@ -7,8 +7,10 @@ import sys
 
 import numpy as np
 import pytest
+import xarray
 
 from burridge_knopoff import Chain, Model, law_of, multipliers, simulate, synchronized_orbit
+from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.summaries.mean_distance import settling_time
 
 NUMBERS = [
@@ -56,6 +58,19 @@ def test_the_distance_from_minus_vanishes_in_a_run(repository, law, printed):
     assert later - settled == pytest.approx(np.log(1e3) / rate, rel=0.05)
     [line] = re.findall(r"^\| J from.*$", (repository / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
     assert f"{printed} ({law} law)" in line
+
+
+def test_the_laws_agree_as_often_as_the_study_says(repository):
+    """Of ⟨J⟩ and kinds below a = 0.1, from agreement.nc of the default study."""
+    path = repository / "results/paper/summary/agreement.nc"
+    if not path.exists():
+        pytest.skip("the default study has not run")
+    agrees = xarray.load_dataset(path)["agrees"].sel(other_law="nonlinear")
+    agrees = agrees.where((agrees["a"] > 0.0) & (agrees["a"] < 0.1), drop=True)
+    minus, plus = (int((agrees.sel(initial=name) == Answer.YES).sum()) for name in ("minus", "plus"))
+    text = " ".join((repository / "README.md").read_text(encoding="utf-8").split())
+    assert f"{minus} of the {agrees.sizes['a']} values of a below 0.1 from `minus`" in text
+    assert f"and at {plus} from `plus`" in text
 
 
 def test_the_times_of_a_cycle_are_those_of_the_ledger(repository, claims):
