@@ -8,10 +8,6 @@ PAPER_V = 0.1
 PAPER_TRANSIENT = 3000.0
 PAPER_WINDOW = 7000.0
 
-#: The contact of the paper: a stuck block moves again when the spring force is *greater* than the static friction.
-#: Whether blocks may stick at τ = 0 it does not say.
-PAPER_CONTACT = "one_sided"
-
 #: The friction parameter of the figures of single runs (Figs. 5, 6 and 7).
 PAPER_A = 0.08
 
