@@ -60,4 +60,34 @@ def test_an_orbit_is_locked_if_its_branch_was_a_torus(kinds, expected):
             "in_grid": ("value", [1, 1, 0, 1][: len(kinds)]),
         }
     ).assign(a=("value", a))
-    assert _was_torus(refined, 3, low) == expected
+    assert _was_torus(changes([]), refined, 3, low) == expected
+
+
+def changes(rows):
+    """Return bifurcations: (change, from branch, to branch, value of a above)."""
+    change, source, target, high = zip(*rows, strict=True) if rows else ([], [], [], [])
+    columns = {"change": change, "from_branch": source, "to_branch": target, "grid_high": high}
+    return xr.Dataset({name: ("bifurcation", np.array(values)) for name, values in columns.items()})
+
+
+BEGINS, ENDS = (Change.BEGINNING, 3, 4, 0.12), (Change.END, 3, 4, 0.12)
+
+
+@pytest.mark.parametrize(
+    ("rows", "expected"),
+    [
+        ([BEGINS, ENDS], True),
+        ([], False),
+        # Each has to lead to the other, and the branch has to begin there.
+        ([BEGINS], False),
+        ([ENDS], False),
+        ([BEGINS, (Change.END, 5, 4, 0.12)], False),
+        ([(Change.BEGINNING, 3, 4, 0.13), ENDS], False),
+        ([(Change.BEGINNING, -1, 4, 0.12), (Change.END, -1, 4, 0.12)], False),
+    ],
+)
+def test_a_branch_is_followed_to_the_one_that_leads_to_it(rows, expected):
+    branch, kind = np.array([[3], [3], [4], [4]]), np.array([[TORUS], [PERIODIC], [PERIODIC], [PERIODIC]])
+    refined = xr.Dataset({"branch": (("value", "attractor"), branch), "kind": (("value", "attractor"), kind)})
+    refined = refined.assign(a=("value", [0.1, 0.11, 0.12, 0.13]), in_grid=("value", [1, 1, 1, 1]))
+    assert _was_torus(changes(rows), refined, 4, 0.13) == expected

@@ -284,7 +284,7 @@ def _bifurcations() -> xarray.Dataset:
     }
     # There `refined` has a torus, to which the orbit has locked.
     low = np.tile(A[A <= 0.1][-12:], 2)
-    columns |= {"change": Change.CHANGE, "grid_low": low, "a": low + 0.001}
+    columns |= {"change": Change.CHANGE, "grid_low": low, "grid_high": low + 0.002, "a": low + 0.001}
     values = {name: ("bifurcation", np.array(np.broadcast_to(value, 24))) for name, value in columns.items()}
     return xarray.Dataset(values, attrs={"laws": " ".join(LAWS)})
 

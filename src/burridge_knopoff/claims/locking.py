@@ -161,8 +161,10 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         if not places:
             raise NotTestableError(f"no branch of attractors becomes chaotic under the {name} law")
         precursors = {at: _possible_precursor(before[k], kinds[k]) for at, k in places.items()}
+        of_law = bifurcations.isel(bifurcation=own)
         on_torus = {
-            at: _was_torus(refined, int(bifurcations["from_branch"].values[k]), at[0]) for at, k in places.items()
+            at: _was_torus(of_law, refined, int(bifurcations["from_branch"].values[k]), at[0])
+            for at, k in places.items()
         }
         for reading in readings:
             possible = [at for at in places if precursors[at] != TORUS and (reading == CLOSED or on_torus[at])]
@@ -201,21 +203,33 @@ def _possible_precursor(before: int, bifurcation: int) -> str:
     return UNFOLLOWED if bifurcation == BifurcationKind.UNDETERMINED else ""
 
 
-def _was_torus(refined: xarray.Dataset, branch: int, low: float) -> bool:
+def _was_torus(bifurcations: xarray.Dataset, refined: xarray.Dataset, branch: int, low: float) -> bool:
     """Return whether a branch moves on a torus at some a up to `low`, and from there to `low` on periodic orbits.
 
-    refined : of one law. Between values of the grid a branch may not have been searched for.
+    Where it begins, it is followed to the branch that leads to it.
+
+    bifurcations, refined : of one law. Between values of the grid a branch may not have been searched for.
     """
-    a, of_branch = refined["a"].values, refined["branch"].values == branch
+    a = refined["a"].values
     for row in np.flatnonzero(a <= low)[::-1]:
-        kinds = refined["kind"].values[row][of_branch[row]]
+        kinds = refined["kind"].values[row][refined["branch"].values[row] == branch]
         if not len(kinds) and refined["in_grid"].values[row] == 1:
             return False
         if np.isin(kinds, (*CHAOS, MotionKind.TRANSIENT_CHAOS)).any():
             return False
         if (kinds == MotionKind.QUASIPERIODIC).any():
             return True
+        branch = _predecessor(bifurcations, branch, a[row])
     return False
+
+
+def _predecessor(bifurcations: xarray.Dataset, branch: int, a: float) -> int:
+    """Return the branch that ends on a branch which begins at an a and leads back to it; the branch itself if none."""
+    to_branch, change = bifurcations["to_branch"].values, bifurcations["change"].values
+    begins = (to_branch == branch) & (change == Change.BEGINNING) & (bifurcations["grid_high"].values == a)
+    ends = (to_branch == branch) & (change == Change.END)
+    sources = [set(bifurcations["from_branch"].values[rows].tolist()) for rows in (begins, ends)]
+    return int(next(iter(sources[0] & sources[1] - {-1}), branch))
 
 
 def _was_chaotic(bifurcations: xarray.Dataset, refined: xarray.Dataset) -> np.ndarray:
