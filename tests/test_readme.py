@@ -5,7 +5,13 @@ import re
 import subprocess
 import sys
 
+import numpy as np
 import pytest
+import xarray
+
+from burridge_knopoff import Chain, Model, law_of, multipliers, simulate, synchronized_orbit
+from burridge_knopoff.dataset.variables import Answer
+from burridge_knopoff.summaries.mean_distance import settling_time
 
 NUMBERS = [
     (
@@ -16,6 +22,7 @@ NUMBERS = [
     ),
     ("Synchrony", "upper_edge", "a_c, at which the synchronized orbit loses stability, nonlinear", "0.0887172230"),
     ("⟨J⟩ from", "plus_mean_distance", "⟨J⟩, linearized", "0.14064"),
+    ("J from", "minus_distance_vanishes", "time τ from which on J < 1e-06", "1045"),
     ("J from", "minus_distance_vanishes", "time τ from which on J < 2e-15", "3815"),
     ("Frequency of", "half_frequency", "frequency of the velocity of block 1 over that of block 2", "0.648"),
     ("Chaos begins", "transition", "smallest a with a chaotic attractor, linearized", "0.1324"),
@@ -37,6 +44,33 @@ def test_the_numbers_are_those_of_the_ledger(repository, claims, row, claim, qua
     digits = len(printed.partition(".")[2])
     assert f"{value:.{digits}f}" == printed
     assert printed in line.split("|")[3]
+
+
+@pytest.mark.parametrize(("law", "printed"), [("linearized", "1045"), ("nonlinear", "865")])
+def test_the_distance_from_minus_vanishes_in_a_run(repository, law, printed):
+    """Below the threshold of synchrony, and below a thousandth of it as much later as the multiplier says."""
+    trajectory = simulate(law, 0.08, "minus", transient=3000.0, window=100.0, lyapunov_exponents=0)
+    settled, later = settling_time(trajectory.time, trajectory.distance, (1e-6, 1e-9))
+    assert f"{settled:g}" == printed
+    orbit = synchronized_orbit(Model(Chain(3), law_of(law, 0.08)))
+    rate = -np.log(abs(multipliers(orbit).symmetry_breaking[0])) / orbit.period
+    # J oscillates within a period of 5.7, and its samples are 5 apart.
+    assert later - settled == pytest.approx(np.log(1e3) / rate, rel=0.05)
+    [line] = re.findall(r"^\| J from.*$", (repository / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
+    assert f"{printed} ({law} law)" in line
+
+
+def test_the_laws_agree_as_often_as_the_study_says(repository):
+    """Of ⟨J⟩ and kinds below a = 0.1, from agreement.nc of the default study."""
+    path = repository / "results/paper/summary/agreement.nc"
+    if not path.exists():
+        pytest.skip("the default study has not run")
+    agrees = xarray.load_dataset(path)["agrees"].sel(other_law="nonlinear")
+    agrees = agrees.where((agrees["a"] > 0.0) & (agrees["a"] < 0.1), drop=True)
+    minus, plus = (int((agrees.sel(initial=name) == Answer.YES).sum()) for name in ("minus", "plus"))
+    text = " ".join((repository / "README.md").read_text(encoding="utf-8").split())
+    assert f"{minus} of the {agrees.sizes['a']} values of a below 0.1 from `minus`" in text
+    assert f"and at {plus} from `plus`" in text
 
 
 def test_the_times_of_a_cycle_are_those_of_the_ledger(repository, claims):

@@ -202,7 +202,8 @@ def lost_at(a: float) -> Alteration:
     return alter("orbits", "critical_a", a)
 
 
-OTHER = {"contact": "symmetric"}
+#: The paper's contact with the other start, and the other contact, which does not decide.
+OTHER, SYMMETRIC = {"start": "tested"}, {"contact": "symmetric"}
 PERIODIC_PLUS = alter("agreement", "kind", PERIODIC, initial="plus")
 ONE_OF_MINUS = {"a": ONE_OF_MANY, "initial": "minus"}
 UNKNOWN_ABOVE = reached(-1, initial="minus", a=lambda a: (a > 0.081) & (a < 0.145))
@@ -214,6 +215,8 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus"), reached(1, initial="minus"))),
     ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus", law="nonlinear"), reached(1, initial="minus"))),
     ("minus_synchronizes", CONVENTION, reached(1, initial="minus", **OTHER)),
+    ("minus_synchronizes", HOLDS, reached(1, initial="minus", **SYMMETRIC)),
+    ("minus_synchronizes", FAILS, both(synchronized(0, initial="minus"), reached(1, initial="minus", **OTHER))),
     # Unknown outcomes, of runs or under another convention, would decide.
     (
         "minus_synchronizes",
@@ -230,15 +233,21 @@ CASES: list[tuple[str, str, Alteration]] = [
     # Synchrony does not end at a loss of stability elsewhere.
     ("upper_edge", HOLDS, lost_at(0.12)),
     ("upper_edge", HOLDS, lost_at(np.nan)),
-    ("upper_edge", FAILS, reached(0, initial="minus", a=lambda a: a < 0.145)),
+    ("upper_edge", FAILS, reached(1, initial="minus", a=lambda a: a > 0.05)),
+    ("upper_edge", FAILS, reached(1, initial="minus", law="nonlinear", a=lambda a: a > 0.05)),
+    # Synchrony that appears up to an a may reach further, also beyond the grid.
+    ("upper_edge", READING, reached(0, initial="minus", a=lambda a: a < 0.145)),
+    ("upper_edge", READING, reached(0, initial="minus")),
     ("upper_edge", NOT_TESTABLE, both(UNKNOWN_ABOVE, lost_at(np.nan))),
-    ("upper_edge", NOT_TESTABLE, reached(0, initial="minus")),
+    ("upper_edge", NOT_TESTABLE, reached(1, initial="minus")),
     ("lower_edge", HOLDS, reached(1, initial="minus", a=lambda a: a < 0.0049)),
     ("lower_edge", NOT_TESTABLE, reached(1, initial="minus", a=lambda a: a < 0.0051)),
     ("lower_edge", FAILS, reached(1, initial="minus", a=lambda a: a < 0.0101)),
     ("lower_edge", FAILS, reached(1, initial="minus", a=lambda a: a < 0.03)),
     ("lower_edge", FAILS, reached(1, initial="minus", law="nonlinear", a=lambda a: a < 0.03)),
-    ("lower_edge", HOLDS, reached(0, initial="minus", a=0.0025)),
+    # Synchrony that appears from an a on may begin before; both ends are read in the same two ways.
+    ("lower_edge", READING, reached(0, initial="minus", a=0.0025)),
+    ("lower_edge", READING, reached(0, initial="minus", a=0.0025, law="nonlinear")),
     ("lower_edge", NOT_TESTABLE, reached(1, initial="minus")),
     # A value of a at which synchrony is not known leaves both possibilities open.
     ("lower_edge", NOT_TESTABLE, reached(-1, initial="minus", a=lambda a: a < 0.0201)),
@@ -391,38 +400,27 @@ CASES: list[tuple[str, str, Alteration]] = [
     ),
     ("locking_precedes_chaos", NOT_TESTABLE, alter("bifurcations", "motion_after", PERIODIC)),
     # A branch that ends on another one is an onset of chaos only if the other was not chaotic before.
-    ("locking_precedes_chaos", NOT_TESTABLE, both(alter("bifurcations", "change", Change.END), chaos_from(0.05))),
+    ("locking_precedes_chaos", NOT_TESTABLE, both(alter("bifurcations", "change", Change.END), chaos_from(0.04))),
     ("locking_precedes_chaos", HOLDS, both(alter("bifurcations", "change", Change.END), chaos_from(0.3))),
-    ("locking_precedes_chaos", HOLDS, chaos_from(0.05)),
-    ("periodic_is_synchronized", FAILS, both(PERIODIC_PLUS, alter("lyapunov", "section_period", 3, initial="plus"))),
-    # A section of many points is a cloud, which the paper does not call periodic; above 0.08 it finds no synchrony.
-    (
-        "periodic_is_synchronized",
-        READING,
-        both(
-            PERIODIC_PLUS,
-            alter("lyapunov", "section_period", 48, initial="plus"),
-        ),
-    ),
-    ("periodic_is_synchronized", READING, alter("agreement", "kind", PERIODIC, a=lambda a: a > 0.08)),
+    # Locking is that of a torus: periodic windows between chaos, and orbits that were never on a torus, show none.
+    ("locking_precedes_chaos", READING, chaos_from(0.04)),
+    ("locking_precedes_chaos", READING, alter("refined", "kind", PERIODIC)),
+    ("locking_precedes_chaos", READING, alter("refined", "kind", PERIODIC, law="nonlinear")),
+    ("periodic_is_synchronized", FAILS, everywhere("agreement", "kind", PERIODIC)),
+    ("periodic_is_synchronized", CONVENTION, alter("agreement", "kind", PERIODIC)),
+    ("periodic_is_synchronized", CONVENTION, alter("agreement", "kind", PERIODIC, law="nonlinear")),
     ("periodic_is_synchronized", LOOSELY, alter("agreement", "kind", PERIODIC, **ONE_OF_MINUS)),
+    # The statement is on the periodic solution, that from minus, where the paper finds synchrony.
+    ("periodic_is_synchronized", HOLDS, PERIODIC_PLUS),
+    ("periodic_is_synchronized", HOLDS, alter("agreement", "kind", PERIODIC, a=lambda a: a > 0.08)),
+    # Motion that is not periodic does not count.
+    ("periodic_is_synchronized", HOLDS, alter("agreement", "kind", QUASIPERIODIC, a=lambda a: a < 0.07)),
+    ("periodic_is_synchronized", NOT_TESTABLE, alter("agreement", "kind", CHAOTIC)),
     ("periodic_is_synchronized", HOLDS, alter("agreement", "kind", UNDETERMINED, **ONE_OF_MINUS)),
     (
         "periodic_is_synchronized",
         NOT_TESTABLE,
         alter("agreement", "kind", UNDETERMINED, initial="minus", a=lambda a: a > 0.03),
-    ),
-    # A section that does not repeat within the run is a cloud too.
-    ("periodic_is_synchronized", READING, PERIODIC_PLUS),
-    # Only a state without periodic runs is left out.
-    (
-        "periodic_is_synchronized",
-        FAILS,
-        both(
-            PERIODIC_PLUS,
-            alter("agreement", "kind", CHAOTIC, initial="minus"),
-            alter("lyapunov", "section_period", 3, initial="plus"),
-        ),
     ),
     ("minus_one_section_point", FAILS, alter("lyapunov", "section_period", 2)),
     ("minus_one_section_point", LOOSELY, both(UNREPEATED, alter("agreement", "kind", QUASIPERIODIC, a=ONE_OF_MANY))),
@@ -518,7 +516,10 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("antiphase_persists", NOT_TESTABLE, alter("stick_slip", "velocity_correlation", 0.9)),
     ("antiphase_persists", NOT_TESTABLE, alter("agreement", "settled", -1, a=lambda a: a > 0.03)),
     ("half_frequency", FAILS, everywhere("stick_slip", "stop_rate", 0.34)),
-    ("half_frequency", LOOSELY, alter("stick_slip", "velocity_frequency", 0.22, block=1)),
+    ("half_frequency", LOOSELY, alter("stick_slip", "velocity_frequency", 0.195, block=1)),
+    # 0.65 of a frequency is not more or less half of it, nor is 0.37.
+    ("half_frequency", FAILS, everywhere("stick_slip", "velocity_frequency", 0.22, block=1)),
+    ("half_frequency", FAILS, everywhere("stick_slip", "stop_rate", 0.074, block=3)),
     ("half_frequency", CONVENTION, alter("attractors", "stop_rate", 0.0, block=2)),
     ("half_frequency", HOLDS, alter("stick_slip", "velocity_frequency_error", 0.02, block=2)),
     ("half_frequency", NOT_TESTABLE, alter("stick_slip", "velocity_frequency", np.nan, block=1)),
@@ -549,6 +550,9 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("equilibrium", FAILS, alter("equilibrium", "equilibrium_position", -0.8, block=1)),
     ("equilibrium", FAILS, alter("equilibrium", "equilibrium_drift", 0.1)),
     ("equilibrium_unstable", FAILS, alter("equilibrium", "eigenvalue", -0.1, part="real", law="nonlinear")),
+    # A complex number is not positive, though its real part may be.
+    ("equilibrium_unstable", READING, alter("equilibrium", "eigenvalue", 1.0, part="imaginary", law="nonlinear")),
+    ("equilibrium_unstable", READING, alter("equilibrium", "eigenvalue", 1.0, part="imaginary", a=0.2)),
     ("stable_where_friction_grows", FAILS, alter("equilibrium", "strengthening_growth_rate", 0.01, a=0.2)),
     ("stable_where_friction_grows", NOT_TESTABLE, alter("equilibrium", "strengthening_growth_rate", np.nan)),
     ("stable_where_friction_grows", NOT_TESTABLE, few("equilibrium", a=9)),
@@ -576,8 +580,16 @@ CASES: list[tuple[str, str, Alteration]] = [
     ("springs_and_masses_help", LOOSELY, slips(0.6)),
     ("springs_and_masses_help", HOLDS, slips(0.8)),
     ("laws_agree", FAILS, means_apart(lambda a: a > 0.055)),
-    # A small fraction of the largest ⟨J⟩ does not count as a difference, even where ⟨J⟩ is small.
-    ("laws_agree", HOLDS, alter("agreement", "difference", 0.01)),
+    # Where ⟨J⟩ is small, a difference that no figure shows exceeds the same fraction of ⟨J⟩.
+    ("laws_agree", HOLDS, alter("agreement", "difference", 0.01, initial="plus")),
+    (
+        "laws_agree",
+        READING,
+        both(
+            alter("agreement", "difference", 0.01, initial="plus", a=lambda a: a < 0.06),
+            alter("agreement", "mean_distance", 0.05, initial="plus", a=lambda a: a < 0.06),
+        ),
+    ),
     ("laws_agree", FAILS, alter("agreement", "difference", 0.02)),
     # 41 of 44 points: all of one curve and nineteen values of the other. 38 of 44 leave the verdict open.
     ("laws_agree", LOOSELY, means_apart(lambda a: (a > 0.08) & (a < 0.095), initial="plus")),

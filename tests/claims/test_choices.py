@@ -20,7 +20,7 @@ def by_name(world):
 
 def test_each_tolerance_is_halved_and_doubled():
     names = list(by_name(paper_world()))
-    assert len(names) == len(set(names)) == 12
+    assert len(names) == len(set(names)) == 14
     assert {"agreement.relative_tolerance is 0.2 (here 0.1)", "motion.zero_exponent is 0.00025 (here 0.0005)"} <= set(
         names
     )

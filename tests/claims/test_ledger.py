@@ -17,7 +17,7 @@ from burridge_knopoff.claims.conventions import rounded_state_changes
 from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
 from burridge_knopoff.claims.judge import JUDGES, Judge
 from burridge_knopoff.claims.ledger import OWN, READS, ledger
-from burridge_knopoff.claims.margins import LISTED
+from burridge_knopoff.claims.margins import BOUNDS, LISTED
 from burridge_knopoff.claims.verdict import (
     NOT_TESTABLE,
     NotTestableError,
@@ -152,7 +152,7 @@ def test_the_ledger_reads_what_it_and_its_judges_declare() -> None:
     ledger("test", [], known, [])
     rounded_state_changes(known, ["minus"], ["linearized"], Range())
     assert summaries.read == set(OWN)
-    for parameter, (_, summary) in LISTED.items():
+    for parameter, (_, summary, *_) in {**LISTED, **BOUNDS}.items():
         assert all(summary in claim.judge.reads for claim in CLAIMS.values() if parameter in claim.parameters)
     assert set(READS) == {*OWN, *(name for claim in CLAIMS.values() for name in claim.judge.reads)}
 

@@ -6,8 +6,12 @@ import pytest
 import xarray
 
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.margins import LISTED, changing_choices
-from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, Verdict
+from burridge_knopoff.claims.ledger import judge as judge_claim
+from burridge_knopoff.claims.margins import BOUNDS, COUNTS, LISTED, SHARES, STATED, TOLERANCES, changing_choices
+from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING, Verdict
+from tests.claims.alterations import alter, both
+from tests.claims.verdict_texts import CLAIMS
+from tests.claims.worlds import evidence, paper_world
 
 NOTHING = Evidence({}, {})
 
@@ -19,6 +23,15 @@ def judge_with_change(name, place, below, above):
         return Verdict(below if parameters[name] < place else above, "")
 
     return judge
+
+
+def test_every_parameter_is_tried_or_is_what_the_statement_says():
+    tables = (TOLERANCES, COUNTS, SHARES, BOUNDS, LISTED, {"at", "part"}, STATED)
+    for claim in CLAIMS.values():
+        for name in claim.parameters:
+            assert sum(name in table for table in tables) == 1, f"{claim.name}: {name}"
+    used = {name for claim in CLAIMS.values() for name in claim.parameters}
+    assert used == {name for table in tables for name in table}
 
 
 @pytest.mark.parametrize(("below", "above"), [(FAILS, HOLDS), (HOLDS, FAILS)])
@@ -99,6 +112,57 @@ def test_other_values_with_data_are_tried(name):
 
     assert changing_choices(judge, world, {name: 0.0}, Verdict(HOLDS, "")) == [f"fails if {words} is 1 (here 0)"]
     assert changing_choices(judge, NOTHING, {name: 0.0}, Verdict(HOLDS, "")) == []
+
+
+@pytest.mark.parametrize(
+    ("own", "place", "expected"),
+    [
+        # The verdict changes below `place`; the coordinate has 15, 30, 60, 90, 120, 150 and 180.
+        (180.0, 121.0, "at most 120"),
+        (180.0, 91.0, "at most 90"),
+        (180.0, 90.0, None),
+        (30.0, 31.0, "at least 60"),
+        (30.0, 61.0, None),
+        (30.0, 16.0, "at most 15"),
+        (120.0, 151.0, "at least 180"),
+    ],
+)
+@pytest.mark.parametrize("name", BOUNDS)
+def test_bounds_are_tried_at_the_values_with_data(name, own, place, expected):
+    words, summary, coordinate = BOUNDS[name]
+    world = Evidence({summary: xarray.Dataset(coords={coordinate: [15.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0]})}, {})
+    judge = judge_with_change(name, place, FAILS, HOLDS)
+    now = judge(world, {name: own})
+    other = {FAILS: HOLDS, HOLDS: FAILS}[now.verdict]
+    texts = [f"{other} if {words} is {expected} (here {own:g})"] if expected else []
+    assert changing_choices(judge, world, {name: own}, now) == texts
+    assert changing_choices(judge, NOTHING, {name: own}, now) == []
+
+
+@pytest.mark.parametrize(("place", "expected"), [(10, "at least 10"), (6, "at most 5"), (17, None), (4, None)])
+@pytest.mark.parametrize("name", COUNTS)
+def test_counts_are_whole_numbers(name, place, expected):
+    def judge(_evidence, parameters):
+        assert isinstance(parameters[name], int)
+        return Verdict(HOLDS if (parameters[name] < place) == (place > 8) else FAILS, "")
+
+    texts = [f"fails if {COUNTS[name]} is {expected} (here 8)"] if expected else []
+    assert changing_choices(judge, NOTHING, {name: 8}, judge(NOTHING, {name: 8})) == texts
+
+
+def test_other_bounds_of_close_and_opposite_phases_change_a_verdict():
+    """The claim depends on reading with the bounds of the claim and fails with another."""
+    world, claim = paper_world(), CLAIMS["phases_decide"]
+    not_opposed = alter("phases", "velocity_correlation", 1.0, phase_difference=150.0)
+    both(not_opposed, alter("phases", "branch", 2, phase_difference=30.0, inner_share=1.0))(world)
+    known = evidence(world)
+    verdict = judge_claim(claim, known)
+    assert verdict.verdict == READING
+    found = changing_choices(
+        lambda evidence, parameters: judge_claim(claim, evidence, parameters), known, claim.parameters, verdict
+    )
+    assert "fails if the phase difference from which phases are opposite is at most 150 (here 180)" in found
+    assert "holds if the phase difference up to which phases are close is at most 15 (here 30)" in found
 
 
 def test_for_solver_comparisons_single_values_are_left_out_but_the_grid_is_not_halved():

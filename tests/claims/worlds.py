@@ -280,10 +280,12 @@ def _bifurcations() -> xarray.Dataset:
         "kind": 0,
         "motion_before": PERIODIC,
         "motion_after": CHAOTIC,
+        "from_branch": 1,
         "to_branch": 1,
     }
-    low = np.tile(A[A >= 0.1][:12], 2)
-    columns |= {"change": Change.CHANGE, "grid_low": low, "a": low + 0.001}
+    # There `refined` has a torus, to which the orbit has locked.
+    low = np.tile(A[A <= 0.1][-12:], 2)
+    columns |= {"change": Change.CHANGE, "grid_low": low, "grid_high": low + 0.002, "a": low + 0.001}
     values = {name: ("bifurcation", np.array(np.broadcast_to(value, 24))) for name, value in columns.items()}
     return xarray.Dataset(values, attrs={"laws": " ".join(LAWS)})
 
@@ -306,8 +308,8 @@ def _phases() -> xarray.Dataset:
 
 
 def _equilibrium() -> xarray.Dataset:
-    """Return e = −(5/6, 2/3, 5/6)(1 − av) and the growth rate a, twice the true one."""
-    pairs = np.stack(np.broadcast_arrays(A[:, None], [1.0, 1.0, 2.0, 2.0, 3.0, 3.0]), axis=-1)
+    """Return e = −(5/6, 2/3, 5/6)(1 − av) and the growth rate a, twice the true one; some eigenvalues are real."""
+    pairs = np.stack(np.broadcast_arrays(A[:, None], [0.0, 0.0, 2.0, 2.0, 3.0, 3.0]), axis=-1)
     return _dataset(
         {
             "equilibrium_position": (("law", "a", "block"), -np.outer(1.0 - 0.1 * A, [5 / 6, 2 / 3, 5 / 6])),

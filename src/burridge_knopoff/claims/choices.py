@@ -1,7 +1,9 @@
 """The evidence of a study with other tolerances of agreement and of the kinds of motion.
 
 A run is given another kind if its exponents, section points and ⟨J⟩ are classified differently with the new tolerance.
-The kinds of attractors come from longer windows and are unchanged.
+The kinds of attractors come from longer windows and are unchanged. `motion.period_tolerance` and `motion.section` are
+not tried: with others, the repetition of a motion would have to be looked for in the runs again. Nor are tolerances
+within the search for attractors, which would have to be repeated.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ if TYPE_CHECKING:
 
 FACTORS = (0.5, 2.0)
 AGREEMENT = ("relative_tolerance", "standard_errors")
-MOTION = ("zero_exponent", "chaotic_exponent", "standard_errors")
+MOTION = ("zero_exponent", "chaotic_exponent", "standard_errors", "longest_period")
 THRESHOLD = "synchronization_threshold"
 
 

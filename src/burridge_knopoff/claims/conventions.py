@@ -1,6 +1,7 @@
 """Verdicts on a claim under each convention of contact and start, and under each reading.
 
-Under the study's convention the runs decide; under the others, the attractors that the initial states reach.
+Under the study's convention the runs decide; under the others, the attractors that the initial states reach. The paper
+leaves the start open, but not the contact: its condition for a stuck block to move again is one-sided.
 """
 
 from __future__ import annotations
@@ -19,16 +20,17 @@ from burridge_knopoff.claims.verdict import (
     Measured,
     NotTestableError,
     Range,
-    Share,
     Verdict,
     describe_where,
     join_words,
-    judge_share,
     worst_verdict,
 )
 
 if TYPE_CHECKING:
     import xarray
+
+#: A stuck block moves again when the spring force is *greater* than the static friction.
+PAPER_CONTACT = "one_sided"
 
 
 def judge_conventions(
@@ -46,7 +48,8 @@ def judge_conventions(
     judge : takes the attractors with the branches that the initial states reach under one convention; returns the
         verdict and the numbers behind it as text; the verdict is "" if nothing is known
 
-    A claim depends on convention if it holds, at least loosely, under one convention and fails under another.
+    A claim depends on convention if it holds, at least loosely, under one convention and fails under another. If the
+    study has the contact of the paper, only conventions with this contact count, and what the others give is listed.
     """
     verdicts, others, unknown = {evidence.own_convention: own}, [], []
     for name, attractors in evidence.other_conventions():
@@ -60,7 +63,10 @@ def judge_conventions(
     if unknown:
         others.append(f"it cannot be judged under {join_words([f'({name})' for name in unknown])}")
     changes = "; ".join([*exceptions, *others])
-    verdict = CONVENTION if _is_divided(verdicts) else own
+    decisive = verdicts
+    if evidence.config["contact"] == PAPER_CONTACT:
+        decisive = {name: verdict for name, verdict in verdicts.items() if name.split(", ")[0] == PAPER_CONTACT}
+    verdict = CONVENTION if _is_divided(decisive) else own
     return Verdict(verdict, reason, measured, changes, dict(sorted(verdicts.items())), own)
 
 
@@ -79,13 +85,6 @@ def combine_readings(
         raise NotTestableError(f"there are too few values for the reading «{'» and «'.join(unresolved)}»")
     verdict = READING if divided else worst_verdict(verdicts.values())
     return Verdict(verdict, reason, measured, "; ".join(changes), verdicts, own)
-
-
-def judge_readings(shares: Mapping[str, Mapping[str, Share]], loose: float) -> dict[str, str]:
-    """Return the verdict under each reading for its worst share, for `combine_readings`."""
-    return {
-        name: worst_verdict(judge_share(share, loose) for share in of_one.values()) for name, of_one in shares.items()
-    }
 
 
 def _is_divided(verdicts: Mapping[str, str]) -> bool:

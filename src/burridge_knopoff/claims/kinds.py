@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from burridge_knopoff.attractors.lookup import reached_values
-from burridge_knopoff.claims.conventions import combine_readings, judge_conventions, judge_readings
+from burridge_knopoff.claims.conventions import judge_conventions
 from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence
-from burridge_knopoff.claims.for_all import Case, ForAll, for_all
+from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.outcomes import PERIODIC_KINDS, kinds_reached, motion_kinds
 from burridge_knopoff.claims.verdict import (
@@ -85,74 +85,47 @@ def all_of_kind(
     )
 
 
-@judge("agreement", "lyapunov", "attractors")
+@judge("agreement", "attractors")
 def periodic_is_synchronized(
-    evidence: Evidence, initial: Sequence[str], a: Range, synchrony: Range, points: int, loose_share: float
+    evidence: Evidence, initial: str, a: Range, synchrony: Range, loose_share: float
 ) -> Verdict:
-    """Judge whether runs without synchrony are never periodic: all periodic runs are synchronized.
+    """Judge whether the periodic solution, that from one initial state, is synchronized where it is periodic.
 
-    Periodic may mean all motion that repeats within `motion.longest_period`, in the range a. Or it may mean motion
-    whose section W = 0 is a line, as the paper calls it, where it finds synchrony: more points than `points` are a
-    cloud, which it takes for quasiperiodic or chaotic motion.
-
-    synchrony : range of a in which the paper finds synchrony
-    """
-    longest = evidence.config["motion"]["longest_period"]
-    everything = _judge_periodic_runs(evidence, initial, a, np.inf, loose_share)
-    lines = _judge_periodic_runs(evidence, initial, synchrony, points, loose_share)
-    shares = {
-        f"with {a} that repeat within {longest:g} time units": everything.shares,
-        f"with {synchrony} whose section is not a cloud": lines.shares,
-    }
-    readings = judge_readings(shares, loose_share)
-    measured = [
-        Measured(f"share of the periodic runs {reading} that are synchronized, {name}", share.value)
-        for reading, of_runs in shares.items()
-        for name, share in of_runs.items()
-    ]
-    texts = [f"{format_shares(of_runs)} of those {name} ({readings[name]})" for name, of_runs in shares.items()]
-    changes = everything.exceptions("periodic without synchrony", "undetermined motion")
-    for convention, attractors in evidence.other_conventions():
-        inside = evidence.choose(attractors, a)
-        for law in PAPER_LAWS:
-            for state in initial:
-                periodic = kinds_reached(inside, state, law) == MotionKind.PERIODIC
-                words = f"under ({convention}) periodic without synchrony"
-                changes += describe_where(words, inside["a"].values, periodic, f"{law}, {state}")
-    reason = f"These shares of the periodic runs are synchronized: {'; '.join(texts)}."
-    return combine_readings(readings, reason, measured, changes)
-
-
-def _judge_periodic_runs(
-    evidence: Evidence, initial: Sequence[str], a: Range, most: float, loose_share: float
-) -> ForAll:
-    """Return whether all periodic runs with at most `most` section points are synchronized.
-
-    Raises NotTestableError if no run is periodic, or if runs of undetermined kind decide.
+    synchrony : range in which the paper finds synchrony, which is judged
+    a : range of the statement; where the periodic solution is not synchronized there is reported
     """
 
-    def cases() -> Iterator[Case]:
+    def cases(inside: xarray.Dataset | None = None, where: Range = synchrony) -> Iterator[Case]:
         for law in PAPER_LAWS:
-            for state in initial:
-                grid, kind = motion_kinds(evidence, state, law, a)
-                count = (
-                    evidence.choose(evidence.state_summary("lyapunov", state), a).sel(law=law)["section_period"].values
-                )
-                # A section that does not repeat within the run has more points than can be counted.
-                few = np.where(count > 0, count, np.inf) <= most
-                synchronized = kind == MotionKind.SYNCHRONIZED
-                periodic = synchronized | ((kind == MotionKind.PERIODIC) & few)
-                # A run of undetermined kind may be periodic without synchrony.
-                may_be = periodic | (kind == MotionKind.UNDETERMINED)
-                where = format_values(grid, may_be & ~periodic)
-                unknown = f"the kind of motion from {state} under the {law} law is undetermined {where}"
-                if periodic.any():
-                    yield Case(f"{law}, {state}", grid, synchronized, periodic, unknown, may_be)
+            grid, kind = motion_kinds(evidence, initial, law, where, inside)
+            known = kind != MotionKind.UNDETERMINED
+            applies = np.isin(kind, (*PERIODIC_KINDS, MotionKind.UNDETERMINED))
+            unknown = (
+                f"the kind of motion from {initial} under the {law} law is undetermined {format_values(grid, ~known)}"
+            )
+            if (applies & known).any():
+                yield Case(law, grid, kind == MotionKind.SYNCHRONIZED, known, unknown, applies)
 
     found = for_all(loose_share, cases())
     if not found.cases:
-        raise NotTestableError(f"no run is periodic with {a}")
-    return found
+        raise NotTestableError(f"no run from {initial} is periodic with {synchrony}")
+    wider = list(cases(where=a))
+    reason = (
+        f"The periodic motion from {initial} is synchronized at {found} of the values of a with {synchrony}, where the "
+        f"paper finds synchrony, and at {format_shares({case.name: case.share for case in wider})} of those with {a}."
+    )
+    measured = found.measured(f"share of a with {synchrony} at which it is synchronized")
+    measured += [
+        Measured(f"share of a with {a} at which it is synchronized, {case.name}", case.share.value) for case in wider
+    ]
+    exceptions = [
+        f"{text} ({case.name})"
+        for case in wider
+        for text in case.exceptions("periodic without synchrony", "undetermined motion")
+    ]
+    return judge_conventions(
+        evidence, found.verdict, reason, measured, exceptions, found.convention_judge(evidence, synchrony, cases)
+    )
 
 
 @judge("refined", "agreement", "orbits")

@@ -34,68 +34,78 @@ from burridge_knopoff.summaries.judgement import same_mean
 if TYPE_CHECKING:
     import xarray
 
+#: {initial state: (a, whether the laws agree there, as an Answer)}
+Answers = dict[str, tuple[np.ndarray, np.ndarray]]
+
 
 @judge("agreement")
 def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
-    """Judge whether both laws lead to the same ⟨J⟩ at all a of a range, as curves in a figure correspond.
+    """Judge whether both laws lead to the same ⟨J⟩ at all a of a range.
 
-    The study's relative tolerance of agreement is applied to the largest ⟨J⟩ in the range: applied to each value alone,
-    curves that coincide in a figure would disagree where ⟨J⟩ is small.
+    The study's relative tolerance of agreement may be applied to the largest ⟨J⟩ in the range, as curves in a figure
+    correspond: those of both states have one scale. Or it may be applied to ⟨J⟩ at each a, as in agreement.nc: curves
+    that coincide in a figure may then differ where ⟨J⟩ is small.
     """
     found = {state: _law_comparison(evidence, state, a) for state in initial}
+    about = next(iter(found.values())).attrs
     scale = max(float(np.nanmax(one["mean_distance"].values)) for one in found.values())
-    measured, answers = [Measured("largest ⟨J⟩", scale)], {}
+    readings: dict[str, Answers] = {"of the largest value": {}, "of the value at each a": {}}
+    measured = [Measured("largest ⟨J⟩", scale)]
     for state, one in found.items():
         values = {name: one[name].values for name in ("mean_distance", "kind", "difference", "difference_error")}
-        values["mean_distance"] = np.full_like(values["mean_distance"], scale)
-        same = same_mean(values, one.attrs["synchronization_threshold"], one.attrs)
-        answers[state] = one["a"].values, same
+        largest = {**values, "mean_distance": np.full_like(values["mean_distance"], scale)}
+        for answers, of_scale in zip(readings.values(), (largest, values), strict=True):
+            answers[state] = one["a"].values, same_mean(of_scale, about["synchronization_threshold"], about)
+        _, same = next(iter(readings.values()))[state]
         difference = np.abs(values["difference"][same == Answer.YES])
         if np.isfinite(difference).any():
-            measured.append(Measured(f"largest |Δ⟨J⟩| where they agree, {state}", float(np.nanmax(difference))))
-    tolerance = 100.0 * next(iter(found.values())).attrs["relative_tolerance"]
-    text, points, numbers, differences = _judge_answers(answers, a, loose_share)
-    reason = f"The laws agree in ⟨J⟩ within {tolerance:g} % of its largest value, {scale:.3f}, at {text}."
-    return Verdict(points.verdict, reason, [*numbers, *measured], "; ".join(differences))
+            quantity = f"largest |Δ⟨J⟩| where they agree on the scale of the largest, {state}"
+            measured.append(Measured(quantity, float(np.nanmax(difference))))
+    tolerance = 100.0 * about["relative_tolerance"]
+    words = f"The laws agree in ⟨J⟩, whose largest value is {scale:.3f}, within {tolerance:g} %"
+    return _judge_agreement(words, readings, a, loose_share, measured)
 
 
 @judge("agreement")
 def laws_agree_in_kind(evidence: Evidence, initial: Sequence[str], a: Range, loose_share: float) -> Verdict:
     """Judge whether both laws lead to the same kind of motion at all a of a range.
 
-    The kinds may be synchrony, other regular motion and chaos: a torus is locked to periodic orbits on a dense set of
-    a, so that a single value of a may show either. Or they may be those that the paper names: periodic, quasiperiodic
-    and chaotic.
+    The kinds may be those that the paper names: periodic, quasiperiodic and chaotic. Or they may be synchrony, other
+    regular motion and chaos: a torus is locked to periodic orbits on a dense set of a, so that a single value of a may
+    show either.
     """
-    loosely, strictly = {}, {}
+    readings: dict[str, Answers] = {
+        f"with periodic and quasiperiodic motion as {number}": {} for number in ("two kinds", "one kind")
+    }
     for state in initial:
         one = _law_comparison(evidence, state, a)
         same, (kind, other) = one["same_kind"].values, merge_chaos(one["kind"].sel(law=list(PAPER_LAWS)).values)
-        loosely[state] = one["a"].values, same
-        strictly[state] = one["a"].values, np.where((same == Answer.YES) & (kind != other), Answer.NO, same)
-    readings, texts, measured, differences = {}, [], [], []
-    for number, answers in (("one kind", loosely), ("two kinds", strictly)):
-        text, points, numbers, where = _judge_answers(answers, a, loose_share)
-        reading = f"with periodic and quasiperiodic motion as {number}"
-        readings[reading] = judge_share(points.share, loose_share)
-        texts.append(f"{reading}, at {text} ({readings[reading]})")
-        measured += [replace(item, quantity=f"{item.quantity}, {reading}") for item in numbers]
-        differences += [f"{reading}, {text}" for text in where]
-    return combine_readings(
-        readings, f"The laws agree in the kind of motion: {'; '.join(texts)}.", measured, differences
-    )
+        strictly = np.where((same == Answer.YES) & (kind != other), Answer.NO, same)
+        for answers, of_kinds in zip(readings.values(), (strictly, same), strict=True):
+            answers[state] = one["a"].values, of_kinds
+    return _judge_agreement("The laws agree in the kind of motion", readings, a, loose_share)
 
 
 def _law_comparison(evidence: Evidence, state: str, a: Range) -> xarray.Dataset:
     return evidence.choose(evidence.law_comparison(evidence.state_summary("agreement", state)), a)
 
 
-def _judge_answers(
-    answers: Mapping[str, tuple[np.ndarray, np.ndarray]], a: Range, loose_share: float
-) -> tuple[str, ForAll, list[Measured], list[str]]:
-    """Judge where the laws agree, by the points of all states together, as a figure shows them.
+def _judge_agreement(
+    words: str, readings: Mapping[str, Answers], a: Range, loose_share: float, measured: Sequence[Measured] = ()
+) -> Verdict:
+    """Judge whether the laws agree, under each reading; words : what the readings qualify."""
+    verdicts, texts, numbers, differences = {}, [], [], []
+    for reading, answers in readings.items():
+        text, points, of_reading, where = _judge_answers(answers, a, loose_share)
+        verdicts[reading] = judge_share(points.share, loose_share)
+        texts.append(f"{reading}, at {text} ({verdicts[reading]})")
+        numbers += [replace(item, quantity=f"{item.quantity}, {reading}") for item in of_reading]
+        differences += [f"{reading}, {text}" for text in where]
+    return combine_readings(verdicts, f"{words}: {'; '.join(texts)}.", [*numbers, *measured], differences)
 
-    answers : {initial state: (a, an Answer for each)}
+
+def _judge_answers(answers: Answers, a: Range, loose_share: float) -> tuple[str, ForAll, list[Measured], list[str]]:
+    """Judge where the laws agree, by the points of all states together, as a figure shows them.
 
     Returned are the share as text, the statement on all points, the shares of the states, and where the laws differ or
     could not be compared.
@@ -158,12 +168,12 @@ def springs_help(
     At one a, linearized motion is proportional to v. Hence aU' is av times the ratio of slip speed to v, a function of
     a alone that is known from the windows of the runs. What stronger springs do depends on what is held fixed. At a
     fixed v, as in the paper's study, av falls with a. At a fixed velocity V of the driver v grows as a falls, and av =
-    cV stays, where F(0)/(1 + cV) is the friction.
+    cV stays, where F(0)/(1 + cV) is the friction. The paper's choice is the first reading.
     """
     grid, speed = _fastest_slips(evidence, initial, law, a, "window")
     least, largest = int(np.argmin(grid)), int(np.argmax(grid))
     readings, measured, texts = {}, [], []
-    for fixed, product in (("V, which leaves av = cV unchanged", speed), ("v", grid * speed)):
+    for fixed, product in (("v", grid * speed), ("V, which leaves av = cV unchanged", speed)):
         power = float(np.polyfit(np.log(grid), 2.0 * np.log(product), 1)[0])
         ratio = float((product[least] / product[largest]) ** 2)
         name = f"at a fixed {fixed}"

@@ -25,6 +25,7 @@ from burridge_knopoff.claims.verdict import (
     judge_share,
     judge_worst_share,
     share_is_decided,
+    worst_verdict,
 )
 from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.motion.kind import CHAOS, REGULAR, MotionKind
@@ -44,6 +45,9 @@ ONE_FREQUENCY, NO_MODE = "one frequency with attracting phases", "locking, not a
 
 TORUS = "quasiperiodic motion, or chaos too weak to be distinguished from it,"
 UNFOLLOWED = "a periodic orbit too long to be continued, or a torus near it,"
+#: What precedes chaos if frequency locking is that of a torus, and if every periodic orbit counts as locked.
+LOCKED = "a periodic orbit to which a torus has locked"
+CLOSED = "any periodic orbit"
 
 
 @judge("rotation")
@@ -134,10 +138,14 @@ def _locked_to_middle(rotation: xarray.Dataset, a: Range, law: str) -> tuple[lis
 
 @judge("bifurcations", "refined")
 def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
-    """Judge whether a periodic orbit, not a torus, precedes chaos where a branch becomes chaotic as a grows.
+    """Judge whether frequency locking precedes chaos where a branch becomes chaotic as a grows.
 
-    On a periodic orbit the stops of the blocks have rational ratios: they are locked. On a torus they are not. The
-    motion before chaos is that of the branch at the next smaller value of a. An onset does not count if the chaos
+    Frequency locking is that of a torus: the branch moves on a torus, locks to a periodic orbit, and then becomes
+    chaotic. In a weaker sense every periodic orbit is locked, since its blocks stop in rational ratios; this is also
+    true of an orbit that was never on a torus, for example before a cascade of period doublings, and only a torus that
+    breaks up into chaos contradicts it.
+
+    The motion before chaos is that of the branch at the next smaller value of a. An onset does not count if the chaos
     existed before, as a transient or on an attractor on which the branch ends; neither does a bifurcation that a branch
     passes without a change. A torus may be chaos too weak for the search to resolve, or may lock between the values of
     a; the verdict says so. A periodic orbit that is too long to be continued to the bifurcation, as in a locking
@@ -149,42 +157,44 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
     evidence.check_blocks()
     bifurcations = evidence.summary("bifurcations")
     laws = bifurcations.attrs["laws"].split()
-    resolution = evidence.summary("refined").attrs["refine_resolution"]
-    shares: dict[str, Share] = {}
-    measured, texts, others = [], [], []
+    before, after, kinds = (bifurcations[key].values for key in ("motion_before", "motion_after", "kind"))
+    readings: dict[str, list[str]] = {LOCKED: [], CLOSED: []}
+    texts: dict[str, list[str]] = {LOCKED: [], CLOSED: []}
+    measured, others = [], []
     for name in PAPER_LAWS:
         if name not in laws:
             raise NotTestableError(f"the study has no {name} law")
+        refined = evidence.summary("refined").sel(law=name)
         own = bifurcations["law"].values == name
-        before, after, kinds = (bifurcations[key].values for key in ("motion_before", "motion_after", "kind"))
         changes = own & (bifurcations["change"].values != Change.PASSED) & np.isin(after, CHAOS)
-        changes &= ~_was_chaotic(bifurcations, evidence.summary("refined").sel(law=name))
+        changes &= ~_was_chaotic(bifurcations, refined)
         onset = changes & np.isin(before, (MotionKind.SYNCHRONIZED, *REGULAR))
         unknown = changes & (before == MotionKind.UNDETERMINED)
+        # One onset may have two bifurcations.
         places = {
-            (float(bifurcations["grid_low"].values[k]), int(bifurcations["to_branch"].values[k])): _possible_precursor(
-                before[k], kinds[k]
-            )
+            (float(bifurcations["grid_low"].values[k]), int(bifurcations["to_branch"].values[k])): k
             for k in np.flatnonzero(onset)
         }
         if not places:
             raise NotTestableError(f"no branch of attractors becomes chaotic under the {name} law")
-        count = Counter(places.values())
-        least, most = (Share(hits, len(places)) for hits in (count[""], len(places) - count[TORUS]))
-        if judge_share(most, loose_share) == NOT_TESTABLE:
-            raise NotTestableError(
-                f"in {least.hits} to {most.hits} of {len(places)} cases ({name}) a periodic orbit precedes chaos, and "
-                f"the 95 % interval of this share includes {loose_share:g} (its upper end is {most.interval[1]:.2f}), "
-                f"so the statement cannot be decided at this resolution of a, {resolution:g}"
-            )
-        if not share_is_decided(least.hits, most.hits, len(places), loose_share):
-            raise NotTestableError(
-                f"in {count[UNFOLLOWED]} of {len(places)} cases ({name}) {UNFOLLOWED} precedes chaos"
-            )
-        shares[name] = least
-        texts.append(f"{least.hits} of {len(places)} ({name})")
-        measured.append(Measured(f"share of the onsets of chaos that a periodic orbit precedes, {name}", least.value))
-        ends = Counter(int(bifurcations["kind"].values[k]) for k in np.flatnonzero(onset))
+        precursors = {at: _possible_precursor(before[k], kinds[k]) for at, k in places.items()}
+        of_law = bifurcations.isel(bifurcation=own)
+        on_torus = {
+            at: _was_torus(of_law, refined, int(bifurcations["from_branch"].values[k]), at[0])
+            for at, k in places.items()
+        }
+        for reading in readings:
+            possible = [at for at in places if precursors[at] != TORUS and (reading == CLOSED or on_torus[at])]
+            certain = [at for at in possible if not precursors[at]]
+            is_decided = share_is_decided(len(certain), len(possible), len(places), loose_share)
+            share = Share(len(certain), len(places))
+            readings[reading].append(judge_share(share, loose_share) if is_decided else NOT_TESTABLE)
+            texts[reading].append(f"{share.hits} of {share.count} ({name})")
+            measured.append(Measured(f"share of the onsets of chaos that {reading} precedes, {name}", share.value))
+            if reading == LOCKED and certain:
+                where = ", ".join(f"{low:g}" for low, _ in sorted(certain))
+                others.append(f"{reading} precedes chaos just above a = {where} ({name})")
+        ends = Counter(int(kinds[k]) for k in np.flatnonzero(onset))
         for kind, often in sorted(ends.items()):
             measured.append(Measured(f"bifurcations there, {BifurcationKind(kind).name.lower()}, {name}", often))
         if unknown.any():
@@ -193,15 +203,14 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
                 f"the motion before chaos is undetermined at a = {', '.join(f'{a:.5g}' for a in values)} ({name})"
             )
         for precursor in (TORUS, UNFOLLOWED):
-            if there := sorted(place for (place, _), one in places.items() if one == precursor):
+            if there := sorted(low for (low, _), text in precursors.items() if text == precursor):
                 others.append(
                     f"{precursor} precedes chaos just above a = {', '.join(f'{a:g}' for a in there)} ({name})"
                 )
-    reason = (
-        "Where a branch of attractors becomes chaotic as a grows, a periodic orbit, not a torus, precedes chaos in "
-        f"{join_words(texts)} cases."
-    )
-    return Verdict(judge_worst_share(shares, loose_share), reason, measured, "; ".join(others))
+    verdicts = {reading: worst_verdict(of_laws) for reading, of_laws in readings.items()}
+    counts = "; ".join(f"{reading} in {join_words(texts[reading])} cases ({verdicts[reading]})" for reading in readings)
+    reason = f"Where a branch of attractors becomes chaotic as a grows, this precedes chaos: {counts}."
+    return combine_readings(verdicts, reason, measured, others)
 
 
 def _possible_precursor(before: int, bifurcation: int) -> str:
@@ -209,6 +218,35 @@ def _possible_precursor(before: int, bifurcation: int) -> str:
     if before == MotionKind.QUASIPERIODIC:
         return TORUS
     return UNFOLLOWED if bifurcation == BifurcationKind.UNDETERMINED else ""
+
+
+def _was_torus(bifurcations: xarray.Dataset, refined: xarray.Dataset, branch: int, low: float) -> bool:
+    """Return whether a branch moves on a torus at some a up to `low`, and from there to `low` on periodic orbits.
+
+    Where it begins, it is followed to the branch that leads to it.
+
+    bifurcations, refined : of one law. Between values of the grid a branch may not have been searched for.
+    """
+    a = refined["a"].values
+    for row in np.flatnonzero(a <= low)[::-1]:
+        kinds = refined["kind"].values[row][refined["branch"].values[row] == branch]
+        if not len(kinds) and refined["in_grid"].values[row] == 1:
+            return False
+        if np.isin(kinds, (*CHAOS, MotionKind.TRANSIENT_CHAOS)).any():
+            return False
+        if (kinds == MotionKind.QUASIPERIODIC).any():
+            return True
+        branch = _predecessor(bifurcations, branch, a[row])
+    return False
+
+
+def _predecessor(bifurcations: xarray.Dataset, branch: int, a: float) -> int:
+    """Return the branch that ends on a branch which begins at an a and leads back to it; the branch itself if none."""
+    to_branch, change = bifurcations["to_branch"].values, bifurcations["change"].values
+    begins = (to_branch == branch) & (change == Change.BEGINNING) & (bifurcations["grid_high"].values == a)
+    ends = (to_branch == branch) & (change == Change.END)
+    sources = [set(bifurcations["from_branch"].values[rows].tolist()) for rows in (begins, ends)]
+    return int(next(iter(sources[0] & sources[1] - {-1}), branch))
 
 
 def _was_chaotic(bifurcations: xarray.Dataset, refined: xarray.Dataset) -> np.ndarray:

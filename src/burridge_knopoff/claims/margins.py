@@ -5,6 +5,8 @@ data to judge. The claim is judged again with each tolerance of the claim or of 
 every second value of a; at the neighbour of a named value of a; without one of the values of a at which solvers are
 compared; and with other amplitudes of the inner blocks, detunings, levels of J, or parts of the runs for which there
 are data. If the claim depends on convention or reading, the verdicts under each count as well.
+
+Every parameter of a judge is in one of the tables below: tried, or in STATED.
 """
 
 from __future__ import annotations
@@ -29,12 +31,25 @@ TOLERANCES = {
 }
 FACTOR = 2.0
 
+# The same for whole numbers.
+COUNTS = {
+    "points": "the largest number of section points that is no cloud",
+    "samples": "the number of sampled states that show whether an attractor is the only one",
+}
+
 # The same for parameters whose distance from 1 is the choice.
 SHARES = {
     "share": "the required share of states",
     "loose_share": "the share from which the claim holds loosely",
     "correlation": "the correlation that counts as antiphase",
     "mode_share": "the share of the energy that makes an oscillation one of a mode",
+}
+
+# The same for bounds of a coordinate with few values: a bound is tried at each value within FACTOR. Their description,
+# the summary, and its coordinate.
+BOUNDS = {
+    "close": ("the phase difference up to which phases are close", "phases", "phase_difference"),
+    "opposite": ("the phase difference from which phases are opposite", "phases", "phase_difference"),
 }
 
 # Parameters with data for a few values only: their description, and the summary whose coordinate lists these values.
@@ -46,6 +61,16 @@ LISTED = {
 
 #: The parts of a run that can judge a claim: the averaging window, or the whole run with its transient.
 PARTS = {"window": "the window", "run": "the whole run"}
+
+# Parameters that are not tried, since they are the paper's and no choice of ours: what a statement is about, and its
+# numbers. With another value it would be another statement.
+STATED = frozenset(
+    {
+        *("initial", "law", "laws", "a", "synchrony", "shown", "end"),
+        *("claimed", "low", "high", "by", "coefficients", "steps"),
+        *("synchronized", "kinds", "claims"),
+    }
+)
 
 # Number of bisections of the exponent of FACTOR at which a verdict changes, which determine the tolerance to 0.3 %.
 BISECTIONS = 8
@@ -75,6 +100,7 @@ def changing_choices(
 
     return [
         *_tolerance_choices(changed_verdict, evidence, parameters),
+        *_bound_choices(changed_verdict, evidence, parameters),
         *_grid_choices(changed_verdict, evidence, parameters),
         *_neighbour_choices(changed_verdict, evidence, parameters),
         *_listed_choices(changed_verdict, evidence, parameters),
@@ -97,7 +123,7 @@ def difference(verdict: Verdict, other: Verdict) -> str:
 def _tolerance_choices(
     changed_verdict: ChangedVerdict, evidence: Evidence, parameters: Mapping[str, Any]
 ) -> Iterator[str]:
-    for name, words in {**TOLERANCES, **SHARES}.items():
+    for name, words in {**TOLERANCES, **COUNTS, **SHARES}.items():
         if name not in parameters:
             continue
 
@@ -114,6 +140,20 @@ def _tolerance_choices(
                 is_larger = last > parameters[name]
                 limit = f"at {'least' if is_larger else 'most'} {_rounded(last, up=is_larger):g}"
                 yield f"{other} if {words} is {limit} (here {parameters[name]:g})"
+
+
+def _bound_choices(changed_verdict: ChangedVerdict, evidence: Evidence, parameters: Mapping[str, Any]) -> Iterator[str]:
+    for name, (words, summary, coordinate) in BOUNDS.items():
+        if name not in parameters or summary not in evidence.summaries:
+            continue
+        own, values = parameters[name], np.unique(evidence.summaries[summary][coordinate].values)
+        smaller = values[(values >= own / FACTOR) & (values < own)][::-1]
+        larger = values[(values > own) & (values <= own * FACTOR)]
+        for side, candidates in (("most", smaller), ("least", larger)):
+            for value in candidates.tolist():
+                if other := changed_verdict(evidence, {**parameters, name: value}):
+                    yield f"{other} if {words} is at {side} {value:g} (here {own:g})"
+                    break
 
 
 def _rounded(value: float, *, up: bool) -> float:
@@ -143,6 +183,8 @@ def _nearest_change(verdict_at: Callable[[float], str], side: float) -> tuple[fl
 def _scaled(value: float, name: str, exponent: float) -> float:
     """Return a tolerance, or the distance of a share from 1, multiplied by a power of FACTOR."""
     factor = FACTOR**exponent
+    if name in COUNTS:
+        return round(value * factor)
     if name not in SHARES:
         return value * factor
     return math.copysign(min(max(1.0 - factor * (1.0 - abs(value)), 0.0), 1.0), value)

@@ -91,7 +91,8 @@ def _compare_solvers(
     Raises NotTestableError if no point was completed by all solvers.
     """
     solved, measured, differences = [], [], []
-    threshold = evidence.summary("agreement").attrs["synchronization_threshold"]
+    tolerances = evidence.summary("agreement").attrs
+    threshold, standard_errors = tolerances["synchronization_threshold"], tolerances["standard_errors"]
     for state in initial:
         evidence.check_state(state)
         solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), Range(above=0.0), least=1)
@@ -105,7 +106,7 @@ def _compare_solvers(
             if (found["status"].values > Status.COMPLETED).any() or (there.sum(axis=-1) < 2).all():
                 continue
             allowed = np.maximum.reduce(
-                [relative * np.abs(mean), 3.0 * np.nan_to_num(error), np.full_like(mean, threshold)]
+                [relative * np.abs(mean), standard_errors * np.nan_to_num(error), np.full_like(mean, threshold)]
             )
             solved.append(bool((np.abs(difference) <= allowed)[there].all()))
             largest = float(np.abs(difference[there]).max())

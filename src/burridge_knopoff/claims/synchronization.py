@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import judge_conventions
+from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.for_all import Case, for_all
 from burridge_knopoff.claims.judge import judge
@@ -16,6 +16,7 @@ from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
     LOOSELY,
+    NOT_TESTABLE,
     Measured,
     NotTestableError,
     Range,
@@ -69,54 +70,64 @@ def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool,
 
 
 @judge("attractors", "orbits", "proof")
-def edge_of_synchrony(evidence: Evidence, initial: str, claimed: float, tolerance: float, loose: float) -> Verdict:
-    """Judge the largest a at which an initial state synchronizes, under both laws.
+def edge_of_synchrony(
+    evidence: Evidence,
+    initial: str,
+    claimed: float,
+    tolerance: float,
+    loose: float,
+    end: Literal["lower", "upper"] = "upper",
+) -> Verdict:
+    """Judge one end of the range of a in which an initial state synchronizes, under both laws.
 
-    It lies between two neighbours of the grid. The attractor reached decides, since close to the loss of synchrony a
-    run is too short to get there. If the synchronized orbit loses stability between the two values, the edge is a_c.
+    end : lower or upper
+
+    It lies between two neighbours of the grid; the lower end may lie between 0, where friction is constant, and the
+    first of them. The attractor reached decides, since close to the loss of synchrony a run is too short to get there.
+    If the synchronized orbit loses stability between the two values, the edge is a_c.
+
+    Synchrony that appears between two values of a may appear only there, or at least there.
     """
-    verdicts, measured, texts, losses = [], [], [], []
+    is_upper = end == "upper"
+    side = "up to there" if is_upper else "from there on"
+    readings: dict[str, list[str]] = {f"only {side}": [], f"at least {side}": []}
+    measured, texts, losses = [], [], []
     for law, grid, synchronized in _reached_synchrony(evidence, initial):
-        low, high = _edge(grid, synchronized)
-        if not np.isfinite(low + high):
-            raise NotTestableError(f"the grid does not hold the edge of synchrony from {initial}, {law} law")
-        measured.append(Measured(f"largest a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
-        texts.append(f"between {low:g} and {high:g} ({law})")
+        if not synchronized.any():
+            raise NotTestableError(f"no a with synchrony from {initial} is known, {law} law")
+        low, high = _edge(grid, synchronized, is_upper)
+        texts.append(f"{f'between {low:g} and {high:g}' if np.isfinite(high) else f'not before {low:g}'} ({law})")
+        if np.isfinite(high):
+            quantity = f"{'largest' if is_upper else 'smallest'} a with synchrony, {law}"
+            measured.append(Measured(quantity, 0.5 * (low + high), 0.5 * (high - low)))
         proved = evidence.proved_critical_a(law)
         critical, error = proved or evidence.critical_a(law)
         if low <= critical <= high:
             name = f"a_c, at which the synchronized orbit loses stability, {law}"
-            verdicts.append(judge_value(critical, claimed, tolerance, loose))
             measured.append(Measured(name, critical, error, proved=proved is not None))
-            certain = ", proved" if proved else ""
-            losses.append(f"a_c = {critical:.5g} ({law}{certain})")
-        else:
-            verdicts.append(judge_interval(low, high, claimed, tolerance, loose))
-    reason = f"Synchrony from {initial} ends {join_words(texts)}; the paper says {claimed:g}."
+            losses.append(f"a_c = {critical:.5g} ({law}{', proved' if proved else ''})")
+            low = high = critical
+        # A range that reaches further than claimed reaches that far.
+        clip = min if is_upper else max
+        ends = (low, high), (clip(low, claimed), clip(high, claimed))
+        for of_laws, (first, last) in zip(readings.values(), ends, strict=True):
+            of_laws.append(_judge_edge(first, last, claimed, tolerance, loose))
+    verdicts = {reading: worst_verdict(of_laws) for reading, of_laws in readings.items()}
+    reason = (
+        f"Synchrony from {initial} {'ends' if is_upper else 'begins'} {join_words(texts)}. The paper says {claimed:g}: "
+        f"{' or '.join(f'{reading} ({verdict})' for reading, verdict in verdicts.items())}."
+    )
     if losses:
-        reason += f" There the synchronized orbit loses stability, at {join_words(losses)}."
-    return Verdict(worst_verdict(verdicts), reason, measured)
+        reason += f" At the edge the synchronized orbit loses stability, at {join_words(losses)}."
+    return combine_readings(verdicts, reason, measured)
 
 
-@judge("attractors")
-def beginning_of_synchrony(evidence: Evidence, initial: str, claimed: float, tolerance: float, loose: float) -> Verdict:
-    """Judge whether there is synchrony from an initial state from one a on, under both laws, by the attractor reached.
-
-    The smallest a with synchrony lies between a value of the grid and the one before, or 0, where friction is constant.
-    The claim holds if it is not larger than the claimed one.
-    """
-    verdicts, measured, texts = [], [], []
-    for law, grid, synchronized in _reached_synchrony(evidence, initial):
-        if not synchronized.any():
-            raise NotTestableError(f"no a with synchrony from {initial} is known, {law} law")
-        first = int(np.argmax(synchronized))
-        low, high = float(grid[first - 1]) if first else 0.0, float(grid[first])
-        # Synchrony that begins earlier is there from the claimed value on.
-        verdicts.append(judge_interval(max(low, claimed), max(high, claimed), claimed, tolerance, loose))
-        measured.append(Measured(f"smallest a with synchrony, {law}", 0.5 * (low + high), 0.5 * (high - low)))
-        texts.append(f"between {low:g} and {high:g} ({law})")
-    reason = f"The smallest a with synchrony from {initial} lies {join_words(texts)}; the paper says {claimed:g}."
-    return Verdict(worst_verdict(verdicts), reason, measured)
+def _judge_edge(low: float, high: float, claimed: float, tolerance: float, loose: float) -> str:
+    """Return the verdict on an edge in (low, high], or at low if they are equal; «not testable» if it is open."""
+    try:
+        return judge_interval(low, high, claimed, tolerance, loose)
+    except NotTestableError:
+        return NOT_TESTABLE
 
 
 def _reached_synchrony(evidence: Evidence, initial: str) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
@@ -128,10 +139,16 @@ def _reached_synchrony(evidence: Evidence, initial: str) -> Iterator[tuple[str, 
         yield law, attractors["a"].values[branch >= 0], branch[branch >= 0] == 0
 
 
-def _edge(grid: np.ndarray, synchronized: np.ndarray) -> tuple[float, float]:
-    """Return the neighbours in the grid between which synchrony ends; NaN if it does not end inside the grid."""
+def _edge(grid: np.ndarray, synchronized: np.ndarray, is_upper: bool) -> tuple[float, float]:
+    """Return the neighbours in the grid between which synchrony ends or begins.
+
+    The grid has no values beyond its last, so that an upper end there may be anywhere above; at 0 nothing synchronizes.
+    """
     index = np.flatnonzero(synchronized)
-    return (grid[index[-1]], grid[index[-1] + 1]) if len(index) and index[-1] + 1 < len(grid) else (np.nan, np.nan)
+    if is_upper:
+        last = index[-1]
+        return float(grid[last]), float(grid[last + 1]) if last + 1 < len(grid) else np.inf
+    return float(grid[index[0] - 1]) if index[0] else 0.0, float(grid[index[0]])
 
 
 @judge("mean_distance", "attractors")
@@ -192,7 +209,11 @@ def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -
 def distance_vanishes(
     evidence: Evidence, initial: str, law: str, at: float, by: float, level: float, loose: float
 ) -> Verdict:
-    """Judge whether J falls below a level for good by a time, loosely by `loose` times that time."""
+    """Judge whether J falls below a level for good by a time, loosely by `loose` times that time.
+
+    J falls exponentially and is never 0. When it reaches the rounding error, the lowest level, depends on the
+    arithmetic, so that time is only reported.
+    """
     runs = evidence.at(evidence.state_summary("mean_distance", initial), at).sel(law=law)
     if level not in runs["level"].values:
         raise NotTestableError(f"mean_distance.nc has no settling time for J < {level:g}")
@@ -203,9 +224,9 @@ def distance_vanishes(
         for height, value in zip(runs["level"].values, runs["settling_time"].values, strict=True)
     ]
     settled = float(runs["settling_time"].sel(level=level).item())
-    text = (
-        f"stays below {level:g} from τ = {settled:g} on" if np.isfinite(settled) else f"does not stay below {level:g}"
-    )
+    reached = runs["level"].values[(runs["level"].values <= level) & np.isfinite(runs["settling_time"].values)]
+    times = [f"{height:g} from τ = {runs['settling_time'].sel(level=height).item():g} on" for height in reached]
+    text = f"stays below {join_words(times)}" if np.isfinite(settled) else f"does not stay below {level:g}"
     verdict = HOLDS if settled <= by else LOOSELY if settled <= loose * by else FAILS
     rate, expected = _decay_rate(runs, level), _transverse_rate(evidence, law, at)
     decay = ""
@@ -220,10 +241,10 @@ def distance_vanishes(
 
 
 def _decay_rate(runs: xarray.Dataset, least: float) -> float:
-    """Return the decay rate of J between the two lowest levels above `least`; NaN if it reaches only one of them."""
+    """Return the decay rate of J between the two lowest levels from `least` on; NaN if it reaches only one of them."""
     levels = runs["level"].values
     times = runs["settling_time"].values
-    above = np.flatnonzero((levels > least) & np.isfinite(times))
+    above = np.flatnonzero((levels >= least) & np.isfinite(times))
     first, last = above[np.argsort(-levels[above])][-2:] if len(above) > 1 else (0, 0)
     time = times[last] - times[first]
     return float(np.log(levels[first] / levels[last]) / time) if time > 0.0 else np.nan

@@ -208,7 +208,7 @@ def table(dataset: xarray.Dataset) -> str:
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return a line for each other law and initial state: the a at which the law first disagrees with the first law."""
+    """Return a line for each other law and initial state: at how many a it agrees with the first, and where not."""
     first, others = dataset["law"].values[0], dataset["other_law"].values
     lines = [] if len(others) else [f"The {first} law is the only one: there is nothing to compare."]
     for other in others:
@@ -238,14 +238,11 @@ def _agreement_text(row: xarray.Dataset) -> str:
         several = f"all {len(a)} values of a that were compared, {a[0]:g} to {a[-1]:g}"
         text = f"they agree at {several if len(a) > 1 else f'the only value of a that was compared, {a[0]:g}'}."
     else:
-        before = a[a < different[0]]
-        agree = f"agree up to a = {before[-1]:g} and " if len(before) else ""
+        first, last = different[[0, -1]]
+        where = f"first at a = {first:g} and last at {last:g}" if first < last else f"at a = {first:g}"
         other_kind = np.count_nonzero(row["same_kind"].values == 0)
         kinds = f"; the kind of motion differs at {other_kind}" if other_kind else ""
-        text = (
-            f"they {agree}first disagree at a = {different[0]:g}; they disagree at {len(different)} of {len(a)} values "
-            f"of a, the last at {different[-1]:g}{kinds}."
-        )
+        text = f"they agree at {len(a) - len(different)} of {len(a)} values of a and disagree {where}{kinds}."
     if undetermined := int((verdict < 0).sum()):
         text += (
             f" At {format_count(undetermined, 'value')} of a the comparison is undetermined: "
