@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from burridge_knopoff.claims.conventions import combine_readings, judge_readings
+from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence
 from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.verdict import (
@@ -23,7 +23,6 @@ from burridge_knopoff.claims.verdict import (
     format_shares,
     join_words,
     judge_share,
-    judge_worst_share,
     share_is_decided,
     worst_verdict,
 )
@@ -101,7 +100,10 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, mode_share: flo
             where += describe_where("the end blocks are locked", grid, locked, name)
         of_law, further = _locked_to_middle(found, a, law)
         measured, where = measured + of_law, where + further
-    verdicts = judge_readings(shares, loose_share)
+    verdicts = {
+        reading: worst_verdict(judge_share(share, loose_share) for share in of_branch.values())
+        for reading, of_branch in shares.items()
+    }
     kept, locked_shares = (format_shares(shares[reading]) for reading in (ONE_FREQUENCY, NO_MODE))
     reason = (
         f"With {100 * detuning:g} % more mass on one of them, the end blocks keep one frequency, and a perturbation of "
