@@ -9,6 +9,8 @@ import secrets
 from collections.abc import Callable
 from pathlib import Path
 
+#: Most bytes of the name of a file that `write_whole` writes: file systems allow 255, and a temporary name has 15 more.
+LONGEST_NAME = 240
 #: Number of attempts to write a file if another process removes its temporary file.
 ATTEMPTS = 3
 #: Bytes written to a disk to find out why writing failed.
