@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from snakemake.logging import logger
@@ -18,6 +19,7 @@ from snakemake_logger_plugin_study.run import Job, Run
 class Plan:
     """The plan of a study, which the Snakefile fills in, and its run once it begins.
 
+    results, config, checkout : folder of its results, config file, and checkout of the workflow
     first : rules of the figures that are announced as soon as they are drawn
     record : records that the study was run with its config, even if there is nothing to do
     workflow : Snakemake's own object. No event contains the dependencies of jobs: only this class reads Snakemake's
@@ -25,6 +27,8 @@ class Plan:
     """
 
     results: str = ""
+    config: str = ""
+    checkout: Path = Path()
     workflow: Any = None
     jobs: Jobs | None = None
     record: Callable[[], None] = lambda: None

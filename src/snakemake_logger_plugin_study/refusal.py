@@ -17,6 +17,7 @@ from pathlib import Path
 from burridge_knopoff.provenance.files import check_folder, display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from burridge_knopoff.values import format_value
+from snakemake_logger_plugin_study.targets import rule_with_wildcards, unknown_target
 
 #: The names of keys that Snakemake accepts.
 _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
@@ -46,11 +47,9 @@ _REPLACEMENTS = (
     ),
     # The error that a function of a rule raised, one line among the wildcards and the lines of code.
     (re.compile(r"^ *ConfigError: (.+)$", re.MULTILINE), r"\1"),
-    (
-        re.compile(r"^No rule to produce (.+?) \(if you", re.MULTILINE),
-        r"\1: unknown target (misspelt, or part of a stage disabled by `without`)",
-    ),
 )
+_UNKNOWN = re.compile(r"^No rule to produce (.+?) \(if you", re.MULTILINE)
+_WILDCARDS = re.compile(r"^Target rules may not contain wildcards", re.MULTILINE)
 
 
 def replacement(message: str) -> str | None:
@@ -59,7 +58,9 @@ def replacement(message: str) -> str | None:
         found = pattern.search(message)
         if found and not Path(found.groupdict().get("missing", "")).is_file():
             return found.expand(text)
-    return None
+    if found := _UNKNOWN.search(message):
+        return unknown_target(found[1])
+    return rule_with_wildcards() if _WILDCARDS.search(message) else None
 
 
 def provide_cache() -> None:

@@ -104,6 +104,7 @@ def record_study():
 
 
 PLAN.results, PLAN.workflow, PLAN.jobs = RESULTS, workflow, JOBS
+PLAN.config, PLAN.checkout = f"{CONFIG_FILE}", ROOT
 PLAN.record = record_study
 
 
