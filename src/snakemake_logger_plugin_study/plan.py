@@ -27,13 +27,13 @@ class Plan:
     """
 
     results: str = ""
-    config: str = ""
-    checkout: Path = Path()
     workflow: Any = None
     jobs: Jobs | None = None
     record: Callable[[], None] = lambda: None
     first: list[str] = field(default_factory=list)
     run: Run = field(default_factory=Run)
+    config: str = ""
+    checkout: Path = Path()
 
     def announce(self) -> None:
         """Plan the run that begins; if Snakemake's internals have changed, log a warning and plan nothing."""

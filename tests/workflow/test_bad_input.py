@@ -140,7 +140,7 @@ def test_a_target_that_the_config_excludes(tmp_path, change, target, words):
 
 
 def test_a_target_of_a_study_that_has_run_here_names_its_arguments(tmp_path):
-    other = load_study({"study": "other", "a": [0.05]}, "other.yaml")
+    other = load_study({"study": "other", "a": [0.05], "initial": {"minus": {}}}, "other.yaml")
     arguments = "--configfile mine/other.yaml --config window=100"
     write_study_record(tmp_path / "results/other", other.config, other.parameters, "mine/other.yaml", {}, arguments)
     run = Study(tmp_path, TINY).run("results/other/report.html")
