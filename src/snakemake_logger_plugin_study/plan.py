@@ -48,7 +48,8 @@ class Plan:
         if self.jobs is None:
             return Run()
         wanted = {job.rule.name for job in self.workflow.dag.jobs}
-        return Run(self.results, self._jobs(self.jobs), wanted, Durations(work_of(self.jobs), self._last()))
+        durations, touching = Durations(work_of(self.jobs), self._last()), getattr(self.workflow, "touch", False)
+        return Run(self.results, self._jobs(self.jobs), wanted, durations, touching=touching)
 
     def _last(self) -> dict[str, list[float]]:
         """Return {rule: seconds of each of its jobs in the last run, times their threads}."""

@@ -33,6 +33,8 @@ _REPLACEMENTS = (
         re.compile(r"\A(Reasons:\n|This was a dry-run |Some jobs were triggered by provenance |Rules with provenance)"),
         "",
     ),
+    # Written by --touch for each job; the closing lines count these files.
+    (re.compile(r"\AOutput files? not touched because "), ""),
     # The failed job is reported right after, with the reason from its log.
     (re.compile(r"\ARuleException:\s+CalledProcessError "), ""),
     # Written by --report for each file that is not made; the error that follows names one of them.

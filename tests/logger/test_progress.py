@@ -73,7 +73,7 @@ def test_the_pace_of_lines():
     lines = Lines(run, print)
     lines.close()
     begin, due = lines._time, []
-    for done, after in ((50, 9.9), (50, 10.0), (54, 69.9), (56, 69.9), (56, 129.8), (56, 129.9), (100, 300.0)):
+    for done, after in ((50, 9.9), (50, 10.0), (54, 69.9), (56, 69.9), (56, 129.8), (56, 130.0), (100, 300.0)):
         for number in range(done):
             run.jobs[number].state = DONE
         due.append(lines.is_due(begin + after))
