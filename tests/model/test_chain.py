@@ -90,7 +90,7 @@ def test_the_chain_of_the_paper():
             for key in ("coupling", "damping")
         ),
         ({"pulling_damping": [0.1]}, "chain.pulling_damping: got a list of 1 number, expected a number, or 3: one per"),
-        ({"grid": [1, 3], "damping": [0.1]}, "chain.damping: got [0.1], expected one number together with chain.grid"),
+        ({"grid": [1, 3], "damping": [0.1]}, "chain.damping: got a list of 1 number, expected one together with"),
         ({"coupling": [1.0, 1.0], "ends": "ring"}, "chain.coupling: got 2 numbers, expected 1, or 3"),
         ({"threshold": [1.0, 2.0]}, "chain.threshold: got 2 numbers, expected 1, or 3"),
         ({"pulling": "all"}, "chain.pulling: got 'all', expected neighbours or 0 or a number"),

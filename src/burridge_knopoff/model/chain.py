@@ -156,7 +156,8 @@ class Chain(Unchanging):
         for key in ("coupling", "damping"):
             value, usual = getattr(self, key), 1.0 if key == "coupling" else 0.0
             if isinstance(value, tuple):
-                raise refusal(f"chain.{key}", list(value), f"one number together with {given}")
+                count = f"{len(value)} numbers" if len(value) != 1 else "a list of 1 number"
+                raise ValueError(f"chain.{key}: got {count}, expected one together with {given}")
             if self.springs and value != usual:
                 raise ValueError(f"chain.{key}: got {value!r}, expected none together with {given}")
         if self.grid:
