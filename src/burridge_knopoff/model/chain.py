@@ -137,9 +137,9 @@ class Chain(Unchanging):
         for key in (*SPRING_PARAMETERS, *BLOCK_PARAMETERS):
             value, count = getattr(self, key), self.parameter_count(key)
             if isinstance(value, tuple) and len(value) != count:
-                got = (
-                    f"{len(value)} numbers, expected 1" if len(value) != 1 else "a list of 1 number, expected a number"
-                )
+                got = f"{len(value)} numbers, expected 1"
+                if len(value) == 1:
+                    got = "a list of 1 number, expected a number"
                 each = "spring" if key in SPRING_PARAMETERS else "block"
                 raise ValueError(f"chain.{key}: got {got}{f', or {count}: one per {each}' * (count > 1)}")
         if self.blocks == 1 and self.ends == "ring":
@@ -156,8 +156,8 @@ class Chain(Unchanging):
         for key in ("coupling", "damping"):
             value, usual = getattr(self, key), 1.0 if key == "coupling" else 0.0
             if isinstance(value, tuple):
-                count = f"{len(value)} numbers" if len(value) != 1 else "a list of 1 number"
-                raise ValueError(f"chain.{key}: got {count}, expected one together with {given}")
+                got = f"{len(value)} numbers" if len(value) != 1 else "a list of 1 number"
+                raise ValueError(f"chain.{key}: got {got}, expected one together with {given}")
             if self.springs and value != usual:
                 raise ValueError(f"chain.{key}: got {value!r}, expected none together with {given}")
         if self.grid:
