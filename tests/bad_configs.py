@@ -158,7 +158,10 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     ),
     "pulls": (f"{GOOD}chain: {{pulling: [1, 2]}}\n", ["chain.pulling: got 2 numbers, expected 1, or 3"]),
     "pull_word": (f"{GOOD}chain: {{pulling: all}}\n", ["chain.pulling: 'all'", "neighbours"]),
-    "thresholds": (f"{GOOD}chain: {{threshold: [1]}}\n", ["chain.threshold: got 1 numbers, expected 1, or 3"]),
+    "thresholds": (
+        f"{GOOD}chain: {{threshold: [1]}}\n",
+        ["chain.threshold: got a list of 1 number, expected a number, or 3"],
+    ),
     "weak": (f"{GOOD}chain: {{threshold: 0}}\n", ["chain.threshold: got 0, expected a number between 1e-06 and 1e+06"]),
     "spring_text": (f"{GOOD}chain: {{coupling: [1, stiff]}}\n", ["chain.coupling[1]: 'stiff'", "a number"]),
     "spring_word": (
@@ -189,7 +192,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     ),
     "springs_number": (f"{GOOD}chain: {{springs: 3}}\n", ["chain.springs: 3", "name of a text file"]),
     "light": (f"{GOOD}chain: {{mass: 0}}\n", ["chain.mass: got 0, expected a number between 1e-06 and 1e+06"]),
-    "masses": (f"{GOOD}chain: {{mass: [1]}}\n", ["chain.mass: got 1 numbers, expected 1, or 3"]),
+    "masses": (f"{GOOD}chain: {{mass: [1]}}\n", ["chain.mass: got a list of 1 number, expected a number, or 3"]),
     "drawn_law": (
         f"{GOOD}chain: {{mass: {{random: normal, low: 1, high: 2, seed: 1}}}}\n",
         ["chain.mass.random: 'normal'"],

@@ -428,6 +428,60 @@ def test_a_study_whose_config_has_changed_is_not_pruned(results, capsys):
     assert left.exists()
 
 
+FOREIGN = {
+    "another name": ({"study": "other"}, "study.json is the record of study other"),
+    "other runs": (
+        {"transient": 30},
+        "its files are not those of study.json ({point}: is another run: --transient 20.0 instead of --transient 30.0)",
+    ),
+    "other values": (
+        {"a": [0.06, 0.07], "solvers": {"a": [0.06]}},
+        "its files are not those of study.json ({other}: not made yet)",
+    ),
+    "fewer values": (
+        {"a": [0.08]},
+        "its files are not those of study.json ({summary}: was made with points.parameters",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", FOREIGN)
+@pytest.mark.parametrize("with_config", [True, False])
+def test_by_the_record_of_another_study_nothing_is_pruned(results, tmp_path, capsys, case, with_config):
+    """By such a record all files may be left over. Its config file may exist as well."""
+    change, words = FOREIGN[case]
+    given = {**read_yaml(results.parent.parent / "small.yaml"), **change}
+    foreign = load_study(given, "small.yaml")
+    config_file = tmp_path / "study" / "foreign.yaml"
+    if with_config:
+        config_file.write_text(json.dumps(given))
+    write_study_record(results, foreign.config, foreign.parameters, "foreign.yaml", given, "")
+    paths = {
+        "point": point(results, a="0.0500"),
+        "other": point(results, a="0.0600"),
+        "summary": results / "summary/mean_distance.nc",
+    }
+    before = sorted(results.rglob("*"))
+    for arguments in ([], ["--dry-run"]):
+        assert main(["prune", *arguments, str(results)]) == 2
+        said = capsys.readouterr()
+        assert said.out == ""
+        assert said.err.startswith(f"bk prune: {results}: {words.format(**paths)}")
+        assert said.err.endswith(": run snakemake first\n")
+        assert said.err.count("\n") == 1
+    assert sorted(results.rglob("*")) == before
+
+
+def test_no_folder_is_pruned_if_another_one_is_refused(results, capsys):
+    left, other = point(results, a="0.0600"), results.with_name("other")
+    shutil.copy(point(results), left)
+    shutil.copytree(results, other)
+    assert main(["prune", str(results), str(other)]) == 2
+    assert left.exists()
+    assert main(["prune", str(results)]) == 0
+    assert not left.exists()
+
+
 def test_a_config_that_has_changed_is_counted(results, capsys):
     (results.parent.parent / "small.yaml").write_text(CONFIG.replace("[0.05, 0.08]", "[0.08]"))
     assert main(["check", str(results)]) == 1

@@ -46,8 +46,8 @@ def real_array(values: Any, key: str) -> np.ndarray:
         array = np.ma.asarray(None)
     if array.dtype.kind not in "iuf":
         raise refusal(key, values, "an array of numbers")
-    filled: np.ndarray = np.ma.filled(array.astype(float), math.nan)
-    return filled
+    # A matrix of numpy would stay one, whose products and indices are others than those of arrays.
+    return np.asarray(np.ma.filled(array.astype(float), math.nan))
 
 
 def read_only_copy(array: np.ndarray) -> np.ndarray:

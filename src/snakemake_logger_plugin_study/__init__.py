@@ -139,7 +139,11 @@ class LogHandler(LogHandlerBase):
                 job.state = RUNNING
             case LogEvent.JOB_FINISHED if done := self._run.jobs.get(record.job_id):
                 done.seconds, done.state = measured_seconds(done.benchmark, done.threads), DONE
-                if done.name in PLAN.first and (line := first_figures_line(self._run, PLAN.first)):
+                if (
+                    not self._run.touching
+                    and done.name in PLAN.first
+                    and (line := first_figures_line(self._run, PLAN.first))
+                ):
                     self._write(line)
             case LogEvent.JOB_ERROR if failed := self._run.jobs.get(record.jobid):
                 failed.state = FAILED
@@ -160,6 +164,8 @@ class LogHandler(LogHandlerBase):
         if not run.jobs:
             # Without a plan, as without hooks, Snakemake's own messages are all there is.
             self._shows_routine = True
+            return
+        if run.touching:
             return
         self._write(first_line(run, self._begin))
         if self._quiet:

@@ -38,6 +38,8 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
             made,
             *_remedies(failed),
         ]
+    if run.touching:
+        return _touched(results, [path for job in done for path in job.output])
     lines = [f"study {results.name}: done in {format_elapsed(seconds)} {run.capacity}", made]
     # Older summaries say nothing about the run.
     for rule, (name, read) in _READERS.items():
@@ -70,13 +72,32 @@ def _remedies(failed: Sequence[Job]) -> list[str]:
     return ["Finished results are kept; the same command would fail again until the cause is removed."]
 
 
+def _touched(results: Path, paths: Sequence[str]) -> list[str]:
+    """Return what `snakemake --touch` did: it sets the times of files that exist, and makes none."""
+    missing = [path for path in paths if not Path(path).exists()]
+    lines = [
+        f"study {results.name}: {format_count(len(paths) - len(missing), 'file')} marked as up to date, whatever their "
+        f"content; bk check {results} says whether they are"
+    ]
+    if missing:
+        lines.append(f"not made yet, and left so: {_listed(results, missing)}; run the command without --touch")
+    return lines
+
+
 def _made_files(results: Path, made: Sequence[str]) -> str:
     if len(made) <= FEW_FILES:
-        return f"made: {', '.join(made) or 'nothing'}"
+        return f"made: {_listed(results, made)}"
+    return f"files made in {results}: {_listed(results, made)}"
+
+
+def _listed(results: Path, made: Sequence[str]) -> str:
+    """Return a few files by name, and more by the number in each folder."""
+    if len(made) <= FEW_FILES:
+        return ", ".join(made) or "nothing"
     inside = [Path(path).relative_to(results).parts for path in made if Path(path).is_relative_to(results)]
     folders = Counter(parts[0] for parts in inside if len(parts) > 1)
     names = [parts[0] for parts in inside if len(parts) == 1]
-    return f"files made in {results}: {', '.join([*(f'{name} {count}' for name, count in folders.items()), *names])}"
+    return ", ".join([*(f"{name} {count}" for name, count in folders.items()), *names])
 
 
 def _verdicts(path: Path) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from snakemake.logging import logger
@@ -18,6 +19,7 @@ from snakemake_logger_plugin_study.run import Job, Run
 class Plan:
     """The plan of a study, which the Snakefile fills in, and its run once it begins.
 
+    results, config, checkout : folder of its results, config file, and checkout of the workflow
     first : rules of the figures that are announced as soon as they are drawn
     record : records that the study was run with its config, even if there is nothing to do
     workflow : Snakemake's own object. No event contains the dependencies of jobs: only this class reads Snakemake's
@@ -30,6 +32,8 @@ class Plan:
     record: Callable[[], None] = lambda: None
     first: list[str] = field(default_factory=list)
     run: Run = field(default_factory=Run)
+    config: str = ""
+    checkout: Path = Path()
 
     def announce(self) -> None:
         """Plan the run that begins; if Snakemake's internals have changed, log a warning and plan nothing."""
@@ -44,7 +48,8 @@ class Plan:
         if self.jobs is None:
             return Run()
         wanted = {job.rule.name for job in self.workflow.dag.jobs}
-        return Run(self.results, self._jobs(self.jobs), wanted, Durations(work_of(self.jobs), self._last()))
+        durations, touching = Durations(work_of(self.jobs), self._last()), getattr(self.workflow, "touch", False)
+        return Run(self.results, self._jobs(self.jobs), wanted, durations, touching=touching)
 
     def _last(self) -> dict[str, list[float]]:
         """Return {rule: seconds of each of its jobs in the last run, times their threads}."""

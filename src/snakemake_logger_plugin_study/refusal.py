@@ -17,6 +17,7 @@ from pathlib import Path
 from burridge_knopoff.provenance.files import check_folder, display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from burridge_knopoff.values import format_value
+from snakemake_logger_plugin_study.targets import rule_with_wildcards, unknown_target
 
 #: The names of keys that Snakemake accepts.
 _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
@@ -32,6 +33,8 @@ _REPLACEMENTS = (
         re.compile(r"\A(Reasons:\n|This was a dry-run |Some jobs were triggered by provenance |Rules with provenance)"),
         "",
     ),
+    # Written by --touch for each job; the closing lines count these files.
+    (re.compile(r"\AOutput files? not touched because "), ""),
     # The failed job is reported right after, with the reason from its log.
     (re.compile(r"\ARuleException:\s+CalledProcessError "), ""),
     # Written by --report for each file that is not made; the error that follows names one of them.
@@ -46,11 +49,9 @@ _REPLACEMENTS = (
     ),
     # The error that a function of a rule raised, one line among the wildcards and the lines of code.
     (re.compile(r"^ *ConfigError: (.+)$", re.MULTILINE), r"\1"),
-    (
-        re.compile(r"^No rule to produce (.+?) \(if you", re.MULTILINE),
-        r"\1: unknown target (misspelt, or part of a stage disabled by `without`)",
-    ),
 )
+_UNKNOWN = re.compile(r"^No rule to produce (.+?) \(if you", re.MULTILINE)
+_WILDCARDS = re.compile(r"^Target rules may not contain wildcards", re.MULTILINE)
 
 
 def replacement(message: str) -> str | None:
@@ -59,7 +60,9 @@ def replacement(message: str) -> str | None:
         found = pattern.search(message)
         if found and not Path(found.groupdict().get("missing", "")).is_file():
             return found.expand(text)
-    return None
+    if found := _UNKNOWN.search(message):
+        return unknown_target(found[1])
+    return rule_with_wildcards() if _WILDCARDS.search(message) else None
 
 
 def provide_cache() -> None:

@@ -72,6 +72,7 @@ class Run:
     durations : durations of jobs, as known before the first one begins
     cores : number of cores, or of simultaneous jobs on a cluster; capacity : the same in words
     stopping : whether the user has ended the run by Ctrl-C
+    touching : whether the run only sets the times of files, as `snakemake --touch` does
     """
 
     results: str = ""
@@ -81,6 +82,7 @@ class Run:
     cores: float = 1.0
     capacity: str = "on 1 core"
     stopping: bool = False
+    touching: bool = False
     _last_forecast: tuple[float, float] | None = None
 
     def job(self, number: int, rule: str) -> Job:

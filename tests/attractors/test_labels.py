@@ -124,3 +124,10 @@ def returns_at(model, start, block):
     runner.run(500.0)
     events = runner.log.events.values()
     return events[(events[:, 0] == block) & (events[:, 1] == 0), 2:]
+
+
+@pytest.mark.filterwarnings("ignore:the matrix subclass")
+def test_states_may_be_a_matrix_of_numpy(found):
+    orbit, states, (labels, _) = found
+    few = [np.matrix(values[:20]) for values in states]
+    assert label_states(MODEL, [orbit], *few, time_limit=END)[0].tolist() == labels[:20].tolist()

@@ -73,7 +73,7 @@ def test_the_pace_of_lines():
     lines = Lines(run, print)
     lines.close()
     begin, due = lines._time, []
-    for done, after in ((50, 9.9), (50, 10.0), (54, 69.9), (56, 69.9), (56, 129.8), (56, 129.9), (100, 300.0)):
+    for done, after in ((50, 9.9), (50, 10.0), (54, 69.9), (56, 69.9), (56, 129.8), (56, 130.0), (100, 300.0)):
         for number in range(done):
             run.jobs[number].state = DONE
         due.append(lines.is_due(begin + after))
@@ -325,9 +325,8 @@ def test_snakemake_has_the_messages_that_are_replaced():
         assert replacement(unrecorded).startswith("3 jobs: .snakemake has no record of ")
     assert "Elapsed time: " in getsource(Workflow)
     missing = exceptions.MissingRuleException("x.nc")
-    assert replacement(exceptions.format_exception_to_string(missing)) == (
-        "x.nc: unknown target (misspelt, or part of a stage disabled by `without`)"
-    )
+    assert replacement(exceptions.format_exception_to_string(missing)) == "x.nc: unknown target"
+    assert '"Target rules may not contain wildcards. "' in getsource(sys.modules["snakemake.dag"])
 
 
 def test_a_report_before_a_run_is_refused_in_a_line(tmp_path):

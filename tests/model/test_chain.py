@@ -85,7 +85,12 @@ def test_the_chain_of_the_paper():
         *(({"blocks": blocks}, f"blocks: got {blocks}, expected") for blocks in (0, -3, 2_000_000)),
         *(({"blocks": blocks}, f"blocks: got {blocks}, expected a whole number") for blocks in (2.0, True)),
         ({"ends": "loose"}, "chain.ends: 'loose'"),
-        ({"coupling": [1.0]}, "chain.coupling: got 1 numbers, expected 1, or 2"),
+        *(
+            ({key: [0.1]}, f"chain.{key}: got a list of 1 number, expected a number, or 2: one per spring")
+            for key in ("coupling", "damping")
+        ),
+        ({"pulling_damping": [0.1]}, "chain.pulling_damping: got a list of 1 number, expected a number, or 3: one per"),
+        ({"grid": [1, 3], "damping": [0.1]}, "chain.damping: got a list of 1 number, expected one together with"),
         ({"coupling": [1.0, 1.0], "ends": "ring"}, "chain.coupling: got 2 numbers, expected 1, or 3"),
         ({"threshold": [1.0, 2.0]}, "chain.threshold: got 2 numbers, expected 1, or 3"),
         ({"pulling": "all"}, "chain.pulling: got 'all', expected neighbours or 0 or a number"),
@@ -108,6 +113,37 @@ def test_the_chain_of_the_paper():
 def test_refused(options, message):
     with refused(message):
         Chain(**options)
+
+
+@pytest.mark.parametrize(
+    ("blocks", "values", "message"),
+    [
+        (2, [0.1, 0.2], "chain.damping: got 2 numbers, expected 1"),
+        (1, [0.1], "chain.damping: got a list of 1 number, expected a number"),
+    ],
+)
+def test_a_list_for_fewer_than_two_springs_is_refused(blocks, values, message):
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        Chain(blocks, damping=values)
+
+
+@pytest.mark.filterwarnings("ignore:the matrix subclass")
+@pytest.mark.parametrize("chain", [Chain(3, damping=0.5, pulling_damping=0.2), Chain(grid=[1, 3], damping=0.5)])
+def test_forces_on_anything_that_numpy_reads(chain):
+    """A matrix of numpy is a table of numbers like any other."""
+    values = np.array([[-0.9, -1.1, -1.0], [0.3, 0.1, 0.2]])
+    for force in (chain.force, lambda values: chain.damping_force(values, 0.1)):
+        expected = force(values)
+        assert np.array_equal(expected, np.array([force(row) for row in values]))
+        for form in (np.matrix(values), values.tolist(), np.ma.masked_array(values)):
+            found = force(form)
+            assert type(found) is np.ndarray
+            assert np.array_equal(found, expected)
+        for form in (values[:, :2], np.matrix(values).T, 1.0, []):
+            with refused("expected shape (…, 3): one number per block on the last axis"):
+                force(form)
+        with refused("expected an array of numbers"):
+            force("far")
 
 
 def test_cached_arrays_are_read_only():

@@ -1,18 +1,23 @@
 """Files are written completely or not at all."""
 
 import errno
+import io
 import os
 import re
 import signal
+import subprocess
+import sys
 from functools import partial
 
 import pytest
 
 from burridge_knopoff.provenance.files import (
+    ROOM,
     check_folder,
     check_target,
     display_path,
     nearest_folder,
+    reserve_room,
     write_text,
     write_whole,
 )
@@ -125,3 +130,47 @@ def test_display_path(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert display_path(tmp_path / "config" / "x.yaml") == "config/x.yaml"
     assert display_path("/etc/x.yaml") == "/etc/x.yaml"
+
+
+RESERVES = """
+import os, sys
+from burridge_knopoff.provenance.files import ROOM, reserve_room
+reserve_room(sys.stderr)
+print(os.fstat(2).st_size == ROOM, file=sys.stdout)
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "before", "after"),
+    [
+        ("pass", "", ""),
+        ("sys.stderr.write('why')", "", "why"),
+        ("sys.stderr.write('x' * 20_000)", "", "x" * 20_000),
+        ("raise SystemExit('why')", "", "why\n"),
+        # A log of an earlier run is not touched, nor one to which others append.
+        ("sys.stderr.write('why')", "earlier", "earlierwhy"),
+    ],
+)
+def test_room_for_the_last_words_is_given_back(tmp_path, code, before, after):
+    log = tmp_path / "log"
+    log.write_text(before)
+    with log.open("a" if before else "w") as stream:
+        command = [sys.executable, "-c", f"{RESERVES}{code}"]
+        run = subprocess.run(command, stdout=subprocess.PIPE, stderr=stream, text=True, check=False)
+    assert (run.stdout, log.read_text()) == (f"{not before}\n", after)
+
+
+def test_room_of_a_killed_process_is_blank(tmp_path):
+    log = tmp_path / "log"
+    with log.open("w") as stream:
+        code = f"{RESERVES}sys.stderr.write('a warning\\n'); sys.stderr.flush(); os.kill(os.getpid(), 9)"
+        subprocess.run([sys.executable, "-c", code], stdout=subprocess.DEVNULL, stderr=stream, check=False)
+    assert log.read_text().split() == ["a", "warning"]
+    assert len(log.read_text()) == ROOM
+
+
+def test_streams_that_are_no_files_are_left_alone():
+    reserve_room(None)
+    reserve_room(io.StringIO())
+    with open("/dev/null", "w") as stream:
+        reserve_room(stream)

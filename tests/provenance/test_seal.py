@@ -11,7 +11,15 @@ import xarray as xr
 from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.point_identity import point_identity
-from burridge_knopoff.provenance.seal import BadFile, check_seal, read_seal, seal_path, write_sealed, write_sealed_text
+from burridge_knopoff.provenance.seal import (
+    BadFile,
+    check_seal,
+    describe_difference,
+    read_seal,
+    seal_path,
+    write_sealed,
+    write_sealed_text,
+)
 from tests.optional import needs, setting
 
 
@@ -95,6 +103,33 @@ def test_differences_are_named(tmp_path, name):
             check_seal(path, {**ABOUT, **change})
         assert (caught.value.reason, caught.value.kind) == (words, "stale")
     assert check_seal(path, {**ABOUT, "sources": "cd"}, any_sources=True) == "made"
+
+
+LONG = [round(0.01 * number, 2) for number in range(40)]
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "words"),
+    [
+        (LONG, [*LONG[:-1], 0.7], "key[39]: got 0.39, expected 0.7"),
+        ({"a": LONG}, {"a": [*LONG[:20], 0.205, *LONG[20:]]}, "key.a[20]: got 0.2, expected 0.205"),
+        (LONG, [*LONG, None], "key: got 40 entries, expected 41 entries"),
+        ([LONG, LONG], [LONG, LONG[:-1]], "key[1]: got 40 entries, expected 39 entries"),
+        ([*LONG, {"a": 1}], [*LONG, {"a": 2}], "key[40].a: got 1, expected 2"),
+        ([*LONG, None], [*LONG, {}], "key[40]: got nothing, expected {}"),
+        ([0.1, 0.2], [0.1], "key: got [0.1, 0.2], expected [0.1]"),
+        (f"{'x' * 100}1", f"{'x' * 100}2", f"key: got …{'x' * 30}1, expected …{'x' * 30}2"),
+        ("y" * 100, "z" * 100, f"key: got {'y' * 60}…, expected {'z' * 60}…"),
+        (f"{'x' * 100}", f"{'x' * 101}", f"key: got …{'x' * 30}, expected …{'x' * 31}"),
+        ("1", 1, 'key: got "1", expected 1'),
+        ("nothing", None, 'key: got "nothing", expected null'),
+        (10**80, 10**80 + 1, f"key: got …{'0' * 31}, expected …{'0' * 30}1"),
+    ],
+)
+def test_a_difference_is_seen_however_long_the_values_are(one, other, words):
+    """Of a long value the part that differs is shown."""
+    found, expected = {"file": "x", "key": one}, {"file": "x", "key": other}
+    assert describe_difference("key", found, expected) == f"was made with {words}"
 
 
 @pytest.mark.parametrize("suffix", ["txt", "json", "png"])

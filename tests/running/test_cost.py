@@ -1,9 +1,22 @@
 """The estimate of the cost of a run."""
 
+import time
+import warnings
+
 import pytest
 
-from burridge_knopoff import Chain, InitialState, Model, Settings, law_of
-from burridge_knopoff.running.cost import cost_of
+from burridge_knopoff import Chain, InitialState, Model, Settings, law_of, simulate, sweep
+from burridge_knopoff.running.cost import cost_note, cost_of, is_stiff
+from burridge_knopoff.running.simulation import run
+from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.study import remarks
+
+STIFF = {
+    "damping": {"damping": 1e4},
+    "one damping": {"damping": [1e4, 0.0]},
+    "pulling_damping": {"pulling_damping": [0.0, 1e4, 0.0]},
+    "coupling": {"coupling": 1e6},
+}
 
 
 @pytest.mark.parametrize("exponents", [0, 3])
@@ -23,3 +36,62 @@ def test_blocks_that_stick_share_no_event_without_exponents():
     assert begun.stuck.all()
     assert cost_of(model, begun, Settings(lyapunov_exponents=0))[0] == 0.0
     assert cost_of(model, begun, Settings())[0] > 0.05
+
+
+@pytest.mark.parametrize("case", STIFF)
+@pytest.mark.parametrize("exponents", [0, 3])
+def test_the_cost_of_a_stiff_chain_is_that_measured(case, exponents):
+    """Within a factor of six, on this machine; without the rate it is a thousand times too small."""
+    model = Model(Chain(3, **STIFF[case]), law_of("linearized", 0.1))
+    settings = Settings(transient=0.0, window=2e4 / model.chain.highest_rate, lyapunov_exponents=exponents)
+    state = InitialState("apart", (-0.98, -0.95, -0.96), (0.1, 0.11, 0.105))
+    taken = []
+    for _ in range(3):
+        begun = time.process_time()
+        assert run(model, state, settings).status == "completed"
+        taken.append(time.process_time() - begun)
+    found = cost_of(model, model.begin(state), settings)[0] * settings.duration
+    assert is_stiff(model.chain)
+    assert min(taken) / 6.0 < found < 6.0 * min(taken)
+
+
+@pytest.mark.parametrize(
+    ("chain", "words"),
+    [
+        ({"damping": 1e6}, "the step is set by the highest decay rate of the dashpots, 4e+06"),
+        ({"pulling_damping": [0.0, 1e6, 0.0]}, "the step is set by the highest decay rate of the dashpots, 1e+06"),
+        ({"coupling": 1e6, "mass": 1e-6}, "the step is set by the highest frequency of the springs, 2e+06"),
+    ],
+)
+def test_a_stiff_chain_is_announced_wherever_a_run_begins(chain, words):
+    """In a study before it runs, and in a program; the time is that of the whole run."""
+    settings = Settings(transient=0.0, window=1e-3, batches=2)
+    model = Model(Chain(3, **chain), law_of("linearized", 0.1))
+    state = InitialState("apart", (-0.98, -0.95, -0.96), (0.1, 0.11, 0.105))
+    assert cost_note(model, model.begin(state), settings) == ""
+    long = cost_note(model, model.begin(state), Settings())
+    assert long.startswith("3 blocks: about ")
+    assert " per time unit, " in long
+    assert long.endswith(f" for the run if they keep slipping: {words}")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        simulate(model, initial=state, settings=settings)
+        with pytest.raises(UserWarning, match="the step is set by the highest") as caught:
+            simulate(model, initial=state)
+        assert str(caught.value) == long
+        with pytest.raises(UserWarning, match="the step is set by the highest"):
+            sweep(model, initial=state, v=[0.1, 0.2])
+    states = {"apart": {"position": list(state.position), "velocity": list(state.velocity)}}
+    study = load_study(
+        {"study": "stiff", "a": [0.1], "initial": states, "chain": chain, "without": ["solvers"]}, "stiff.yaml"
+    )
+    assert remarks(study, {}) == [f"each run: {long}"]
+
+
+def test_nothing_is_said_of_the_chains_of_the_paper():
+    for config in ({"a": [0.1]}, {"grid": {"a": [0.1], "coupling": [0.1, 10.0]}}):
+        study = load_study({"study": "usual", "initial": {"minus": {}}, **config}, "usual.yaml")
+        assert remarks(study, {}) == []
+    grid = {"a": [0.1], "damping": [0.0, 1e6]}
+    study = load_study({"study": "one", "initial": {"minus": {}}, "grid": grid}, "one.yaml")
+    assert [line.rpartition(", ")[2] for line in remarks(study, {})] == ["4e+06"]

@@ -36,7 +36,7 @@ BAD_CHANGES = [
     ({"initial": ["plus"]}, ["initial: ['plus']"]),
     ({"initial": {"two words": PAIR}}, ["'two words'"]),
     ({"initial": {"x": {**PAIR, "speed": 1}}}, ["initial.x.speed: unknown key"]),
-    ({"initial": {"x": {**PAIR, "velocity": [0.1]}}}, ["initial.x.velocity: got 1 numbers, expected 2"]),
+    ({"initial": {"x": {**PAIR, "velocity": [0.1]}}}, ["initial.x.velocity: got 1 number, expected 2"]),
     ({"initial": {"x": {**PAIR, "velocity": [0.1, 0.1, 0.1]}}}, ["initial.x.velocity: got 3 numbers, expected 2"]),
     ({"initial": {"x": {**PAIR, "position": [0.1, NAN]}}}, ["initial.x.position[1]: nan"]),
     ({"initial": {"x": {**PAIR, "position": [0.1, "b"]}}}, ["initial.x.position[1]: 'b'"]),

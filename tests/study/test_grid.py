@@ -1,11 +1,12 @@
 """Grids of several parameters: points, file names and models, and a one-line message for each error."""
 
-from itertools import chain, pairwise
+from itertools import chain, pairwise, product
 
 import pytest
 
 from burridge_knopoff.check.leftovers import leftovers
 from burridge_knopoff.jobs.jobs import Jobs
+from burridge_knopoff.provenance.files import write_text
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.study.chunks import MOST, chunks
 from burridge_knopoff.study.load import load_study
@@ -146,3 +147,27 @@ def test_a_point_that_fails_is_named_with_its_command_and_the_others_are_made(tm
         make_points(study, all_points(study), tmp_path)
     assert {path.name for path in tmp_path.rglob("*") if path.is_file()} == {"a0.1000_v0.1000.nc", "a0.1000_v0.2000.nc"}
     assert make_points(study, [point for point in all_points(study) if point["a"] == "0.1000"], tmp_path) == 0
+
+
+def test_a_grid_whose_file_names_are_too_long_is_refused(tmp_path):
+    """What is accepted can be written in a file system with names of at most 255 bytes, and nothing longer."""
+    lengths = {True: set(), False: set()}
+    for count, longer in product((15, 16), range(16)):
+        state = {"wave": {"position": [-0.9] * 24, "velocity": [0.1] * 24}}
+        values = {block: 1.0 if block > longer else 10.0 for block in range(1, count + 1)}
+        grid = {"a": [0.05], **{f"mass[{block}]": [value] for block, value in values.items()}}
+        name = "_".join(["a0.0500", *(f"mass_{block}_{value:.4f}" for block, value in values.items())]) + ".nc"
+        words = ""
+        try:
+            load(initial=state, grid=grid, chain={"blocks": 24})
+        except ConfigError as error:
+            words = str(error)
+        lengths[not words].add(len(name))
+        if words:
+            assert words.startswith(f"plane.yaml: grid: got points with file names of {len(name)} letters (a0.0500_mas")
+            assert words.endswith("expected at most 240: fewer parameters, shorter numbers, or fewer a_digits")
+            with pytest.raises(OSError, match="File name too long"):
+                write_text(tmp_path / name, "")
+        else:
+            write_text(tmp_path / name, "")
+    assert (max(lengths[True]), min(lengths[False])) == (240, 241)

@@ -142,7 +142,17 @@ def remedies(text: str) -> list[str]:
 def differences(study: Study, other: Study, *folders: str) -> list[str]:
     """Return the files in which two studies differ, and temporary files."""
     mine, theirs = (each.files(*(folders or COMPARED)) for each in (study, other))
+    if not folders:
+        mine["report.html"], theirs["report.html"] = map(report_without_times, (study, other))
     return sorted(name for name in mine.keys() | theirs.keys() if mine.get(name) != theirs.get(name))
+
+
+def report_without_times(study: Study) -> bytes:
+    """Return the report of a study without its section on the seconds and the memory of jobs."""
+    page = next((study.folder / "results").glob("*/report.html")).read_bytes()
+    whole, count = re.subn(rb'<section id="run-time".*?</section>', b"", page, flags=re.DOTALL)
+    assert count == 1
+    return whole
 
 
 def check_end(study: Study, other: Study, *targets: str, folders: Collection[str] = ()) -> None:

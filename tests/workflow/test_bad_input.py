@@ -10,6 +10,8 @@ from typing import Any
 import pytest
 
 from burridge_knopoff.provenance.files import write_text
+from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.study.load import load_study
 from tests.bad_configs import BAD_FILES, FIRST_OF_KEYS, GOOD
 from tests.workflow.conftest import TINY, Study
 from tests.workflow.snakemake import run_snakemake
@@ -55,31 +57,94 @@ def test_a_bad_config(tmp_path, case):
 
 POINTS = "results/tiny/points/linearized"
 TARGETS = {
-    "nothing.nc": ["nothing.nc: unknown target"],
-    "point": ["point: unknown target"],
+    "nothing.nc": ["nothing.nc: unknown target: this study makes files in results/tiny"],
+    "simulate": [
+        "simulate: not a target, since its jobs differ in law, initial, a: name a file, such as "
+        "results/tiny/points/linearized/minus/a0.0500.nc, or the stage points, which makes all of them"
+    ],
+    "point": ["point: unknown target: no rule of that name (did you mean points?)"],
+    "Curves": ["Curves: unknown target: no rule of that name (did you mean curves?)"],
+    "nothing": ["nothing: unknown target: no rule of that name; snakemake --list-target-rules prints the names"],
+    "results/tiny/figures/orbit.png": [
+        "orbit.png: unknown target: no figure has that name (did you mean results/tiny/figures/orbits.png?)"
+    ],
+    "results/tiny/figures/nothing.png": [
+        "nothing.png: unknown target: no figure has that name; snakemake --list-rules says what each rule makes"
+    ],
+    "results/velocity/report.html": [
+        "results/velocity/report.html: unknown target: a file of study velocity, and this is study tiny: ",
+        "snakemake -c2 results/velocity/report.html --configfile ",
+        "config/examples/velocity.yaml",
+    ],
+    "results/tinny/report.html": ["of study tinny, and this is study tiny (did you mean results/tiny/report.html?)"],
+    "report.html": ["report.html: unknown target: write results/tiny/report.html"],
+    "results/tiny/figures": ["it is a folder: name a file in it, or a rule, such as figures"],
+    "results/tiny/summary/grid.nc": ["only a study of several parameters has it: `grid: {a: …, v: …}`"],
+    "edges": ["edges: unknown target: study tiny: no edge states: add `edges: {}` to its config"],
+    "catalogue": ["no catalogues of slip events: add `catalogue: {}` to its config"],
     f"{POINTS}/plus/a0.0810.nc": ["a0.0810: not a point of study tiny", "grid"],
     f"{POINTS}/plus/a0.08.nc": ["a0.08: not a point of study tiny; write a0.0800"],
-    f"{POINTS}/middle/a0.0800.nc": ["middle/a0.0800.nc: unknown target"],
-    "results/tiny/points/linear/plus/a0.0800.nc": ["linear/plus/a0.0800.nc: unknown target"],
+    f"{POINTS}/middle/a0.0800.nc": ["middle/a0.0800.nc: unknown target: initial: got middle, expected minus | plus"],
+    "results/tiny/points/linear/plus/a0.0800.nc": [
+        "linear/plus/a0.0800.nc: unknown target: law: got linear, expected linearized | nonlinear"
+    ],
     "results/other/points/linearized/plus/a0.0800.nc": [
-        "results/other/points/linearized/plus/a0.0800.nc: unknown target"
+        "results/other/points/linearized/plus/a0.0800.nc: unknown target: a file of study other",
+        "snakemake -c2 results/other/points/linearized/plus/a0.0800.nc --configfile FILE",
     ],
     "results/tiny/../tiny/summary/nothing.nc": ["nothing.nc: unknown target"],
     "results/tiny/solvers/linearized/map/plus/a0.2000.nc": ["linearized/map/plus/a0.2000.nc: unknown target"],
     "results/tiny/solvers/linearized/euler/plus/a0.2000.nc": ["euler/plus/a0.2000.nc: unknown target"],
-    "results/tiny/basins/linearized/a0.0500/tile9.nc": ["linearized/a0.0500/tile9.nc: unknown target"],
+    "results/tiny/basins/linearized/a0.0500/tile9.nc": ["tile9.nc: unknown target: tile: got 9, expected 0 | 1"],
     "results/tiny/basins/linearized/a0.0510/tile0.nc": ["a0.0510: not a point of study tiny"],
     "results/tiny/basins/linearized/a0.0510/pairs.nc": ["a0.0510: not a point of study tiny"],
-    "results/tiny/chains/blocks11.nc": ["results/tiny/chains/blocks11.nc: unknown target"],
-    "results/tiny/attractors/linear.nc": ["results/tiny/attractors/linear.nc: unknown target"],
-    "results/tiny/summary/solvers.csv": ["solvers.csv: unknown target"],
-    "results/tiny/figures/motion_middle.pdf": ["motion_middle.pdf: unknown target"],
+    "results/tiny/chains/blocks11.nc": ["chains/blocks11.nc: unknown target: blocks: got 11, expected 10 | 9 "],
+    "results/tiny/attractors/linear.nc": ["attractors/linear.nc: unknown target: law: got linear"],
+    "results/tiny/summary/solvers.csv": [
+        "solvers.csv: unknown target: no summary",
+        "(did you mean results/tiny/summary/solvers.nc?)",
+    ],
+    "results/tiny/figures/motion_middle.pdf": ["motion_middle.pdf: unknown target: initial: got middle"],
 }
 
 
 @pytest.mark.parametrize("target", some(TARGETS, 5))
 def test_a_target_that_does_not_belong_to_the_study(tmp_path, target):
     check(Study(tmp_path, TINY).run(target), tmp_path, ["study.yaml"], TARGETS[target])
+
+
+LEFT_OUT = "without: [attractors, proof]\n"
+ONE_LAW = "laws: {linearized: {}}\nchain: {mass: [1, 1, 1.2]}\n"
+
+
+@pytest.mark.parametrize(
+    ("change", "target", "words"),
+    [
+        (LEFT_OUT, "proof", "proof: unknown target: part of stage proof: remove proof from `without: [attractors, pr"),
+        (LEFT_OUT, "results/tiny/summary/attractors.nc", "part of stage attractors: remove attractors from `without"),
+        (LEFT_OUT, "basins", "part of stage basins, which needs attractors: remove attractors from `without"),
+        (LEFT_OUT, "results/tiny/figures/branches_reached.png", "part of stage attractors: remove attractors from"),
+        (ONE_LAW, "results/tiny/figures/agreement.png", "not made, since it needs a second law in `laws`"),
+        (ONE_LAW, "figure_orbits", "not made, since it needs a mirror-symmetric chain of 3 blocks"),
+        (ONE_LAW, "chains", "chains: unknown target: chain.mass: got [1.0, 1.0, 1.2], expected one number"),
+        (ONE_LAW, "watch_chain", "watch_chain: not a target: chain.mass: got [1.0, 1.0, 1.2], expected one number"),
+    ],
+)
+def test_a_target_that_the_config_excludes(tmp_path, change, target, words):
+    """The message names the key that decides."""
+    run = Study(tmp_path, f"{TINY}{change}").run("-n", target)
+    assert run.returncode == 1
+    lines = (run.stdout + run.stderr).splitlines()
+    assert len([line for line in lines if words in line]) == 1
+    assert not any("Exception" in line or "WorkflowError" in line or line.startswith("    ") for line in lines)
+
+
+def test_a_target_of_a_study_that_has_run_here_names_its_arguments(tmp_path):
+    other = load_study({"study": "other", "a": [0.05], "initial": {"minus": {}}}, "other.yaml")
+    arguments = "--configfile mine/other.yaml --config window=100"
+    write_study_record(tmp_path / "results/other", other.config, other.parameters, "mine/other.yaml", {}, arguments)
+    run = Study(tmp_path, TINY).run("results/other/report.html")
+    assert f"and this is study tiny: snakemake -c2 results/other/report.html {arguments}\n" in run.stderr
 
 
 CONFIG = ["--configfile", "study.yaml"]

@@ -169,6 +169,27 @@ def test_a_full_disk(finished, copy, path, free, log):
 
 
 @needs_mounts
+@pytest.mark.parametrize("free", [40960, 81920, 131072])
+def test_a_disk_that_two_jobs_fill(tmp_path, free):
+    """Their logs are on it as well, and it has room again as soon as both have given up."""
+    study = Study(tmp_path / "study", LIMITS)
+    results = study.folder / "results/limits"
+    results.mkdir(parents=True)
+    points = [f"points/{law}/minus/a0.0500" for law in ("linearized", "nonlinear")]
+    with small_disk(results, free):
+        run = study.run(*(f"results/limits/{point}.nc" for point in points))
+        assert run.returncode == 1
+        reasons = failures(run.stderr)
+        for point in points:
+            log = f"simulate/{point.removeprefix('points/')}.log"
+            if log in reasons:
+                assert reasons[log].endswith(f"{point}.nc: cannot be written: No space left on device")
+                text = (results / "logs" / log).read_text()
+                assert text.endswith("No space left on device\n")
+        assert reasons
+
+
+@needs_mounts
 def test_results_that_become_read_only(finished, study):
     process = begin(study, "points")
     points = study.folder / "results" / "tiny" / "points"

@@ -12,6 +12,7 @@ from playwright.sync_api import sync_playwright
 
 from burridge_knopoff.figures.description import figure_descriptions
 from tests.optional import launch_chromium, needs
+from tests.workflow.faults import report_without_times
 
 CATEGORIES = {
     "Claims": ["claims.csv"],
@@ -103,3 +104,16 @@ def test_a_browser_without_a_network_shows_it(report):
         browser.close()
     assert errors == []
     assert width > 1500
+
+
+def test_the_report_of_the_study_differs_between_runs_only_in_what_the_jobs_took(finished, copy):
+    page = copy.folder / "results/tiny/report.html"
+    before = page.read_bytes()
+    for times in (page.parent / "benchmarks").rglob("*.tsv"):
+        names, values = (line.split("\t") for line in times.read_text().splitlines()[:2])
+        times.write_text("\n".join(["\t".join(names), "\t".join(["12345.6", *values[1:]]), ""]))
+    page.unlink()
+    copy.ok("results/tiny/report.html")
+    assert b"12345.6" in page.read_bytes()
+    assert page.read_bytes() != before
+    assert report_without_times(copy) == report_without_times(finished)

@@ -7,7 +7,7 @@ import subprocess
 
 import pytest
 
-from tests.workflow.conftest import LIMITS, TINY, Study
+from tests.workflow.conftest import LIMITS, TINY, Study, copied
 from tests.workflow.snakemake import run_snakemake
 
 
@@ -175,3 +175,26 @@ def test_only_new_values_of_a_wider_grid_are_searched(copy):
     assert before < after
     assert len(after) == values + 1
     assert len(list(folder.iterdir())) == 1
+
+
+def test_touch_makes_no_file_and_says_so(tmp_path, limited):
+    """It sets the times of files that exist. A damaged picture stays as it is, since nothing recreates it."""
+    study = copied(limited.folder, tmp_path / "study")
+    results = study.folder / "results/limits"
+    for name in ("summary/mean_distance.nc", "figures/orbits.png", "figures/orbits.pdf", "report.html"):
+        (results / name).unlink()
+    picture = results / "figures/equilibrium.png"
+    picture.write_bytes(b"damaged")
+    files = {path for path in results.rglob("*") if path.is_file() and path.suffix != ".log"}
+    output = study.ok("--touch")
+    assert {path for path in results.rglob("*") if path.is_file() and path.suffix != ".log"} == files
+    assert re.search(r"figures/equilibrium\.png: .*: it would be recreated$", output, re.MULTILINE)
+    assert not re.search(r"^files made|^study limits: done|cannot be read|not touched because", output, re.MULTILINE)
+    assert re.search(r"^study limits: \d+ files marked as up to date, whatever their content; bk check", output, re.M)
+    left = "not made yet, and left so: summary 1, figures 2, report.html; run the command without --touch"
+    assert left in output.splitlines()
+    # Without --touch they are made.
+    again = study.ok()
+    assert "equilibrium.png" in again
+    assert picture.read_bytes() == (limited.folder / "results/limits/figures/equilibrium.png").read_bytes()
+    assert (results / "report.html").is_file()

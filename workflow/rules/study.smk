@@ -104,6 +104,7 @@ def record_study():
 
 
 PLAN.results, PLAN.workflow, PLAN.jobs = RESULTS, workflow, JOBS
+PLAN.config, PLAN.checkout = f"{CONFIG_FILE}", ROOT
 PLAN.record = record_study
 
 
@@ -156,26 +157,26 @@ def prepare_results():
     PLAN.announce()
 
 
-def remove_damaged():
-    """Remove damaged files that no job reads, such as pictures; the run recreates them."""
-    is_dry_run = workflow.output_settings.dryrun
+def remove_damaged(recreates):
+    """Remove damaged files that no job reads, such as pictures, if the run recreates them."""
     for path, reason in damaged_files(JOBS, Path(RESULTS)):
         write_line(
-            f"{path}: {reason}: it {'would be' if is_dry_run else 'is'} recreated"
+            f"{path}: {reason}: it {'is' if recreates else 'would be'} recreated"
         )
-        if not is_dry_run:
+        if recreates:
             path.unlink()
 
 
 def prepared(execute):
     """Return a function that removes damaged files before Snakemake decides which jobs to run."""
 
-    def execute_prepared(*args, **kwargs):
-        remove_damaged()
+    def execute_prepared(executor_plugin, *args, **kwargs):
+        # The executors that run no job.
+        remove_damaged(recreates=executor_plugin.name not in ("dryrun", "touch"))
         # A dry run calls no hook.
         if workflow.output_settings.dryrun:
             print_remarks()
-        return execute(*args, **kwargs)
+        return execute(executor_plugin, *args, **kwargs)
 
     return execute_prepared
 

@@ -4,6 +4,10 @@ import sys
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
 
+from burridge_knopoff.provenance.files import reserve_room
+
+reserve_room(sys.stderr)
+
 from pathlib import Path
 
 from burridge_knopoff.provenance.record import read_study_record

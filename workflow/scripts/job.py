@@ -6,6 +6,10 @@ import sys
 from pathlib import Path
 
 sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+
+from burridge_knopoff.provenance.files import reserve_room
+
+reserve_room(sys.stderr)
 logging.basicConfig(format="%(message)s")
 logging.getLogger("burridge_knopoff").setLevel(logging.INFO)
 abouts = snakemake.params.abouts

@@ -210,3 +210,26 @@ def config_change(results: Path, record: dict[str, Any]) -> Finding | None:
         reason = str(error).partition(": ")[2]
         return Finding("stale", file, f"{reason}; the config of the last run is checked")
     return None
+
+
+def check_record(results: Path) -> None:
+    """Refuse a folder whose record is not that of its files, since by it all of them could be left over.
+
+    Raises ValueError, one line, if the config file has changed, if the record is of a study of another name, if a file
+    was made from another config or other sources, or if a point is missing.
+    """
+    record, study = recorded_study(results)
+    change = config_change(results, record)
+    reason = ""
+    if change and change.kind == "stale":
+        reason = f"{record['config_file']} has changed since the last run"
+    elif study.name != results.resolve().name:
+        reason = f"{NAME} is the record of study {study.name}"
+    else:
+        for finding in check_study(results).findings:
+            is_point = finding.path.is_relative_to(results / "points")
+            if finding.kind == "stale" or (finding.kind == "missing" and is_point):
+                reason = f"its files are not those of {NAME} ({finding.path}: {finding.reason})"
+                break
+    if reason:
+        raise ValueError(f"{results}: {reason}: run snakemake first")

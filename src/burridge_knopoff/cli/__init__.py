@@ -82,6 +82,7 @@ def build_parser(only: str | None = None) -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run `bk`; return its exit code: 0, or 2 for wrong input (one line on stderr)."""
     from burridge_knopoff.cli.options import check_output, join_signed
+    from burridge_knopoff.provenance.files import reserve_room
 
     if sys.stdout is None:
         # A standard stream is closed: the next file opened would take its place.
@@ -89,6 +90,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if isinstance(sys.stdout, io.TextIOWrapper):
         # File names may contain characters that the terminal cannot encode.
         sys.stdout.reconfigure(errors="backslashreplace")
+    if arguments is None:
+        reserve_room(sys.stderr)
     # Pictures are written to files. A notebook may name a backend that is not installed, and matplotlib would not load.
     os.environ.pop("MPLBACKEND", None)
     given = join_signed(sys.argv[1:] if arguments is None else arguments)

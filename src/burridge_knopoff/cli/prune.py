@@ -6,7 +6,8 @@ import argparse
 from pathlib import Path
 
 DESCRIPTION = """Delete and list files of laws, initial states, values of a and stages that are no longer in the config
-of the last run, with their logs and benchmarks. Files with other names are kept."""
+of the last run, with their logs and benchmarks. Files with other names are kept. Nothing is deleted if a point is
+missing or a file is stale, since the record of the last run may then be that of another study."""
 
 EXAMPLES = """  bk prune --dry-run results/paper
   bk prune results/paper
@@ -22,19 +23,16 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def run(options: argparse.Namespace) -> int:
     """Delete leftover files, and print how many."""
     from burridge_knopoff.check.leftovers import delete, leftovers
-    from burridge_knopoff.check.study import config_change
+    from burridge_knopoff.check.study import check_record
     from burridge_knopoff.jobs.jobs import Jobs
     from burridge_knopoff.study.formatting import format_count
     from burridge_knopoff.study.recorded import recorded_study
 
-    studies = []
-    for folder in map(Path, options.results):
-        record, study = recorded_study(folder)
-        if (found := config_change(folder, record)) and found.kind == "stale":
-            raise ValueError(f"{folder}: {record['config_file']} has changed since the last run: run snakemake first")
-        studies.append((folder, study))
-    for folder, study in studies:
-        left = leftovers(folder, Jobs(study))
+    folders = list(map(Path, options.results))
+    for folder in folders:
+        check_record(folder)
+    for folder in folders:
+        left = leftovers(folder, Jobs(recorded_study(folder)[1]))
         for path in left:
             print(path)
         if not options.dry_run:

@@ -15,8 +15,6 @@ from burridge_knopoff.running.status import EXIT_CODE
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
 if TYPE_CHECKING:
-    from burridge_knopoff.model.initial import InitialState
-    from burridge_knopoff.model.model import Model
     from burridge_knopoff.running.trajectory import Trajectory
 
 DESCRIPTION = """Run one simulation and write it as a netCDF point file.
@@ -51,11 +49,13 @@ def run(options: argparse.Namespace) -> int:
     """Run a simulation, write its file, and print the outcome in a line."""
     from burridge_knopoff.dataset.point import write_point
     from burridge_knopoff.running import simulation
+    from burridge_knopoff.running.cost import cost_note
 
     state = state_of(options) or PAPER_STATES["minus"]
     settings = settings_of(Settings, options)
     model = model_of(options, state)
-    if cost := _cost(model, state, settings):
+    settings.check_chain(model.chain)
+    if cost := cost_note(model, model.begin(state, settings.start), settings):
         print(f"note: bk simulate: {cost}", file=sys.stderr, flush=True)
     trajectory = simulation.run(model, state, settings)
     write_point(trajectory, options.out)
@@ -74,25 +74,6 @@ def run(options: argparse.Namespace) -> int:
         )
         return EXIT_CODE
     return 0
-
-
-def _cost(model: Model, state: InitialState, settings: Settings) -> str:
-    """Return the estimated cost of a run if its blocks keep moving as at the start; empty for a minute or less."""
-    from burridge_knopoff.running.cost import cost_of
-
-    settings.check_chain(model.chain)
-    each, memory = cost_of(model, model.begin(state, settings.start), settings)
-    if settings.solver == "rk4" or each * settings.duration <= 60.0:
-        return ""
-    seconds = f"{_time(each)} per time unit, {_time(each * settings.duration)} for the run if they keep slipping"
-    return f"{model.blocks} blocks: about {seconds}; {1e-9 * memory:.2g} GB in addition to the recorded events"
-
-
-def _time(seconds: float) -> str:
-    for unit, name in ((86400.0, "days"), (3600.0, "h"), (60.0, "min")):
-        if seconds >= 2.0 * unit:
-            return f"{seconds / unit:.0f} {name}"
-    return f"{seconds:.2g} s"
 
 
 def outcome(trajectory: Trajectory) -> str:

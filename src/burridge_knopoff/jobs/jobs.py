@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import cached_property
-from itertools import product
+from itertools import chain, product
 from typing import Any
 
 from burridge_knopoff.dataset.point_identity import point_identity
@@ -15,6 +15,7 @@ from burridge_knopoff.jobs.rule import Rule, Wildcards
 from burridge_knopoff.provenance.seal import digest_of
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.paths import VALUE
+from burridge_knopoff.study.stages import STAGES
 from burridge_knopoff.study.study import Study
 
 #: Patterns of wildcards in the names of files; all parameters of the grid have that of a.
@@ -41,6 +42,7 @@ class Jobs:
     rules : all rules by name, in the order of a study, including those that this study does not have
     existing : those that this study has
     defined : those, and rules whose files may be requested by name, which is refused with a reason
+    absence : {rule that the study does not have: the reason, with the key of the config that decides}
     """
 
     def __init__(self, study: Study) -> None:
@@ -48,6 +50,7 @@ class Jobs:
         self.rules: dict[str, Rule] = {}
         self.existing: dict[str, Rule] = {}
         self.defined: dict[str, Rule] = {}
+        self.absence: dict[str, str] = {}
         self._made_by: dict[str, Rule] = {}
         self._abouts: dict[str, dict[str, Any]] = {}
         for declared in (*stages.STAGES, shown.summaries, shown.figures):
@@ -65,23 +68,39 @@ class Jobs:
                     raise ValueError(f"rule {declared.name}: reads {form}, which no rule declared before it makes")
             reads = {name: [form for form in forms if form in self._made_by] for name, forms in inputs.items()}
             makers = [self._made_by[form] for forms in reads.values() for form in forms]
-            possible = (
-                declared.over in ("any", "several" if self.study.is_plane else "a")
-                and declared.stage not in self.study.omitted_stages
-                and (declared.optional_reads or reads == inputs)
-            )
+            obstacle = self._obstacle(declared)
             rule = replace(
                 declared,
                 reads=reads,
-                exists=possible and declared.exists and bool(declared.each),
+                exists=not obstacle and declared.exists and bool(declared.each),
                 requested=declared.requested and all(maker.requested for maker in makers),
             )
             self.rules[rule.name] = rule
             if rule.exists:
                 self.existing[rule.name] = rule
                 self._made_by.update(dict.fromkeys(rule.files, rule))
-            if rule.exists or (possible and rule.refusal):
+            else:
+                self.absence[rule.name] = obstacle or rule.refusal or "this study has no such jobs"
+            if rule.exists or (not obstacle and rule.refusal and rule.each):
                 self.defined[rule.name] = rule
+
+    def _obstacle(self, declared: Rule) -> str:
+        """Return why studies such as this one have no jobs of a rule; empty if the rule itself decides."""
+        study, stage = self.study, declared.stage
+        if declared.over == "several" and not study.is_plane:
+            return "only a study of several parameters has it: `grid: {a: …, v: …}` in place of `a: …`"
+        if declared.over == "a" and study.is_plane:
+            return "a study of several parameters has none: `a: …` in place of `grid: …`"
+        if stage in study.omitted_stages:
+            without = study.config["without"]
+            left_out = " and ".join(name for name in (stage, STAGES[stage]) if name in without)
+            needs = f", which needs {STAGES[stage]}" if STAGES[stage] else ""
+            return f"part of stage {stage}{needs}: remove {left_out} from `without: [{', '.join(without)}]`"
+        for form in () if declared.optional_reads else chain.from_iterable(declared.inputs.values()):
+            if form not in self._made_by:
+                maker = next(rule for rule in self.rules.values() if form in rule.files)
+                return self.absence[maker.name]
+        return ""
 
     def requested(self) -> list[Rule]:
         """Return the rules of the files that the target `all` makes, except runs."""

@@ -8,6 +8,13 @@ from typing import Any
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.study import Study
 
+#: {property of `Study` on which a rule depends: what a study needs to have it}
+_CONDITIONS = {
+    "has_several_laws": "a second law in `laws`",
+    "has_synchronized_orbit": "a mirror-symmetric chain of 3 blocks",
+    "has_one_chain": "the same chain at all points",
+}
+
 
 def keys(study: Study, *names: str) -> dict[str, Any]:
     """Return these keys of the config."""
@@ -54,6 +61,13 @@ def length_refusal(study: Study) -> str:
     if key := study.single_length_key:
         return f"chain.{key}: got {study.config['chain'][key]}, expected one number for chains of other lengths"
     return ""
+
+
+def condition_refusal(study: Study, condition: str) -> str:
+    """Return what a study needs to meet a condition, the name of a property of `Study`; empty if it meets it."""
+    if not condition or getattr(study, condition):
+        return ""
+    return f"study {study.name}: not made, since it needs {_CONDITIONS.get(condition, condition)}"
 
 
 def law_jobs(study: Study) -> list[dict[str, str]]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from burridge_knopoff.claims.ledger import READS
 from burridge_knopoff.figures.description import Description, figure_descriptions
-from burridge_knopoff.jobs.params import keys, model_config
+from burridge_knopoff.jobs.params import condition_refusal, keys, model_config
 from burridge_knopoff.jobs.rule import Rule, Shown
 from burridge_knopoff.study.study import Study
 
@@ -142,6 +142,7 @@ def _figure(study: Study, figure: Description) -> Rule:
         stage="figures",
         over="a" if figure.of_runs else "any",
         exists=not figure.condition or bool(getattr(study, figure.condition)),
+        refusal=condition_refusal(study, figure.condition),
         shown={files[1]: Shown(figure.title, figure.category, "figure", figure.paper or "none", words)},
         priority=FIRST if figure.paper else 0,
         group="figures",

@@ -9,6 +9,7 @@ from burridge_knopoff.jobs import searches
 from burridge_knopoff.jobs.params import (
     catalogue_keys,
     catalogue_run_config,
+    condition_refusal,
     keys,
     length_refusal,
     model_config,
@@ -135,6 +136,7 @@ def catalogue(study: Study) -> list[Rule]:
             },
             each=[{"law": law, "a": a} for law in study.laws for a in study.catalogue_a],
             stage="catalogue",
+            refusal=f"study {study.name}: no catalogues of slip events: add `catalogue: {{}}` to its config",
             memory=1000,
             minutes=240,
             # Long runs start first.
@@ -183,7 +185,7 @@ def two_blocks(study: Study) -> list[Rule]:
             },
             stage="two_blocks",
             exists=study.has_several_laws and not study.single_length_key,
-            refusal=length_refusal(study),
+            refusal=length_refusal(study) or condition_refusal(study, "has_several_laws"),
             cores=0,
             memory=300,
             minutes=30,

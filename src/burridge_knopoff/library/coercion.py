@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -11,7 +12,9 @@ from burridge_knopoff.laws import Law, law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import Field, Keys, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
-from burridge_knopoff.model.model import Model
+from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.running.cost import cost_note, is_stiff
+from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.values import format_value, refusal
 
 #: An initial state: minus or plus, an `InitialState`, {"position": …, "velocity": …}, or (position, velocity).
@@ -88,3 +91,11 @@ def given_model(
     chain = Chain(blocks) if chain is None else chain  # type: ignore[arg-type]
     own: dict[str, Any] = {name: value for name, value in (("v", v), ("contact", contact)) if value is not None}
     return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), **own)
+
+
+def warn_of_cost(model: Model, initial: InitialState | ChainState, settings: Settings) -> None:
+    """Warn of a run of more than a minute whose step is set by stiff dashpots or springs, before it starts."""
+    if is_stiff(model.chain):
+        begun = initial if isinstance(initial, ChainState) else model.begin(initial, settings.start)
+        if note := cost_note(model, begun, settings):
+            warnings.warn(note, stacklevel=3)

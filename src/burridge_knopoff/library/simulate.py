@@ -6,7 +6,7 @@ from typing import Unpack
 
 from burridge_knopoff.laws import Law
 from burridge_knopoff.library.by_name import RunSettings, settings_of, show_settings
-from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state, warn_of_cost
 from burridge_knopoff.library.run import Run
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
@@ -38,7 +38,8 @@ def simulate(
     v, contact : see `Model`, which has the defaults
 
     All quantities are dimensionless: times in units of 1/ω, U = kX/F(0), as in the paper (Section II). Raises
-    ValueError, one line, for anything that the model or the solver does not allow. docs/model.md derives the equations
+    ValueError, one line, for anything that the model or the solver does not allow. Warns of a run of more than a minute
+    whose step is set by stiff dashpots or springs. docs/model.md derives the equations
     and the solvers, and explains why no event can be missed.
 
     >>> from burridge_knopoff import simulate
@@ -57,4 +58,6 @@ def simulate(
     state = initial if isinstance(initial, ChainState) else given_state(initial)
     blocks = len(state.position) if isinstance(state, ChainState) else state.blocks
     model = given_model(law, a, blocks, chain, v, contact)
-    return Run(**vars(run(model, state, settings_of(Settings, settings, by_name))))
+    chosen = settings_of(Settings, settings, by_name)
+    warn_of_cost(model, state, chosen)
+    return Run(**vars(run(model, state, chosen)))

@@ -15,7 +15,7 @@ from burridge_knopoff.dataset.point import POINT_VARIABLES, point_attributes, po
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.laws import Law
 from burridge_knopoff.library.by_name import settings_of, show_settings
-from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state, warn_of_cost
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
@@ -91,6 +91,7 @@ def sweep(
     for point, model in zip(points, models, strict=True):
         chosen.check_chain(model.chain)
         _call_at(point if len(axes) > 1 else {}, model.begin, state, chosen.start)
+    warn_of_cost(max(models, key=lambda model: model.chain.highest_rate), state, chosen)
 
     def some(first: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
         part = range(first, min(first + size, len(points)))

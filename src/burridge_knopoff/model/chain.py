@@ -28,9 +28,10 @@ from burridge_knopoff.model.springs import (
     read_edges,
     row_neighbours,
 )
-from burridge_knopoff.values import Unchanging, read_only_copy, refusal
+from burridge_knopoff.values import Unchanging, read_only_copy, real_array, refusal
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
     from scipy.sparse import csr_array
 
 ENDS = ("open", "ring")
@@ -138,10 +139,11 @@ class Chain(Unchanging):
         for key in (*SPRING_PARAMETERS, *BLOCK_PARAMETERS):
             value, count = getattr(self, key), self.parameter_count(key)
             if isinstance(value, tuple) and len(value) != count:
-                raise ValueError(
-                    f"chain.{key}: got {len(value)} numbers, expected 1, or {count}: one per "
-                    f"{'spring' if key in SPRING_PARAMETERS else 'block'}"
-                )
+                got = f"{len(value)} numbers, expected 1"
+                if len(value) == 1:
+                    got = "a list of 1 number, expected a number"
+                each = "spring" if key in SPRING_PARAMETERS else "block"
+                raise ValueError(f"chain.{key}: got {got}{f', or {count}: one per {each}' * (count > 1)}")
         if self.blocks == 1 and self.ends == "ring":
             raise ValueError("chain.ends: got ring, expected open for one block")
         if not isinstance(self.pulling, str) and np.max(self.pulling) < STRENGTH.least:
@@ -157,7 +159,8 @@ class Chain(Unchanging):
         for key in ("coupling", "damping"):
             value, usual = getattr(self, key), 1.0 if key == "coupling" else 0.0
             if isinstance(value, tuple):
-                raise ValueError(f"chain.{key}: got {len(value)} numbers, expected one together with {given}")
+                got = f"{len(value)} numbers" if len(value) != 1 else "a list of 1 number"
+                raise ValueError(f"chain.{key}: got {got}, expected one together with {given}")
             if self.springs and value != usual:
                 raise ValueError(f"chain.{key}: got {value!r}, expected none together with {given}")
         if self.grid:
@@ -374,8 +377,9 @@ class Chain(Unchanging):
         """The a below which all modes of slipping blocks of a uniform chain oscillate under the law Φ = 1 − aU'."""
         return 2.0 * math.sqrt(self.driving.min()) / float(self.thresholds[0])
 
-    def force(self, position: np.ndarray) -> np.ndarray:
+    def force(self, position: ArrayLike) -> np.ndarray:
         """Return the spring forces −(K U)_i at τ = 0 for positions U, shape (…, blocks)."""
+        position = self._of_blocks(position, "position")
         if self.is_network:
             return self._springs.negative_product(position)
         block = np.arange(self.blocks)
@@ -383,8 +387,16 @@ class Chain(Unchanging):
         # Both neighbours are added first, so that mirrored positions give mirrored forces to the bit.
         return self.coupling_to_previous * previous + self.coupling_to_next * following - self.diagonal * position
 
-    def damping_force(self, velocity: np.ndarray, v: float) -> np.ndarray:
+    def _of_blocks(self, values: ArrayLike, key: str) -> np.ndarray:
+        """Return numbers with one entry per block on their last axis; raises ValueError, one line, for others."""
+        array = real_array(values, key)
+        if array.shape[-1:] != (self.blocks,):
+            raise refusal(key, array.shape, f"shape (…, {self.blocks}): one number per block on the last axis")
+        return array
+
+    def damping_force(self, velocity: ArrayLike, v: float) -> np.ndarray:
         """Return the forces c_i v − (C U')_i of the dashpots for velocities U', shape (…, blocks)."""
+        velocity = self._of_blocks(velocity, "velocity")
         if not self.is_damped:
             return np.zeros(velocity.shape)
         return self.driver_damping * v + self._dashpots.negative_product(velocity)

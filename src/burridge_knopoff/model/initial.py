@@ -50,7 +50,8 @@ class InitialState:
         check_fields(self)
         lengths = [len(values) for values in (self.position, self.velocity) if isinstance(values, tuple)]
         if len({*lengths}) > 1:
-            raise ValueError(f"velocity: got {lengths[1]} numbers, expected {lengths[0]} for as many positions")
+            got = f"{lengths[1]} number{'s' * (lengths[1] != 1)}"
+            raise ValueError(f"velocity: got {got}, expected {lengths[0]} for as many positions")
 
     @property
     def blocks(self) -> int | None:

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import atexit
 import contextlib
+import fcntl
 import glob
 import os
 import secrets
+import stat
 from collections.abc import Callable
 from pathlib import Path
+from typing import TextIO
 
+#: Most bytes of the name of a file that `write_whole` writes: file systems allow 255, and a temporary name has 15 more.
+LONGEST_NAME = 240
 #: Number of attempts to write a file if another process removes its temporary file.
 ATTEMPTS = 3
+#: Bytes reserved for the last words of a job: most tracebacks are shorter.
+ROOM = 1 << 14
 #: Bytes written to a disk to find out why writing failed.
 PROBE = 1 << 20
 
@@ -72,6 +80,32 @@ def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
 def write_text(path: str | Path, text: str) -> None:
     """Write a text file, completely or not at all."""
     write_whole(path, lambda name: Path(name).write_bytes(text.encode()))
+
+
+def reserve_room(stream: TextIO | None) -> None:
+    """Reserve room in an empty file to which a stream writes; what is not used is given back at exit.
+
+    A job whose output fills a disk can then still write why it failed. Other streams are left alone.
+    """
+    if stream is None:
+        return
+    try:
+        number = stream.fileno()
+        status = os.fstat(number)
+        if not stat.S_ISREG(status.st_mode) or status.st_size or fcntl.fcntl(number, fcntl.F_GETFL) & os.O_APPEND:
+            return
+    except (ValueError, OSError):
+        return
+    # Blanks are no error in a log, if the process is killed. Reserving without writing is not possible everywhere.
+    with contextlib.suppress(OSError):
+        os.pwrite(number, b" " * ROOM, 0)
+    atexit.register(_give_back, stream, number)
+
+
+def _give_back(stream: TextIO, number: int) -> None:
+    with contextlib.suppress(ValueError, OSError):
+        stream.flush()
+        os.ftruncate(number, os.lseek(number, 0, os.SEEK_CUR))
 
 
 def check_target(path: str | Path) -> None:

@@ -15,7 +15,7 @@ from __future__ import annotations
 import hashlib
 import json
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -195,19 +195,42 @@ def describe_difference(key: str, found: Mapping[str, Any], expected: Mapping[st
         return f"is another run: {difference(one, other)}"
     if key == "sources" and one and other:
         return f"was made by other sources (fingerprint {one}, now {other})"
-    place = [key]
-    while isinstance(one, dict) and isinstance(other, dict):
-        if inside := first_difference(one, other):
-            one, other = one.get(inside), other.get(inside)
-            place.append(inside)
-        else:
-            one, other = list(one), list(other)
-    if place[0] == "inputs" and len(place) > 1:
-        return f"was made from another {place[1]}"
-    values = f"got {_format_value(one)}, expected {_format_value(other)}"
-    return f"is another file: {values}" if place == ["file"] else f"was made with {'.'.join(place)}: {values}"
+    if key == "inputs" and one and other and (name := first_difference(one, other)):
+        return f"was made from another {name}"
+    place, one, other = _innermost(key, one, other)
+    values = "got {}, expected {}".format(*_contrasted(one, other))
+    return f"is another file: {values}" if place == "file" else f"was made with {place}: {values}"
 
 
-def _format_value(value: Any) -> str:
-    text = "nothing" if value is None else value if isinstance(value, str) else json.dumps(value)
-    return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
+def _innermost(place: str, one: Any, other: Any) -> tuple[str, Any, Any]:
+    """Return the place of the first difference within two values, and what they have there; short lists stay whole."""
+    if isinstance(one, dict) and isinstance(other, dict):
+        if name := first_difference(one, other):
+            return _innermost(f"{place}.{name}", one.get(name), other.get(name))
+        return _innermost(place, list(one), list(other))
+    if isinstance(one, list) and isinstance(other, list) and max(len(_text(one)), len(_text(other))) > _LONGEST:
+        index = _common_length(one, other)
+        if index == min(len(one), len(other)):
+            return place, f"{len(one)} entries", f"{len(other)} entries"
+        return _innermost(f"{place}[{index}]", one[index], other[index])
+    return place, one, other
+
+
+def _common_length(one: Sequence[Any], other: Sequence[Any]) -> int:
+    """Return the number of equal entries, or letters, at the beginning of two sequences."""
+    pairs = enumerate(zip(one, other, strict=False))
+    return next((index for index, pair in pairs if len({*map(canonical_json, pair)}) > 1), min(len(one), len(other)))
+
+
+def _contrasted(one: Any, other: Any) -> list[str]:
+    """Return two different values as different texts, each cut around the first letter in which they differ."""
+    texts = _text(one), _text(other)
+    if texts[0] == texts[1]:
+        texts = json.dumps(one), json.dumps(other)
+    begin = max(_common_length(*texts) - _LONGEST // 2, 0) if max(map(len, texts)) > _LONGEST else 0
+    end = begin + _LONGEST
+    return [f"{'…' * (begin > 0)}{text[begin:end]}{'…' * (len(text) > end)}" for text in texts]
+
+
+def _text(value: Any) -> str:
+    return "nothing" if value is None else value if isinstance(value, str) else json.dumps(value)

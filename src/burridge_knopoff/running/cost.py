@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.settings import Settings
 
 # Measured (docs/performance.md): events per block and time unit; CPU seconds per event and block of its group, without
 # perturbations and for each perturbation; memory per block.
 EVENTS, SECONDS, SECONDS_OF_PERTURBATION, BYTES = 0.2, 1.5e-7, 1e-7, 4500.0
+#: Expansions per time unit and unit of the highest rate of a chain, each as expensive as an event: 0.1 to 0.6 in chains
+#: of 1 to 40 blocks whose dashpots or springs are stiff.
+EXPANSIONS = 0.2
+#: Runs that take longer, in CPU seconds, are announced with their cost.
+LONG = 60.0
 
 
 def cost_of(model: Model, begun: ChainState, settings: Settings) -> tuple[float, float]:
@@ -19,4 +25,37 @@ def cost_of(model: Model, begun: ChainState, settings: Settings) -> tuple[float,
     exponents = settings.exponent_count(model.chain)
     together = model.blocks if exponents else int((~begun.stuck).sum())
     event = together * (SECONDS + exponents * SECONDS_OF_PERTURBATION)
-    return EVENTS * model.blocks * event, BYTES * model.blocks
+    return max(EVENTS * model.blocks, _expansions(model.chain)) * event, BYTES * model.blocks
+
+
+def is_stiff(chain: Chain) -> bool:
+    """Return whether the highest rate of a chain, not its events, decides how long a run takes."""
+    return _expansions(chain) > 10.0 * EVENTS * len(chain.driving)
+
+
+def _expansions(chain: Chain) -> float:
+    return EXPANSIONS * chain.highest_rate
+
+
+def cost_note(model: Model, begun: ChainState, settings: Settings) -> str:
+    """Return the estimated cost of a run if its blocks keep slipping as at the start, and what sets it, in words.
+
+    Empty for a run of less than a minute, and for one with a fixed step.
+    """
+    each, memory = cost_of(model, begun, settings)
+    if settings.solver == "rk4" or each * settings.duration <= LONG:
+        return ""
+    whole = f"{_time(each)} per time unit, {_time(each * settings.duration)} for the run if they keep slipping"
+    blocks = f"{model.blocks} block{'s' * (model.blocks > 1)}: about {whole}"
+    if not is_stiff(model.chain):
+        return f"{blocks}; {1e-9 * memory:.2g} GB in addition to the recorded events"
+    rate, frequency = model.chain.highest_rate, model.chain.highest_frequency
+    fastest = f"decay rate of the dashpots, {rate - frequency:.2g}" if rate > 2.0 * frequency else ""
+    return f"{blocks}: the step is set by the highest {fastest or f'frequency of the springs, {frequency:.2g}'}"
+
+
+def _time(seconds: float) -> str:
+    for unit, name in ((86400.0, "days"), (3600.0, "h"), (60.0, "min")):
+        if seconds >= 2.0 * unit:
+            return f"{seconds / unit:.0f} {name}"
+    return f"{seconds:.2g} s"

@@ -21,7 +21,7 @@ _CLASS = re.compile(r"^burridge_knopoff(\.\w+)+: ")
 
 _TRACEBACK = "Traceback (most recent call last):\n"
 
-SILENT = "no error in its log: it was killed, or could not start"
+SILENT = "no error in its log: it was killed, could not start, or its disk was full for a moment"
 FULL = "no error in its log: no space left on its disk"
 #: The message of `bk` after Ctrl-C, which follows the name of its command.
 INTERRUPTED = "interrupted, nothing was written"

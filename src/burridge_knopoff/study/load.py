@@ -69,6 +69,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     rules.fill_chains(filled)
     rules.fill_names(filled)
     rules.check_size(filled, study.parameters)
+    rules.check_names(filled, study.parameters)
     others = study.other_values
     rules.check_models(filled, values, others)
     chains = [study.model(study.laws[0], values[0], **each).chain for each in others]

@@ -18,14 +18,16 @@ from burridge_knopoff.model.chain import BLOCKS, Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.model.parameters import set_parameters
+from burridge_knopoff.model.parameters import plain_name, set_parameters
 from burridge_knopoff.model.ranges import OneOf, Range, Several
+from burridge_knopoff.provenance.files import LONGEST_NAME
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.config import SOME_VALUES
 from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
+from burridge_knopoff.study.paths import point_file
 from burridge_knopoff.study.stages import CHAIN_LENGTHS
-from burridge_knopoff.values import MOST_NUMBERS, refusal, suggestion
+from burridge_knopoff.values import MOST_NUMBERS, cut, refusal, suggestion
 
 #: States labelled at once for each pair of nearby states: basins/pair_separation.py.
 _STATES_OF_A_PAIR = 2
@@ -228,6 +230,17 @@ def check_size(config: Mapping[str, Any], parameters: Mapping[str, Collection[st
         raise ValueError(
             f"{'grid' if config['grid'] else 'a'}: got {points} points ({len(laws)} laws, {len(states)} initial "
             f"states, {values}), expected at most {MAXIMUM_POINTS}"
+        )
+
+
+def check_names(config: Mapping[str, Any], parameters: Mapping[str, Collection[str]]) -> None:
+    """Check that the names of points, which contain the values of all parameters, fit into a file system."""
+    longest = {plain_name(name): max(values, key=len) for name, values in parameters.items()}
+    name = point_file(parameters).format(law="", initial="", **longest).rpartition("/")[2]
+    if len(name) > LONGEST_NAME:
+        raise ValueError(
+            f"{'grid' if config['grid'] else 'a'}: got points with file names of {len(name)} letters ({cut(name)}), "
+            f"expected at most {LONGEST_NAME}: fewer parameters, shorter numbers, or fewer a_digits"
         )
 
 

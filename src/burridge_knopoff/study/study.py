@@ -15,6 +15,7 @@ from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import parse_indexed_name, plain_name
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.running.command import simulate_command
+from burridge_knopoff.running.cost import cost_note, is_stiff
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paper import PAPER_A
@@ -272,9 +273,25 @@ def solver_points(study: Study) -> list[dict[str, str]]:
 
 
 def remarks(study: Study, given: Mapping[str, Any]) -> list[str]:
-    """Return a line for each part that a user may expect and the study lacks; given : its config as written."""
+    """Return a line for each part that a user may expect and the study lacks, and for runs that take very long.
+
+    given : its config as written
+    """
+    lines = _cost_remarks(study)
     if study.blocks == 1:
-        return ["one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks"]
-    if given.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
-        return ["basins: no map, since no default value of basins.a is on the grid; set basins.a"]
-    return []
+        lines.append("one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks")
+    elif given.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
+        lines.append("basins: no map, since no default value of basins.a is on the grid; set basins.a")
+    return lines
+
+
+def _cost_remarks(study: Study) -> list[str]:
+    """Return the cost of a run of the stiffest chain, if that is over a minute."""
+    law, initial = study.laws[0], study.initial[0]
+    chains = study.other_values[: 1 if study.has_one_chain else None]
+    models = [study.model(law, study.shown_a, **others) for others in chains]
+    stiffest, settings = max(models, key=lambda model: model.chain.highest_rate), study.settings(law)
+    if not is_stiff(stiffest.chain):
+        return []
+    note = cost_note(stiffest, stiffest.begin(study.state(initial), settings.start), settings)
+    return [f"each run: {note}"] if note else []
