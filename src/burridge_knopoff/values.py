@@ -14,6 +14,11 @@ import numpy as np
 
 _T = TypeVar("_T")
 
+#: Patterns of a whole number and of any other number in a text: decimal, in ASCII digits, without underscores. A whole
+#: number has no leading zero, with which YAML would read it as octal.
+WHOLE_NUMBER = r"[-+]?(?:0|[1-9][0-9]*)"
+OTHER_NUMBER = r"[-+]?(?:[0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))(?:[eE][-+]?[0-9]+)?"
+
 #: Most numbers of one kind that a run or a job keeps: 800 MB.
 MOST_NUMBERS = 1e8
 #: Most characters of a value in a message.
@@ -40,6 +45,20 @@ def real_number(value: Any) -> float:
 
 def real_array(values: Any, key: str) -> np.ndarray:
     """Return real numbers of any shape, NaN where masked; raises ValueError, one line, for anything else."""
+def number_in(text: str) -> int | float | None:
+    """Return the number that a text is, by WHOLE_NUMBER and OTHER_NUMBER; None for any other text.
+
+    Python's own conversion also accepts 010, 1_0 for ten, and digits of every script.
+    """
+    try:
+        return (
+            int(text) if re.fullmatch(WHOLE_NUMBER, text) else float(text) if re.fullmatch(OTHER_NUMBER, text) else None
+        )
+    # Python refuses whole numbers of more than 4300 digits.
+    except ValueError:
+        return None
+
+
     try:
         array = np.ma.asarray(values)
     except ValueError:

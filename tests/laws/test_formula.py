@@ -14,6 +14,7 @@ REFUSED = {
     "formula": [
         *("__import__('os').system('true')", "u.real", "exp(u, u)", "exp(x=u)", "abs(u)", "[1]", "lambda u: 1"),
         *("1 if u else 1", "(x := 1)", "'1'", "True", "1j", "f'{u}'"),
+        *("1 - 1_0*a*u", "1 - 0x1*u", "1 - 0b1*u", "1 - 0o7*u", "1 - 010*u", "1 - 00*u", "1 - ٣*u"),
     ],
     "b: unknown name": ["1 - b*u"],
     "its value at u = 0 is 2": ["2 - u"],

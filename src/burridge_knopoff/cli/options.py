@@ -20,7 +20,7 @@ from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.provenance.files import check_target
 from burridge_knopoff.running.command import CHAIN_OPTIONS
-from burridge_knopoff.values import format_value
+from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER, format_value
 
 _T = TypeVar("_T")
 
@@ -40,15 +40,19 @@ def _reader(pattern: str, words: str, read: Callable[[str], Any] = str) -> Calla
     return value
 
 
-# Python's own conversion also accepts 1_0 for ten, and digits of every script.
-read_number = _reader(r"[-+.0-9a-zA-Z]+", "a number", float)
-read_natural = _reader(r"[0-9]{1,9}", "a whole number, 0 or more", int)
-read_whole = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
+# The ranges refuse inf and nan, and say which numbers they expect.
+_NUMBER = f"(?:{WHOLE_NUMBER}|{OTHER_NUMBER}|[-+]?(?:inf|nan))"
+_NATURAL = "(?:0|[1-9][0-9]{0,8})"
+read_number = _reader(_NUMBER, "a number", float)
+read_natural = _reader(_NATURAL, "a whole number, 0 or more", int)
+read_whole = _reader(f"[-+]?{_NATURAL}", "a whole number", int)
 _read_numbers = _reader(
-    r"[-+.0-9a-zA-Z,]+", "numbers with commas between them", lambda text: tuple(map(float, text.split(",")))
+    f"{_NUMBER}(,{_NUMBER})*", "numbers with commas between them", lambda text: tuple(map(float, text.split(",")))
 )
 _read_wholes = _reader(
-    r"[0-9]{1,9}(,[0-9]{1,9})*", "whole numbers with commas between them", lambda text: tuple(map(int, text.split(",")))
+    f"{_NATURAL}(,{_NATURAL})*",
+    "whole numbers with commas between them",
+    lambda text: tuple(map(int, text.split(","))),
 )
 _read_named_number = _reader(
     r"(?!(?:name|law|formula)=)[A-Za-z_][A-Za-z0-9_]*=.*",

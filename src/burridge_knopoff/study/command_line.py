@@ -11,16 +11,24 @@ from typing import Any
 from burridge_knopoff.study.yaml_file import plain_value
 
 
-def of_command_line(value: Any) -> Any:
-    """Return the value that a config file would give, from a value that Snakemake has read from --config.
+def of_command_line(entries: Iterable[str], read: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values that a config file would give for entries of --config.
 
-    Snakemake reads `basins={pixels: 16}` as YAML with texts for numbers. Quoted and unquoted values cannot be
-    distinguished.
+    entries : as written, `key=value`; read : the values that Snakemake has read from them
+
+    Snakemake reads a single number as Python does, which accepts 010 and 7_000 too. It reads `basins={pixels: 16}` as
+    YAML with texts for numbers. Quoted and unquoted values cannot be distinguished.
     """
+    numbers = {key for key, value in read.items() if isinstance(value, int | float)}
+    written = dict(entry.split("=", 1) for entry in entries)
+    return {key: plain_value(written[key].strip()) if key in numbers else _plain(value) for key, value in read.items()}
+
+
+def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {key: of_command_line(item) for key, item in value.items()}
+        return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [of_command_line(item) for item in value]
+        return [_plain(item) for item in value]
     return plain_value(value) if isinstance(value, str) else value
 
 
