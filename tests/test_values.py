@@ -9,6 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from burridge_knopoff import FormulaLaw
+from burridge_knopoff.laws import LAWS
+from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 from burridge_knopoff.values import LONGEST, cut, format_value, full_key, number_in, refusal, suggestion
 from tests.fuzzing import examples

@@ -13,7 +13,7 @@ from operator import getitem
 from typing import Any
 
 from burridge_knopoff.basins.initial_phases import has_free_ends
-from burridge_knopoff.laws import LAWS, law_of
+from burridge_knopoff.laws import LAWS, law_of, unknown_law
 from burridge_knopoff.model.chain import BLOCKS, Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES, InitialState
@@ -87,7 +87,7 @@ def fill_names(config: dict[str, Any]) -> None:
     laws, state, solver = config["laws"], next(iter(config["initial"])), config["solver"]
     for name, description in laws.items():
         if name not in LAWS and not {"law", "formula"} & description.keys():
-            raise refusal(f"laws.{name}", name, f"{' | '.join(LAWS)}, or a formula{suggestion(name, LAWS)}")
+            raise unknown_law(f"laws.{name}", name)
     known, first = OneOf(tuple(laws)), next(iter(laws))
     known.form(config["figures"].setdefault("law", first), "figures.law")
     Several(known).form(config["chains"].setdefault("laws", [first]), "chains.laws")
