@@ -11,9 +11,10 @@ from pathlib import Path
 import netCDF4
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, Settings, simulate
+from burridge_knopoff import Chain, FormulaLaw, Model, Settings, law_of, simulate
 from burridge_knopoff.cli import main
 from burridge_knopoff.laws import LAWS
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
 BK = str(Path(sys.executable).parent / "bk")
@@ -110,6 +111,29 @@ def test_a_state_without_a_name_is_not_one_of_the_paper(tmp_path, given, positio
         assert dataset["initial_position"][:].tolist() == position
 
 
+def test_the_other_half_of_a_state_is_that_of_the_paper_at_this_v(tmp_path):
+    model = Model(Chain(3), law_of("nonlinear", 0.08), 0.03)
+    position, velocity = model.initial_coordinates(PAPER_STATES["minus"])
+    for given, own in ((["--position", "-0.9,-1,-1"], "position"), (["--velocity", "0.1,0.2,0.3"], "velocity")):
+        options = ["--law", "nonlinear", "--a", "0.08", "--v", "0.03", "--transient", "0", "--window", "1", *given]
+        assert main(["simulate", *options, "--out", str(tmp_path / "x.nc")]) == 0
+        with netCDF4.Dataset(tmp_path / "x.nc") as dataset:
+            assert (dataset["initial_position"][:] == position).all() == (own != "position")
+            assert (dataset["initial_velocity"][:] == velocity).all() == (own != "velocity")
+
+
+def test_a_state_of_the_paper_follows_v_and_its_command_makes_the_same_file(tmp_path):
+    for v in ("0.1", "0.2"):
+        first, again = tmp_path / f"{v}.nc", tmp_path / f"{v}_again.nc"
+        assert main([*RUN, "--v", v, "--initial", "plus", "--out", str(first)]) == 0
+        with netCDF4.Dataset(first) as dataset:
+            assert ("--position" in dataset.history) == (v == "0.1")
+            assert dataset["initial_velocity"][0] == pytest.approx(0.99 * float(v), rel=1e-15)
+            words = shlex.split(dataset.history)
+        assert main([*words[1:], "--out", str(again)]) == 0
+        assert again.read_bytes() == first.read_bytes()
+
+
 def test_times_longer_than_the_run_are_reported(tmp_path, capsys):
     assert main([*RUN, "--trajectory", "5000", "--event-window", "25", "--out", str(tmp_path / "x.nc")]) == 0
     output = capsys.readouterr().err.splitlines()
@@ -152,6 +176,18 @@ def test_no_events(tmp_path):
         ([*RUN, "--v", "٣", "--out", "x.nc"], "--v: got '٣', expected a number"),
         ([*RUN, "--v", "", "--out", "x.nc"], "--v: got '', expected a number"),
         ([*RUN, "--v", "0x1", "--out", "x.nc"], "--v: got '0x1', expected a number"),
+        ([*RUN, "--v", "010", "--out", "x.nc"], "--v: got '010', expected a number"),
+        ([*RUN, "--window", "1_0.5", "--out", "x.nc"], "--window: got '1_0.5', expected a number"),
+        ([*RUN, "--batches", "03", "--out", "x.nc"], "--batches: got '03', expected a whole number"),
+        ([*RUN, "--blocks", "03", "--out", "x.nc"], "--blocks: got '03', expected a whole number"),
+        ([*RUN, "--grid", "3,01", "--out", "x.nc"], "--grid: got '3,01', expected whole numbers"),
+        ([*RUN, "--position", "1,-01,1", "--out", "x.nc"], "--position: got '1,-01,1', expected numbers"),
+        ([*RUN, "--section", "block=02", "--out", "x.nc"], "section.block: got '02', expected a whole number"),
+        (
+            [*RUN, "--threshold", "random=uniform,low=1,high=1_0,seed=1", "--out", "x.nc"],
+            "chain.threshold.high: got '1_0', expected a number",
+        ),
+        ([*DROP, "--number", "sigma=00", "--out", "x.nc"], "--number: got '00', expected a number"),
         ([*RUN, "--batches", "1e3", "--out", "x.nc"], "--batches: got '1e3', expected a whole number"),
         ([*RUN, "--batches", "9" * 5000, "--out", "x.nc"], ", expected a whole number"),
         ([*RUN, "--position", "1,nan,1", "--out", "x.nc"], "position[1]: got nan, expected a number"),
@@ -177,18 +213,6 @@ def test_no_events(tmp_path):
         ([*RUN, "--number", "sigma=0.1", "--out", "x.nc"], "linearized.sigma: not a parameter of this law"),
         ([*RUN, "--number", "sigma", "--out", "x.nc"], "--number: got 'sigma', expected NAME=NUMBER"),
         ([*RUN, "--number", "sigma=x", "--out", "x.nc"], "--number: got 'x', expected a number"),
-        ([*RUN, "--v", "010", "--out", "x.nc"], "--v: got '010', expected a number"),
-        ([*RUN, "--window", "1_0.5", "--out", "x.nc"], "--window: got '1_0.5', expected a number"),
-        ([*RUN, "--batches", "03", "--out", "x.nc"], "--batches: got '03', expected a whole number"),
-        ([*RUN, "--blocks", "03", "--out", "x.nc"], "--blocks: got '03', expected a whole number"),
-        ([*RUN, "--grid", "3,01", "--out", "x.nc"], "--grid: got '3,01', expected whole numbers"),
-        ([*RUN, "--position", "1,-01,1", "--out", "x.nc"], "--position: got '1,-01,1', expected numbers"),
-        ([*RUN, "--section", "block=02", "--out", "x.nc"], "section.block: got '02', expected a whole number"),
-        (
-            [*RUN, "--threshold", "random=uniform,low=1,high=1_0,seed=1", "--out", "x.nc"],
-            "chain.threshold.high: got '1_0', expected a number",
-        ),
-        ([*DROP, "--number", "sigma=00", "--out", "x.nc"], "--number: got '00', expected a number"),
         ([*RUN, "--number", "law=1", "--out", "x.nc"], "--number: got 'law=1', expected"),
         ([*RUN, "--law-name", "a/b", "--out", "x.nc"], "--law-name: got 'a/b', expected"),
         ([*DROP, "--number", "sigma=1", "--out", "x.nc"], "carlson_langer: '(1 - sigma)/"),

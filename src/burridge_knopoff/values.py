@@ -45,8 +45,6 @@ def real_number(value: Any) -> float:
         return math.nan
 
 
-def real_array(values: Any, key: str) -> np.ndarray:
-    """Return real numbers of any shape, NaN where masked; raises ValueError, one line, for anything else."""
 def number_in(text: str) -> int | float | None:
     """Return the number that a text is, by WHOLE_NUMBER and OTHER_NUMBER; None for any other text.
 
@@ -61,6 +59,8 @@ def number_in(text: str) -> int | float | None:
         return None
 
 
+def real_array(values: Any, key: str) -> np.ndarray:
+    """Return real numbers of any shape, NaN where masked; raises ValueError, one line, for anything else."""
     try:
         array = np.ma.asarray(values)
     except ValueError:

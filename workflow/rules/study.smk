@@ -34,7 +34,7 @@ from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.paths import VALUE
-from burridge_knopoff.study.study import remarks
+from burridge_knopoff.study.remarks import remarks
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import call_error, cluster_error

@@ -173,8 +173,8 @@ def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
         "--initial",
         type=_reader(STATE_NAME.pattern, STATE_NAME.words),
         metavar="NAME",
-        help=f"{' | '.join(PAPER_STATES)} (the paper's states), or a name for the state given below (default: {usual}; "
-        f"{OWN} for a state given below)",
+        help=f"{' | '.join(PAPER_STATES)} (the paper's states, which follow v), or a name for the state given below "
+        f"(default: {usual}; {OWN} for a state given below)",
     )
     _complete(initial, PAPER_STATES)
     state.add_argument("--blocks", type=read_whole, help="number of blocks N (default: the number of positions)")
@@ -184,7 +184,7 @@ def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
 def state_of(options: argparse.Namespace) -> InitialState | None:
     """Return the initial state given by the options, or None if they give none.
 
-    If only positions or only velocities are given, the others are those of the paper's states.
+    If only positions or only velocities are given, the others are those that `minus` has in this model.
 
     Raises ValueError as `initial_state` does, and if a name of the paper's states is given other numbers.
     """
@@ -198,11 +198,12 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
             missing = "position" if given[0] is None else "velocity"
             raise ValueError(f"{missing}: missing, expected one number per block; only three blocks have defaults")
         name = OWN
-        position, velocity = given
-        given = (
-            usual.position if position is None else position,
-            usual.velocity if velocity is None else velocity,
-        )
+        if None in given:
+            position, velocity = model_of(options, usual).initial_coordinates(usual)
+            given = (
+                position.tolist() if given[0] is None else given[0],
+                velocity.tolist() if given[1] is None else given[1],
+            )
     elif name in PAPER_STATES and (given[0] is None) != (given[1] is None):
         raise ValueError(
             f"initial: got {format_value(name)} with numbers other than the paper's, expected another name or none"
