@@ -218,7 +218,7 @@ CONFIG = Keys(
         "initial": Field(
             Named(STATE_NAME, Keys(_STATE, "; {} for one of the paper's"), 1),
             "initial states by name, each with position U(0) and velocity U'(0): one number for all blocks, one per "
-            "block, or random; minus: {} and plus: {} are the paper's states",
+            "block, or random; minus: {} and plus: {} are the paper's states, which follow v",
         ),
         "without": Field(
             Several(OneOf(tuple(STAGES)), distinct=True),
