@@ -45,9 +45,7 @@ def test_a_number_is_that_of_a_file(tmp_path, number):
     assert given_by(f"key={number}") == read_config(path) == {"key": float(number)}
 
 
-@pytest.mark.parametrize(
-    "text", ["010", "-010", "7_000", "1_0.5", "1_0e5", "٣", "1٣", "٣.5", "０", "nan", "inf", "-Infinity"]
-)
+@pytest.mark.parametrize("text", ["010", "-010", "7_000", "1_0.5", "1_0e5", "٣", "1٣", "٣.5", "０"])
 def test_what_only_python_reads_as_a_number_is_text(tmp_path, text):
     """Also inside lists and mappings, and where the same key was given before."""
     assert given_by(f"key={text}") == {"key": text}
@@ -57,6 +55,12 @@ def test_what_only_python_reads_as_a_number_is_text(tmp_path, text):
     path.write_text(f"key: {text}\n", encoding="utf-8")
     assert read_config(path) == {"key": text}
     with refused(f"--config: window: {text!r}", "a number"):
+        load_study({**GOOD, **given_by(f"window={text}")}, "mine.yaml", GOOD)
+
+
+@pytest.mark.parametrize("text", ["nan", "inf", "-Infinity", "1e400"])
+def test_what_is_no_finite_number_is_refused(text):
+    with refused("--config: window: ", "a number between"):
         load_study({**GOOD, **given_by(f"window={text}")}, "mine.yaml", GOOD)
 
 

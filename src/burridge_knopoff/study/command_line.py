@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -19,7 +20,8 @@ def of_command_line(entries: Iterable[str], read: Mapping[str, Any]) -> dict[str
     Snakemake reads a single number as Python does, which accepts 010 and 7_000 too. It reads `basins={pixels: 16}` as
     YAML with texts for numbers. Quoted and unquoted values cannot be distinguished.
     """
-    numbers = {key for key, value in read.items() if isinstance(value, int | float)}
+    # Words for other numbers, such as nan, are refused by the ranges.
+    numbers = {key for key, value in read.items() if isinstance(value, int | float) and abs(value) < math.inf}
     written = dict(entry.split("=", 1) for entry in entries)
     return {key: plain_value(written[key].strip()) if key in numbers else _plain(value) for key, value in read.items()}
 
