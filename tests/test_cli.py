@@ -11,9 +11,10 @@ from pathlib import Path
 import netCDF4
 import pytest
 
-from burridge_knopoff import Chain, FormulaLaw, Settings, simulate
+from burridge_knopoff import Chain, FormulaLaw, Model, Settings, law_of, simulate
 from burridge_knopoff.cli import main
 from burridge_knopoff.laws import LAWS
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.study.formatting import to_ascii, with_error
 
 BK = str(Path(sys.executable).parent / "bk")
@@ -110,6 +111,29 @@ def test_a_state_without_a_name_is_not_one_of_the_paper(tmp_path, given, positio
         assert dataset["initial_position"][:].tolist() == position
 
 
+def test_the_other_half_of_a_state_is_that_of_the_paper_at_this_v(tmp_path):
+    model = Model(Chain(3), law_of("nonlinear", 0.08), 0.03)
+    position, velocity = model.initial_coordinates(PAPER_STATES["minus"])
+    for given, own in ((["--position", "-0.9,-1,-1"], "position"), (["--velocity", "0.1,0.2,0.3"], "velocity")):
+        options = ["--law", "nonlinear", "--a", "0.08", "--v", "0.03", "--transient", "0", "--window", "1", *given]
+        assert main(["simulate", *options, "--out", str(tmp_path / "x.nc")]) == 0
+        with netCDF4.Dataset(tmp_path / "x.nc") as dataset:
+            assert (dataset["initial_position"][:] == position).all() == (own != "position")
+            assert (dataset["initial_velocity"][:] == velocity).all() == (own != "velocity")
+
+
+def test_a_state_of_the_paper_follows_v_and_its_command_makes_the_same_file(tmp_path):
+    for v in ("0.1", "0.2"):
+        first, again = tmp_path / f"{v}.nc", tmp_path / f"{v}_again.nc"
+        assert main([*RUN, "--v", v, "--initial", "plus", "--out", str(first)]) == 0
+        with netCDF4.Dataset(first) as dataset:
+            assert ("--position" in dataset.history) == (v == "0.1")
+            assert dataset["initial_velocity"][0] == pytest.approx(0.99 * float(v), rel=1e-15)
+            words = shlex.split(dataset.history)
+        assert main([*words[1:], "--out", str(again)]) == 0
+        assert again.read_bytes() == first.read_bytes()
+
+
 def test_times_longer_than_the_run_are_reported(tmp_path, capsys):
     assert main([*RUN, "--trajectory", "5000", "--event-window", "25", "--out", str(tmp_path / "x.nc")]) == 0
     output = capsys.readouterr().err.splitlines()
@@ -152,6 +176,18 @@ def test_no_events(tmp_path):
         ([*RUN, "--v", "٣", "--out", "x.nc"], "--v: got '٣', expected a number"),
         ([*RUN, "--v", "", "--out", "x.nc"], "--v: got '', expected a number"),
         ([*RUN, "--v", "0x1", "--out", "x.nc"], "--v: got '0x1', expected a number"),
+        ([*RUN, "--v", "010", "--out", "x.nc"], "--v: got '010', expected a number"),
+        ([*RUN, "--window", "1_0.5", "--out", "x.nc"], "--window: got '1_0.5', expected a number"),
+        ([*RUN, "--batches", "03", "--out", "x.nc"], "--batches: got '03', expected a whole number"),
+        ([*RUN, "--blocks", "03", "--out", "x.nc"], "--blocks: got '03', expected a whole number"),
+        ([*RUN, "--grid", "3,01", "--out", "x.nc"], "--grid: got '3,01', expected whole numbers"),
+        ([*RUN, "--position", "1,-01,1", "--out", "x.nc"], "--position: got '1,-01,1', expected numbers"),
+        ([*RUN, "--section", "block=02", "--out", "x.nc"], "section.block: got '02', expected a whole number"),
+        (
+            [*RUN, "--threshold", "random=uniform,low=1,high=1_0,seed=1", "--out", "x.nc"],
+            "chain.threshold.high: got '1_0', expected a number",
+        ),
+        ([*DROP, "--number", "sigma=00", "--out", "x.nc"], "--number: got '00', expected a number"),
         ([*RUN, "--batches", "1e3", "--out", "x.nc"], "--batches: got '1e3', expected a whole number"),
         ([*RUN, "--batches", "9" * 5000, "--out", "x.nc"], ", expected a whole number"),
         ([*RUN, "--position", "1,nan,1", "--out", "x.nc"], "position[1]: got nan, expected a number"),
@@ -168,7 +204,8 @@ def test_no_events(tmp_path):
         ([*RUN, "--a", "-0.1", "--out", "x.nc"], "a: -0.1"),
         ([*RUN, "--a", "nan", "--out", "x.nc"], "a: nan"),
         ([*RUN, "--a", "1e400", "--out", "x.nc"], "a: inf"),
-        ([*RUN, "--law", "linear", "--out", "x.nc"], " | ".join(LAWS)),
+        ([*RUN, "--law", "linear", "--out", "x.nc"], f"{' | '.join(LAWS)}, or a formula (did you mean linearized?)"),
+        ([*RUN, "--law", "1 - a*u", "--out", "x.nc"], 'on a command line --formula "1 - a*u"'),
         ([*RUN, "--law", "nonlinear", "--solver", "map", "--out", "x.nc"], "series | rk4"),
         ([*RUN, "--solver", "euler", "--out", "x.nc"], "series | map | rk4"),
         (["simulate", "--a", "0.1", "--out", "x.nc"], "--law --formula"),
@@ -196,7 +233,8 @@ def test_no_events(tmp_path):
         ([*RUN, "--threshold", "nan", "--out", "x.nc"], "chain.threshold: got nan, expected"),
         ([*RUN, "--ends", "closed", "--out", "x.nc"], "chain.ends: got 'closed', expected open | ring"),
         ([*RUN, "--ends", "ring", "--solver", "map", "--out", "x.nc"], "solver: got 'map', expected"),
-        ([*RUN, "--initial", "middle", "--out", "x.nc"], "minus | plus"),
+        ([*RUN, "--initial", "middle", "--out", "x.nc"], "minus | plus, or both"),
+        ([*RUN, "--initial", "Plus", "--out", "x.nc"], "minus | plus (did you mean plus?)"),
         ([*RUN, "--blocks", "4", "--out", "x.nc"], "blocks: 4"),
         ([*RUN, "--blocks", "1", "--out", "x.nc"], "blocks: 1"),
         ([*RUN, "--position", "1,2,z", "--out", "x.nc"], "--position"),

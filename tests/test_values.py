@@ -9,8 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from burridge_knopoff import FormulaLaw
+from burridge_knopoff.laws import LAWS
+from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
-from burridge_knopoff.values import LONGEST, cut, format_value, full_key, refusal
+from burridge_knopoff.values import LONGEST, cut, format_value, full_key, number_in, refusal, suggestion
 from tests.fuzzing import examples
 from tests.refused import refused
 
@@ -116,6 +118,40 @@ def test_an_odd_formula(formula):
         FormulaLaw(0.1, formula)
     assert str(caught.value).isprintable()
     assert len(str(caught.value)) < 400
+
+
+@pytest.mark.parametrize(
+    ("known", "meant"),
+    [
+        (
+            LAWS,
+            {
+                "linearized": ["linear", "Linear", "LINEARIZED", "linar", "lineal", "linearised", "lin"],
+                "nonlinear": ["nonlin", "Nonlinear", "non-linear", "noninear"],
+                "exponential": ["exp", "exponental"],
+                "carlson_langer": ["carlson", "Carlson-Langer", "langer"],
+                "": ["1 - a*u", "coulomb", "x", "", "l" * 10**7, None, 3, ["linear"]],
+            },
+        ),
+        (
+            ("minus", "plus"),
+            {"plus": ["Plus", "plsu", "PLUS", "pluss"], "minus": ["Minus", "mins", "min"], "": ["own", "p"]},
+        ),
+        (CONFIG.fields, {"window": ["windows", "Window"], "lyapunov_exponents": ["lyapunov_exponent"], "": ["zzz"]}),
+    ],
+)
+def test_the_closest_name_is_suggested(known, meant):
+    for name, words in meant.items():
+        hint = f" (did you mean {name}?)" if name else ""
+        assert {cut(f"{word}"): suggestion(word, known) for word in words} == dict.fromkeys(
+            (cut(f"{word}") for word in words), hint
+        )
+
+
+@given(st.integers() | st.floats(allow_nan=False, allow_infinity=False))
+def test_the_text_of_a_number_is_that_number(number):
+    assert number_in(repr(number)) == number
+    assert type(number_in(repr(number))) is type(number)
 
 
 @pytest.mark.parametrize("form", ["[{}]", "{{<<: [{}]}}"])

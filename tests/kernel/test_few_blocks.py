@@ -122,7 +122,7 @@ def test_the_section_is_part_of_all_forms_of_settings():
         ({"of": "sum", "block": 1}, "section.block: got 1, expected 0 with of: sum"),
         ("all", "section.of: got 'all', expected"),
         (2, "section: got 2, expected"),
-        ("block=two", "section.block: got 'two', expected"),
+        *((f"block={text}", f"section.block: got {text!r}, expected") for text in ("two", "02", "1_0", "٢")),
     ],
 )
 def test_sections_that_are_refused(section, message):

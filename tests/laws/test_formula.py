@@ -14,6 +14,7 @@ REFUSED = {
     "formula": [
         *("__import__('os').system('true')", "u.real", "exp(u, u)", "exp(x=u)", "abs(u)", "[1]", "lambda u: 1"),
         *("1 if u else 1", "(x := 1)", "'1'", "True", "1j", "f'{u}'"),
+        *("1 - 1_0*a*u", "1 - 0x1*u", "1 - 0b1*u", "1 - 0o7*u", "1 - 010*u", "1 - 00*u", "1 - ٣*u"),
     ],
     "b: unknown name": ["1 - b*u"],
     "its value at u = 0 is 2": ["2 - u"],
@@ -79,6 +80,15 @@ def test_a_formula_equals_the_built_in_law():
     built_in, formula = LAWS["nonlinear"](0.2), FormulaLaw(0.2, "1/(1 + a*u)")
     assert formula.tape == built_in.tape
     assert formula != built_in
+
+
+def test_the_way_to_give_a_formula_is_named():
+    way = 'or a formula: {"formula": "1 - a*u"}, on a command line --formula "1 - a*u"'
+    for text in ("1 - a*u", "1/(1 + a*u)", "coulomb"):
+        with refused(f"law: {text!r}", way):
+            law_of(text, 0.1)
+    with refused("law: 'linear'", "or a formula (did you mean linearized?)"):
+        law_of("linear", 0.1)
 
 
 @pytest.mark.parametrize(

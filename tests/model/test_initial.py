@@ -1,9 +1,39 @@
-"""Initial states: the paper's, by name or numbers, and refused ones."""
+"""Initial states: the paper's, by name or numbers, which follow v, and refused ones."""
 
+import pickle
+
+import numpy as np
 import pytest
 
-from burridge_knopoff import InitialState
-from burridge_knopoff.model.initial import PAPER_STATES, initial_state
+from burridge_knopoff import Chain, FormulaLaw, InitialState, Model, Settings, law_of, simulate, sweep
+from burridge_knopoff.model.initial import PAPER_STATES, PaperState, initial_state
+from burridge_knopoff.running.command import simulate_command
+from tests.refused import refused
+
+LAWS = (
+    law_of("linearized", 0.08),
+    law_of("linearized", 0.2345),
+    law_of("nonlinear", 0.3),
+    law_of("carlson_langer", 0.1),
+    FormulaLaw(0.1, "1 - v*tanh(a*u/v)", v=0.2),
+)
+CHAINS = (
+    Chain(3),
+    Chain(3, mass=(1.0, 2.0, 0.5), damping=0.1, pulling_damping=0.05),
+    Chain(3, coupling=(0.7, 1.3), pulling=(1.0, 0.0, 2.0), threshold=(1.0, 1.2, 0.9)),
+)
+
+
+def as_numbers(state):
+    return InitialState(state.name, state.position, state.velocity)
+
+
+def uniform_sliding(model):
+    """Return e by its definition: a block at v is in balance, K e = −Φ(v) · threshold."""
+    chain = model.chain
+    c, d = chain.parameter_values("coupling"), chain.driving
+    stiffness = np.diag(d) + np.array([[c[0], -c[0], 0.0], [-c[0], c.sum(), -c[1]], [0.0, -c[1], c[1]]])
+    return np.linalg.solve(stiffness, -float(model.law(model.v)) * chain.thresholds)
 
 
 def test_the_paper_states():
@@ -11,23 +41,99 @@ def test_the_paper_states():
     assert minus.position[1:] == plus.position[1:] == (-0.993, -0.991)
     assert minus.position[0] == -plus.position[0] == -0.989
     assert minus.velocity == plus.velocity == (0.099, 0.1012, 0.1023)
+    assert pickle.loads(pickle.dumps(plus)) == plus != as_numbers(plus)
 
 
 def test_initial_state_by_name_or_numbers():
     assert initial_state("plus") is PAPER_STATES["plus"]
     assert initial_state("mine", (1.0, 2.0), (0.0, 0.1)) == InitialState("mine", (1.0, 2.0), (0.0, 0.1))
-    assert initial_state("plus", (1.0, 2.0, 3.0)).velocity == PAPER_STATES["plus"].velocity
-    assert initial_state("plus", velocity=(0.0, 0.1, 0.2)) == InitialState(
-        "plus", PAPER_STATES["plus"].position, (0.0, 0.1, 0.2)
-    )
-    with pytest.raises(ValueError, match="minus"):
-        initial_state("mine")
+    plus = PAPER_STATES["plus"]
+    assert initial_state("plus", plus.position, plus.velocity) == as_numbers(plus)
+    for name, meant in (("Plus", "plus"), ("plsu", "plus"), ("MINUS", "minus"), ("mins", "minus")):
+        with refused(f"initial: {name!r}, expected minus | plus (did you mean {meant}?), or both"):
+            initial_state(name)
+    for given in ({}, {"position": (1.0, 2.0)}, {"velocity": (1.0, 2.0)}):
+        with refused("initial: 'own', expected minus | plus, or both position and velocity"):
+            initial_state("own", **given)
 
 
+@pytest.mark.parametrize("chain", CHAINS)
+@pytest.mark.parametrize("law", LAWS, ids=str)
+@pytest.mark.parametrize("state", PAPER_STATES.values(), ids=PAPER_STATES)
+def test_at_the_v_of_the_paper_its_numbers_are_those_of_the_paper(state, law, chain):
+    model = Model(chain, law, 0.1)
+    followed, given = (model.initial_coordinates(one) for one in (state, as_numbers(state)))
+    assert np.array_equal(followed, given)
+    assert np.array_equal(given, [state.position, state.velocity])
+    assert simulate_command(model, state, Settings()) == simulate_command(model, as_numbers(state), Settings())
+
+
+@pytest.mark.parametrize("v", [1e-6, 0.003, np.nextafter(0.1, 0.0), np.nextafter(0.1, 1.0), 0.2, 0.7, 40.0])
+@pytest.mark.parametrize("chain", CHAINS)
+@pytest.mark.parametrize("law", LAWS, ids=str)
+def test_velocities_and_distances_from_uniform_sliding_are_in_proportion_to_v(law, chain, v):
+    model, at_paper = Model(chain, law, v), Model(chain, law, 0.1)
+    for state in PAPER_STATES.values():
+        position, velocity = model.initial_coordinates(state)
+        distance = np.array(state.position) - uniform_sliding(at_paper)
+        np.testing.assert_allclose(position - uniform_sliding(model), v / 0.1 * distance, rtol=1e-13, atol=1e-15)
+        np.testing.assert_allclose(velocity, v / 0.1 * np.array(state.velocity), rtol=1e-15)
+        assert np.array_equal(model.initial_coordinates(as_numbers(state)), [state.position, state.velocity])
+        commands = {simulate_command(model, one, Settings()) for one in (state, as_numbers(state))}
+        assert len(commands) == 2
+
+
+def test_the_mean_distance_is_in_proportion_to_v_under_the_linearized_law():
+    """Twice the 0.14064 of a = 0.08 at the v of the paper is 0.28128."""
+    v = [0.01, 0.1, 0.2, 3.0]
+    runs = sweep("linearized", [0.05, 0.08], "plus", v=v)
+    assert runs["mean_distance"].sel(a=0.08, v=0.2).item() == pytest.approx(0.28128, abs=1e-5)
+    ratio = runs["mean_distance"] / runs["mean_distance"].sel(v=0.1)
+    np.testing.assert_allclose(ratio.transpose("a", "v"), [np.array(v) / 0.1] * 2, rtol=1e-9)
+    assert (sweep("linearized", 0.08, "minus", v=v)["mean_distance"] < 1e-12).all()
+
+
+@pytest.mark.parametrize("start", ["moving", "tested"])
+@pytest.mark.parametrize("initial", PAPER_STATES)
+def test_the_motion_is_in_proportion_to_v_under_the_linearized_law(initial, start):
+    runs = [
+        simulate("linearized", 0.15, initial, v=v, transient=0.0, window=150.0, events="all", start=start)
+        for v in (0.1, 0.037)
+    ]
+    one, other = ((run.event_position - run.model.sliding_offset) / run.model.v for run in runs)
+    assert runs[0].event_count == runs[1].event_count > 100
+    np.testing.assert_allclose(one, other, atol=1e-8)
+    np.testing.assert_allclose(runs[0].event_time, runs[1].event_time, atol=1e-8)
+    assert np.array_equal(runs[0].initially_slipping, runs[1].initially_slipping)
+
+
+def test_a_run_is_repeated_from_its_initial_state_and_stores_where_it_began():
+    options = {"transient": 0.0, "window": 20.0, "events": "all"}
+    run = simulate("nonlinear", 0.2, "plus", v=0.3, **options)
+    again = simulate(run.model, initial=run.initial, **options)
+    stored = run.to_dataset()
+    numbers = (stored["initial_position"].values, stored["initial_velocity"].values)
+    own = simulate(run.model, initial=numbers, **options)
+    for other in (again, own):
+        assert np.array_equal(run.event_time, other.event_time)
+        assert np.array_equal(run.event_position, other.event_position)
+    assert stored.attrs["history"] == again.to_dataset().attrs["history"]
+
+
+def test_own_numbers_are_taken_as_they_are_under_any_name():
+    plus = PAPER_STATES["plus"]
+    for given in (as_numbers(plus), {"name": "plus", "position": plus.position, "velocity": plus.velocity}):
+        stored = simulate("linearized", 0.08, given, v=0.2, transient=0.0, window=1.0).to_dataset()
+        assert stored["initial_position"].values.tolist() == list(plus.position)
+    with refused("initial.name: 'plus', expected another name"):
+        simulate("linearized", 0.08, {"name": "plus", "position": plus.position, "velocity": (0.1, 0.1, 0.1)})
+
+
+@pytest.mark.parametrize("kind", [InitialState, PaperState])
 @pytest.mark.parametrize("last", [float("nan"), 1e7, 10**400, "1", None])
-def test_refused(last):
+def test_refused(kind, last):
     with pytest.raises(ValueError, match="position"):
-        InitialState("bad", (0.0, last), (0.1, 0.1))
+        kind("bad", (0.0, last), (0.1, 0.1))
     for velocity in ((0.1,), (0.1, True)):
         with pytest.raises(ValueError, match="velocity"):
-            InitialState("bad", (0.0, 0.0), velocity)
+            kind("bad", (0.0, 0.0), velocity)

@@ -195,6 +195,9 @@ def test_random_numbers_depend_on_their_seed():
     assert (chain.thresholds == longer.thresholds[:50]).all()
     assert chain.threshold == "random=uniform,low=0.5,high=1.5,seed=3"
     assert (chain.thresholds != Chain(50, threshold={**UNIFORM, "seed": 4}).thresholds).all()
+    for text in ("01", "1_0", "٣", "0x1", " 1", "1 "):
+        with refused(f"chain.threshold.seed: {text!r}, expected a whole number"):
+            Chain(3, threshold=f"random=uniform,low=0.5,high=1.5,seed={text}")
     # Quantities of one seed are independent.
     assert abs(np.corrcoef(chain.thresholds, chain.masses)[0, 1]) < 0.5
     assert 0.5 <= chain.thresholds.min() < 0.6

@@ -13,11 +13,11 @@ from tests.refused import refused
 GOOD = {"study": "x", "a": [0.1], "initial": {"minus": {}}}
 
 
-def as_snakemake(entry):
-    """Return the value of an entry of --config as Snakemake has read it."""
+def given_by(*entries):
+    """Return the values that entries of --config give, after Snakemake has read them."""
     from snakemake.cli import parse_config
 
-    return parse_config([entry])
+    return of_command_line(entries, parse_config(entries))
 
 
 @pytest.mark.parametrize(
@@ -35,7 +35,33 @@ def as_snakemake(entry):
 def test_nested_values_are_those_of_a_file(tmp_path, text):
     path = tmp_path / "config.yaml"
     path.write_text(f"key: {text}".replace("2020-99-99", "'2020-99-99'"))
-    assert of_command_line(as_snakemake(f"key={text}")) == read_config(path)
+    assert given_by(f"key={text}") == read_config(path)
+
+
+@pytest.mark.parametrize("number", ["10", "+10", "-0", "1e1", ".5", "5.", "010.5", "1E-3", " 7 "])
+def test_a_number_is_that_of_a_file(tmp_path, number):
+    path = tmp_path / "config.yaml"
+    path.write_text(f"key: {number}\n")
+    assert given_by(f"key={number}") == read_config(path) == {"key": float(number)}
+
+
+@pytest.mark.parametrize("text", ["010", "-010", "7_000", "1_0.5", "1_0e5", "٣", "1٣", "٣.5", "０"])
+def test_what_only_python_reads_as_a_number_is_text(tmp_path, text):
+    """Also inside lists and mappings, and where the same key was given before."""
+    assert given_by(f"key={text}") == {"key": text}
+    assert given_by("key=3", f"key={text}") == {"key": text}
+    assert given_by(f"key=[{text}, 1]", f"other={{inside: {text}}}") == {"key": [text, 1], "other": {"inside": text}}
+    path = tmp_path / "config.yaml"
+    path.write_text(f"key: {text}\n", encoding="utf-8")
+    assert read_config(path) == {"key": text}
+    with refused(f"--config: window: {text!r}", "a number"):
+        load_study({**GOOD, **given_by(f"window={text}")}, "mine.yaml", GOOD)
+
+
+@pytest.mark.parametrize("text", ["nan", "inf", "-Infinity", "1e400"])
+def test_what_is_no_finite_number_is_refused(text):
+    with refused("--config: window: ", "a number between"):
+        load_study({**GOOD, **given_by(f"window={text}")}, "mine.yaml", GOOD)
 
 
 NAMES = st.sampled_from(["series", "m"])
@@ -46,10 +72,7 @@ NESTED = st.recursive(PLAIN, lambda inside: st.lists(inside, max_size=3) | st.di
 @given(st.dictionaries(st.sampled_from(["window", "basins", "laws"]), NESTED))
 @examples(200)
 def test_printed_values_are_read_back(overrides):
-    read = {}
-    for entry in config_entries(overrides):
-        read |= as_snakemake(entry)
-    assert of_command_line(read) == overrides
+    assert given_by(*config_entries(overrides)) == overrides
 
 
 def test_an_error_names_its_place():

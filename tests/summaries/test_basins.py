@@ -26,8 +26,9 @@ def ruled(monkeypatch):
 
     def label_states(model, attractors, position, velocity, *, start, time_limit, threads):
         assert (start, time_limit, threads) == ("moving", SEARCH.label_limit, 1)
-        assert (position[:, 1] == PAPER_STATES["minus"].position[1]).all()
-        assert (velocity == PAPER_STATES["minus"].velocity).all()
+        middle, speed = model.initial_coordinates(PAPER_STATES["minus"])
+        assert (position[:, 1] == middle[1]).all()
+        assert (velocity == speed).all()
         return rule(position), 100.0 + position[:, 0]
 
     monkeypatch.setattr(basins, "label_states", label_states)

@@ -34,7 +34,7 @@ from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.paths import VALUE
-from burridge_knopoff.study.study import remarks
+from burridge_knopoff.study.remarks import remarks
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.refusal import call_error, cluster_error
@@ -58,10 +58,18 @@ if error := call_error(ROOT, workflow.configfiles):
     sys.exit(error)
 
 try:
-    # A workflow that imports the study passes its config on, including the values of the command line.
-    OVERRIDES = {} if IMPORTED else of_command_line(workflow.config_settings.config)
-    # Snakemake has read the file as well, but accepts values that are refused here; only --config is taken from it.
-    WRITTEN = config if IMPORTED else read_config(CONFIG_FILE)
+    # Snakemake has read --config and the file as well, but accepts values that are refused here.
+    READ = workflow.config_settings.config
+    OVERRIDES = of_command_line(workflow.config_settings.config_args, READ)
+    if IMPORTED:
+        # The workflow that imports the study passes its config on, including the values of the command line.
+        WRITTEN = {
+            key: OVERRIDES[key] if key in READ and READ[key] == value else value
+            for key, value in config.items()
+        }
+        OVERRIDES = {}
+    else:
+        WRITTEN = read_config(CONFIG_FILE)
     GIVEN = copy.deepcopy(WRITTEN)
     update_config(GIVEN, OVERRIDES)
     STUDY = load_study(GIVEN, display_path(CONFIG_FILE), WRITTEN)

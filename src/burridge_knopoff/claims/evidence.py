@@ -12,9 +12,9 @@ import numpy as np
 from burridge_knopoff.claims.verdict import NotTestableError, Range, Verdict
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.model.initial import PAPER_V, has_paper_numbers, initial_state
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.study.paper import PAPER_A, PAPER_LAWS, PAPER_TRANSIENT, PAPER_V, PAPER_WINDOW
+from burridge_knopoff.study.paper import PAPER_A, PAPER_LAWS, PAPER_TRANSIENT, PAPER_WINDOW
 
 if TYPE_CHECKING:
     import xarray
@@ -143,9 +143,7 @@ class Evidence:
         states = self.config["initial"]
         if initial not in states:
             raise NotTestableError(f"the study has no initial state {initial}")
-        paper = PAPER_STATES[initial]
-        own = states[initial]
-        if InitialState(initial, **own) != paper:
+        if not has_paper_numbers(initial_state(initial, **states[initial])):
             raise NotTestableError(f"the study's initial state {initial} is not the paper's")
 
     def choose(self, dataset: xarray.Dataset, a: Range, least: int = MIN_VALUES) -> xarray.Dataset:

@@ -20,7 +20,7 @@ from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.provenance.files import check_target
 from burridge_knopoff.running.command import CHAIN_OPTIONS
-from burridge_knopoff.values import format_value
+from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER, format_value
 
 _T = TypeVar("_T")
 
@@ -40,15 +40,19 @@ def _reader(pattern: str, words: str, read: Callable[[str], Any] = str) -> Calla
     return value
 
 
-# Python's own conversion also accepts 1_0 for ten, and digits of every script.
-read_number = _reader(r"[-+.0-9a-zA-Z]+", "a number", float)
-read_natural = _reader(r"[0-9]{1,9}", "a whole number, 0 or more", int)
-read_whole = _reader(r"[-+]?[0-9]{1,9}", "a whole number", int)
+# The ranges refuse inf and nan, and say which numbers they expect.
+_NUMBER = f"(?:{WHOLE_NUMBER}|{OTHER_NUMBER}|[-+]?(?:inf|nan))"
+_NATURAL = "(?:0|[1-9][0-9]{0,8})"
+read_number = _reader(_NUMBER, "a number", float)
+read_natural = _reader(_NATURAL, "a whole number, 0 or more", int)
+read_whole = _reader(f"[-+]?{_NATURAL}", "a whole number", int)
 _read_numbers = _reader(
-    r"[-+.0-9a-zA-Z,]+", "numbers with commas between them", lambda text: tuple(map(float, text.split(",")))
+    f"{_NUMBER}(,{_NUMBER})*", "numbers with commas between them", lambda text: tuple(map(float, text.split(",")))
 )
 _read_wholes = _reader(
-    r"[0-9]{1,9}(,[0-9]{1,9})*", "whole numbers with commas between them", lambda text: tuple(map(int, text.split(",")))
+    f"{_NATURAL}(,{_NATURAL})*",
+    "whole numbers with commas between them",
+    lambda text: tuple(map(int, text.split(","))),
 )
 _read_named_number = _reader(
     r"(?!(?:name|law|formula)=)[A-Za-z_][A-Za-z0-9_]*=.*",
@@ -169,8 +173,8 @@ def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
         "--initial",
         type=_reader(STATE_NAME.pattern, STATE_NAME.words),
         metavar="NAME",
-        help=f"{' | '.join(PAPER_STATES)} (the paper's states), or a name for the state given below (default: {usual}; "
-        f"{OWN} for a state given below)",
+        help=f"{' | '.join(PAPER_STATES)} (the paper's states, which follow v), or a name for the state given below "
+        f"(default: {usual}; {OWN} for a state given below)",
     )
     _complete(initial, PAPER_STATES)
     state.add_argument("--blocks", type=read_whole, help="number of blocks N (default: the number of positions)")
@@ -180,7 +184,7 @@ def add_state(parser: argparse.ArgumentParser, usual: str) -> None:
 def state_of(options: argparse.Namespace) -> InitialState | None:
     """Return the initial state given by the options, or None if they give none.
 
-    If only positions or only velocities are given, the others are those of the paper's states.
+    If only positions or only velocities are given, the others are those that `minus` has in this model.
 
     Raises ValueError as `initial_state` does, and if a name of the paper's states is given other numbers.
     """
@@ -194,11 +198,12 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
             missing = "position" if given[0] is None else "velocity"
             raise ValueError(f"{missing}: missing, expected one number per block; only three blocks have defaults")
         name = OWN
-        position, velocity = given
-        given = (
-            usual.position if position is None else position,
-            usual.velocity if velocity is None else velocity,
-        )
+        if None in given:
+            position, velocity = model_of(options, usual).initial_coordinates(usual)
+            given = (
+                position.tolist() if given[0] is None else given[0],
+                velocity.tolist() if given[1] is None else given[1],
+            )
     elif name in PAPER_STATES and (given[0] is None) != (given[1] is None):
         raise ValueError(
             f"initial: got {format_value(name)} with numbers other than the paper's, expected another name or none"

@@ -108,7 +108,7 @@ def point_values(trajectory: Trajectory) -> dict[str, Any]:
     """Return the values of all point variables."""
     settings = trajectory.settings
     width = settings.window / settings.batches
-    position, velocity = trajectory.initial.coordinates(trajectory.model.blocks)
+    position, velocity = trajectory.model.initial_coordinates(trajectory.initial)
     special = {
         "a": trajectory.model.a,
         "v": trajectory.model.v,

@@ -29,10 +29,12 @@ COLUMNS = 2
 
 
 @styled
-def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict[str, tuple[float, float]]) -> Figure:
+def draw(
+    basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict[str, list[tuple[float, float]]]
+) -> Figure:
     """Draw each map in the colours of the branches reached: mirror images in a lighter shade, undetermined in black.
 
-    marked_states : U_1(0) and U_N(0), by name, of the initial states in the plane of the maps
+    marked_states : U_1(0) and U_N(0) on each map, by name, of the initial states in its plane
     """
     count = basins.sizes["map"]
     columns = min(COLUMNS, count)
@@ -43,9 +45,9 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
     names = branch_names(attractors)
     extent = (*basins.attrs["first_range"], *basins.attrs["last_range"])
     there = {
-        name: (x, y)
-        for name, (x, y) in marked_states.items()
-        if extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3]
+        name: points
+        for name, points in marked_states.items()
+        if all(extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3] for x, y in points)
     }
     titles = []
     shown: dict[tuple[int, int], Patch] = {}
@@ -63,7 +65,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict
             )
         panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="auto")
         panel.set_box_aspect(1.0)
-        for index, (x, y) in enumerate(there.values()):
+        for index, (x, y) in enumerate(points[number] for points in there.values()):
             panel.plot(x, y, "o", markersize=8, markerfacecolor="white", markeredgecolor="black", markeredgewidth=0.7)
             panel.plot(x, y, **_number(index))
         if number >= count - columns:

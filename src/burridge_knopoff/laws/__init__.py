@@ -53,5 +53,11 @@ def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) ->
         return FormulaLaw(a, values.pop("formula"), name=name, **values)
     kind = values.pop("law", name)
     if not isinstance(kind, str) or kind not in LAWS:
-        raise refusal("law", kind, f"{' | '.join(LAWS)}, or a formula{suggestion(kind, LAWS)}")
+        raise unknown_law("law", kind)
     return LAWS[kind](a, name=name, **values)
+
+
+def unknown_law(key: str, name: Any) -> ValueError:
+    """Return the error for a name that is not that of a built-in law: the closest name, or how to give a formula."""
+    hint = suggestion(name, LAWS) or ': {"formula": "1 - a*u"}, on a command line --formula "1 - a*u"'
+    return refusal(key, name, f"{' | '.join(LAWS)}, or a formula{hint}")

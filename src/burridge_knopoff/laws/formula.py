@@ -8,10 +8,10 @@ import re
 from collections.abc import Mapping
 
 from burridge_knopoff.laws.tape import SPEED, Builder, Tape, Term, number
-from burridge_knopoff.values import cut
+from burridge_knopoff.values import cut, number_in
 
 FUNCTIONS = ("sqrt", "exp", "log", "tanh")
-SYNTAX = "numbers, names, + - * / **, parentheses, " + ", ".join(f"{name}()" for name in FUNCTIONS)
+SYNTAX = "decimal numbers, names, + - * / **, parentheses, " + ", ".join(f"{name}()" for name in FUNCTIONS)
 
 # Formulas appear in commands and files: one line of ASCII, since letters of other alphabets may look the same.
 _ALLOWED = re.compile(r"[-+*/().\w ]+", re.ASCII)
@@ -40,7 +40,8 @@ def compile_formula(formula: str, values: Mapping[str, float]) -> Tape:
         raise FormulaError(f"not a formula: {SYNTAX}") from None
     builder = Builder()
     try:
-        return builder.tape(_Reader(builder, {"u": SPEED} | {key: number(x) for key, x in values.items()}).read(tree))
+        terms = {"u": SPEED} | {key: number(x) for key, x in values.items()}
+        return builder.tape(_Reader(builder, formula.strip(), terms).read(tree))
     except (OverflowError, ZeroDivisionError):
         raise FormulaError("a constant term is not finite") from None
 
@@ -48,8 +49,9 @@ def compile_formula(formula: str, values: Mapping[str, float]) -> Tape:
 class _Reader:
     """Translates the syntax tree of a formula into operations on a tape."""
 
-    def __init__(self, builder: Builder, names: Mapping[str, Term]) -> None:
+    def __init__(self, builder: Builder, formula: str, names: Mapping[str, Term]) -> None:
         self.builder = builder
+        self.formula = formula
         self.names = names
 
     def read(self, node: ast.AST) -> Term:
@@ -58,7 +60,11 @@ class _Reader:
         match node:
             case ast.Expression(body=body):
                 return self.read(body)
-            case ast.Constant(value=int() | float() as value) if not isinstance(value, bool) and abs(value) < 1e300:
+            case ast.Constant(col_offset=first, end_col_offset=last):
+                # Python reads more as numbers, such as 1_0 and 0x1F.
+                value = number_in(self.formula[first:last])
+                if value is None or not abs(value) < 1e300:
+                    raise FormulaError(f"{cut(self.formula[first:last])} is not allowed in a formula: {SYNTAX}")
                 return number(float(value))
             case ast.Name(id=name) if name in self.names:
                 return self.names[name]

@@ -9,7 +9,7 @@ from typing import Any, TypedDict, TypeVar
 
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.running.section import Section
-from burridge_knopoff.values import full_key, instance_of
+from burridge_knopoff.values import full_key, instance_of, suggestion
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 _T = TypeVar("_T")
@@ -81,5 +81,7 @@ def settings_of(kind: type[_T], settings: _T | None, by_name: Mapping[str, Any])
     known = fields_of(kind)
     for name in by_name:
         if name not in known:
-            raise ValueError(f"{full_key('', name)}: not a setting, expected {' | '.join(sorted(known))}")
+            raise ValueError(
+                f"{full_key('', name)}: not a setting, expected {' | '.join(sorted(known))}{suggestion(name, known)}"
+            )
     return kind(**by_name) if settings is None else replace(settings, **by_name)  # type: ignore[type-var]

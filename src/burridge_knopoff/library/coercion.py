@@ -11,7 +11,7 @@ import numpy as np
 from burridge_knopoff.laws import Law, law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import Field, Keys, fields_of
-from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
+from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, has_paper_numbers, initial_state
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.cost import cost_note, is_stiff
 from burridge_knopoff.running.settings import Settings
@@ -36,7 +36,7 @@ def given_state(given: Initial) -> InitialState:
     Raises ValueError, one line, for anything else, and for other values under one of the paper's names.
     """
     state = given if isinstance(given, InitialState) else _state(given)
-    if PAPER_STATES.get(state.name, state) != state:
+    if state.name in PAPER_STATES and not has_paper_numbers(state):
         raise refusal("initial.name", state.name, "another name: the paper has a different state of that name")
     return state
 

@@ -30,9 +30,10 @@ def simulate(
 
     law, a : the name of a built-in law and the friction parameter (0.08 by default), a `Law` (with its own a), or
         {"formula": "1 - c*a*u", "c": 0.5}; or instead of both a `Model`, with its own chain, v and contact
-    initial : minus (default) or plus (the paper's, three blocks), an `InitialState`, {"position": …, "velocity": …} or
-        (position, velocity): U(0) and U'(0), each of shape (blocks,); or a `ChainState`, such as `final` of another
-        run: the run continues from there on the same clock
+    initial : minus (default) or plus (the paper's, three blocks), whose velocities and distances from uniform sliding
+        are in proportion to v; an `InitialState`, {"position": …, "velocity": …} or (position, velocity): U(0) and
+        U'(0), each of shape (blocks,), at any v; or a `ChainState`, such as `final` of another run: the run continues
+        from there on the same clock
     settings : of the run; by_name : some or all of them by name (see `Settings`)
     chain : by default the paper's springs, with as many blocks as the initial state
     v, contact : see `Model`, which has the defaults

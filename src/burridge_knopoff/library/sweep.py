@@ -25,6 +25,7 @@ from burridge_knopoff.model.parameters import (
     parameter_value,
     parse_indexed_name,
     plain_name,
+    remarks_on_states,
 )
 from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.runner import LOCKSTEP_RUNS, run_together
@@ -67,7 +68,9 @@ def sweep(
     Each parameter given as a sequence is a dimension of the Dataset: first a, then the others in the order given; that
     of `mass[3]` is `mass_3`. The variables are those of a point file (docs/data.md) with one value per run, batch or
     exponent, among them `mean_distance`, `mean_distance_error`, `lyapunov_exponent` and `status`, which is 0 for
-    a completed run. Raises ValueError, one line, for a wrong argument; an error at one point names it.
+    a completed run. The states `minus` and `plus` follow v; other numbers are the same at every point, and so are those
+    of every state if springs, masses or thresholds vary: the attribute `remark` then says so. Raises ValueError, one
+    line, for a wrong argument; an error at one point names it.
 
     >>> from burridge_knopoff import sweep
     >>> runs = sweep("nonlinear", [0.02, 0.05, 0.3], transient=1000, window=500, batches=2)
@@ -121,6 +124,8 @@ def sweep(
         data[plain[name]] = plain[name], values, item.all_attributes()
     first, *others = (attributes for _, attributes in found)
     common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
+    if remark := "; ".join(remarks_on_states([state], axes)):
+        common["remark"] = remark
     return xarray.Dataset(data, attrs=common).set_coords({name for name, item in _COMMON.items() if item.coordinate})
 
 

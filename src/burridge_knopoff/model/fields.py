@@ -84,6 +84,8 @@ def settings(kind: type[_T]) -> type[_T]:
 
 def fields_of(kind: type) -> Mapping[str, Field]:
     """Return the settings of a dataclass by name: the fields that have a range."""
+    # A subclass that is no dataclass itself has the fields of its base.
+    kind = next((base for base in kind.__mro__ if "__dataclass_fields__" in vars(base)), kind)
     if kind not in _FIELDS:
         hints, found = get_type_hints(kind, include_extras=True), {}
         for item in dataclasses.fields(kind):

@@ -11,7 +11,7 @@ from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.random_numbers import Numbers, RandomNumbers, block_values
 from burridge_knopoff.model.ranges import Either, Number, Several, Text, Whole
 from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
-from burridge_knopoff.values import format_value, instance_of
+from burridge_knopoff.values import format_value, instance_of, suggestion
 
 STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
 COORDINATE = Number(-1e6, 1e6)
@@ -23,11 +23,12 @@ _BLOCK_VALUES = Either((COORDINATE, Several(COORDINATE, 1, MAXIMUM_BLOCKS), Rand
 class InitialState:
     """A named initial state: positions U(0) and velocities U'(0), one number for all blocks, one per block, or random.
 
-    `Model.begin` turns it into a `ChainState`, in which some blocks may stick.
+    `Model.begin` turns it into a `ChainState`, in which some blocks may stick. The numbers are the same in every model;
+    only the paper's two states, `minus` and `plus` (its Section III), follow the velocity of the driver: `PaperState`.
 
     Raises ValueError, one line, for a number out of range and for different numbers of positions and velocities.
 
-    The units are those of `Model`. The paper's two states (its Section III) have the names `minus` and `plus`.
+    The units are those of `Model`.
 
     >>> from burridge_knopoff import InitialState
     >>> InitialState("own", position=(-0.9, -1.1), velocity=(0.1, 0.1))
@@ -73,28 +74,42 @@ class InitialState:
         return block_values(self.position, blocks, "position"), block_values(self.velocity, blocks, "velocity")
 
 
+#: The velocity v of the driver in the paper.
+PAPER_V = 0.1
+
+
+class PaperState(InitialState):
+    """One of the paper's initial states, with the numbers of the paper, which are for v = PAPER_V.
+
+    At another v its velocities and its distances from uniform sliding are in proportion to v, with uniform sliding of
+    the model at either v (`Model.initial_coordinates`). Under the linearized law and one-sided contact the whole motion
+    is then in proportion to v.
+    """
+
+
 _PAPER_VELOCITY = (0.099, 0.1012, 0.1023)
 
 #: The paper's two initial states (Section III), which differ only in U_1(0).
 PAPER_STATES = {
-    "minus": InitialState("minus", (-0.989, -0.993, -0.991), _PAPER_VELOCITY),
-    "plus": InitialState("plus", (0.989, -0.993, -0.991), _PAPER_VELOCITY),
+    "minus": PaperState("minus", (-0.989, -0.993, -0.991), _PAPER_VELOCITY),
+    "plus": PaperState("plus", (0.989, -0.993, -0.991), _PAPER_VELOCITY),
 }
 
 
-def initial_state(name: str, position: Numbers | None = None, velocity: Numbers | None = None) -> InitialState:
-    """Return one of the paper's states by its name, or a state of this name with the given numbers.
+def has_paper_numbers(state: InitialState) -> bool:
+    """Return whether a state has the name and the numbers of one of the paper's states."""
+    paper = PAPER_STATES.get(state.name)
+    return paper is not None and (state.position, state.velocity) == (paper.position, paper.velocity)
 
-    Raises ValueError for an unknown name without numbers.
+
+def initial_state(name: str, position: Numbers | None = None, velocity: Numbers | None = None) -> InitialState:
+    """Return a state with these numbers, or without numbers the state of the paper that has this name.
+
+    Raises ValueError, one line, for any other name without numbers, and for positions or velocities alone.
     """
-    known = PAPER_STATES.get(name)
-    if position is None and velocity is None and known is not None:
-        return known
-    if position is None or velocity is None:
-        if known is None:
-            raise ValueError(
-                f"initial: got {format_value(name)}, expected {' | '.join(PAPER_STATES)}, or both position and velocity"
-            )
-        position = known.position if position is None else position
-        velocity = known.velocity if velocity is None else velocity
-    return InitialState(name, position, velocity)
+    if position is not None and velocity is not None:
+        return InitialState(name, position, velocity)
+    if name not in PAPER_STATES or position is not None or velocity is not None:
+        names = f"{' | '.join(PAPER_STATES)}{suggestion(name, PAPER_STATES)}"
+        raise ValueError(f"initial: got {format_value(name)}, expected {names}, or both position and velocity")
+    return PAPER_STATES[name]

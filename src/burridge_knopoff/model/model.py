@@ -12,7 +12,7 @@ from burridge_knopoff.laws import Law
 from burridge_knopoff.laws.law import MAX_SPEED
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import check_fields, settings
-from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.initial import PAPER_V, InitialState, PaperState
 from burridge_knopoff.model.parameters import set_parameters
 from burridge_knopoff.model.ranges import Number, OneOf, Text
 from burridge_knopoff.values import Unchanging, format_value, instance_of, read_only_copy, refusal
@@ -113,7 +113,7 @@ class Model(Unchanging):
     @property
     def scale(self) -> float:
         """Factor for distances that are given for v = 0.1: under the linearized law distances are proportional to v."""
-        return self.v / 0.1
+        return self.v / PAPER_V
 
     @property
     def state_scale(self) -> np.ndarray:
@@ -144,8 +144,15 @@ class Model(Unchanging):
         return ChainState(u - self.sliding_offset, np.where(stuck, 0.0, w), stuck)
 
     def initial_coordinates(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
-        """Return U(0) and U'(0) of an initial state, each of shape (blocks,). Raises ValueError as `begin` does."""
+        """Return U(0) and U'(0) of an initial state, each of shape (blocks,); a `PaperState` follows v.
+
+        Raises ValueError as `begin` does.
+        """
         u, w = initial.coordinates(self.blocks)
+        # Even with a factor of 1 the sum would round the numbers of the paper.
+        if isinstance(initial, PaperState) and self.v != PAPER_V:
+            of_paper = self.chain.sliding_offset(float(self.law(PAPER_V)))
+            u, w = self.sliding_offset + self.scale * (u - of_paper), self.scale * w
         self.check_directions(w, "velocity")
         return u, w
 

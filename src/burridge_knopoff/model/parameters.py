@@ -8,11 +8,12 @@ or a ring joins blocks i and i + 1; the last spring of a ring joins the last blo
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from burridge_knopoff.model.chain import BLOCK_PARAMETERS, NEIGHBOURS, SPRING_PARAMETERS
+from burridge_knopoff.model.initial import InitialState, PaperState
 from burridge_knopoff.values import full_key, real_number, refusal
 
 if TYPE_CHECKING:
@@ -21,6 +22,9 @@ if TYPE_CHECKING:
 
 #: Parameters of the chain, with their ranges.
 CHAIN_PARAMETERS = {**SPRING_PARAMETERS, **BLOCK_PARAMETERS}
+
+#: Parameters that scale velocities, distances or times, so that the same numbers are another state relative to them.
+SCALES = {"v", "coupling", "pulling", "threshold", "mass"}
 
 ONE = "one number for the whole chain"
 
@@ -109,6 +113,24 @@ def set_parameters(model: Model, parameters: Mapping[str, float]) -> Model:
     if changes["chain"] or changes["single"]:
         own["chain"] = _set_indexed_parameters(replace(model.chain, **changes["chain"]), changes["single"])
     return replace(model, **own)
+
+
+def remarks_on_states(states: Iterable[InitialState], varied: Iterable[str]) -> list[str]:
+    """Return a line for the initial states whose numbers are the same while parameters vary that scale the motion.
+
+    varied : names of the parameters that vary
+    """
+    scales = [name for name in varied if (parse_indexed_name(name) or (name,))[0] in SCALES]
+    names: dict[tuple[str, ...], list[str]] = {}
+    for state in states:
+        ignored = tuple(name for name in scales if name != "v" or not isinstance(state, PaperState))
+        names.setdefault(ignored, []).append(state.name)
+    return [
+        f"initial: {', '.join(those)}: {'in proportion to v, but ' * (set(ignored) < set(scales))}the same numbers at "
+        f"every {' and '.join(ignored)}"
+        for ignored, those in names.items()
+        if ignored
+    ]
 
 
 def _set_indexed_parameters(chain: Chain, values: Mapping[str, float]) -> Chain:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -11,7 +10,7 @@ import numpy as np
 
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.ranges import Number, OneOf, Range, Whole
-from burridge_knopoff.values import refusal
+from burridge_knopoff.values import number_in, refusal
 
 #: One number for all blocks, a list with one number per block, or random numbers by their keys or as text.
 Numbers = float | Sequence[float] | Mapping[str, Any] | str
@@ -57,14 +56,8 @@ class RandomNumbers(Range):
 
 
 def _parse(text: str) -> dict[str, Any]:
-    return {name: _parse_number(value) for name, _, value in (part.partition("=") for part in text.split(","))}
-
-
-def _parse_number(text: str) -> Any:
-    for kind in (int, float):
-        with contextlib.suppress(ValueError):
-            return kind(text)
-    return text
+    parts = (part.partition("=") for part in text.split(","))
+    return {name: value if (number := number_in(value)) is None else number for name, _, value in parts}
 
 
 def block_values(given: Numbers, blocks: int, name: str) -> np.ndarray:

@@ -12,6 +12,7 @@ import xarray
 import yaml
 
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
+from burridge_knopoff.model.initial import PAPER_V, PaperState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.provenance.record import git_commit
 from burridge_knopoff.provenance.sources import provenance
@@ -146,10 +147,13 @@ def _format_grid(items: list[Any]) -> str:
 
 
 def initial_states(study: Study) -> list[dict[str, str]]:
-    """Return name, U(0) and U'(0) of each initial state."""
+    """Return name, U(0) and U'(0) of each initial state; of one that follows v the numbers for the paper's v."""
     return [
-        {"name": name, **{key: _format_numbers(state[key]) for key in ("position", "velocity")}}
-        for name, state in study.config["initial"].items()
+        {
+            "name": f"{name} (for v = {text(PAPER_V)}, follows v)" if isinstance(state, PaperState) else name,
+            **{key: _format_numbers(getattr(state, key)) for key in ("position", "velocity")},
+        }
+        for name, state in ((name, study.state(name)) for name in study.initial)
     ]
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from burridge_knopoff.laws import LAWS, Law
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
-from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.initial import PAPER_V, InitialState, PaperState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
 
@@ -23,7 +23,9 @@ def simulate_command(model: Model, initial: InitialState, settings: Settings) ->
     words += [*_changed_options(model.chain), *_changed_options(model), "--initial", initial.name]
     if model.chain.springs or (initial.blocks != model.blocks and not model.chain.grid):
         words += ["--blocks", f"{model.blocks}"]
-    words += [f"--{key}={_format_value(getattr(initial, key))}" for key in fields_of(InitialState)]
+    # At the paper's v the numbers of a state of the paper are those of the run.
+    if not isinstance(initial, PaperState) or model.v == PAPER_V:
+        words += [f"--{key}={_format_value(getattr(initial, key))}" for key in fields_of(InitialState)]
     words += _changed_options(settings)
     return shlex.join(words)
 

@@ -10,6 +10,7 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.ranges import OneOf, Range, Whole
 from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
+from burridge_knopoff.values import number_in
 
 #: The keys of a section in a config.
 SECTION_KEYS = Keys(
@@ -66,7 +67,8 @@ class SectionRange(Range):
             return value
         if isinstance(value, str):
             of, equals, block = value.partition("=")
-            value = {"of": of, "block": int(block) if block.isdecimal() else block} if equals else {"of": of}
+            number = number_in(block)
+            value = {"of": of, "block": block if number is None else number} if equals else {"of": of}
         return Section(**SECTION_KEYS.form(value, key)) if isinstance(value, Mapping) else None
 
     def __str__(self) -> str:

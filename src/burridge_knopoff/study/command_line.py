@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -11,16 +12,25 @@ from typing import Any
 from burridge_knopoff.study.yaml_file import plain_value
 
 
-def of_command_line(value: Any) -> Any:
-    """Return the value that a config file would give, from a value that Snakemake has read from --config.
+def of_command_line(entries: Iterable[str], read: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values that a config file would give for entries of --config.
 
-    Snakemake reads `basins={pixels: 16}` as YAML with texts for numbers. Quoted and unquoted values cannot be
-    distinguished.
+    entries : as written, `key=value`; read : the values that Snakemake has read from them
+
+    Snakemake reads a single number as Python does, which accepts 010 and 7_000 too. It reads `basins={pixels: 16}` as
+    YAML with texts for numbers. Quoted and unquoted values cannot be distinguished.
     """
+    # Words for other numbers, such as nan, are refused by the ranges.
+    numbers = {key for key, value in read.items() if isinstance(value, int | float) and abs(value) < math.inf}
+    written = dict(entry.split("=", 1) for entry in entries)
+    return {key: plain_value(written[key].strip()) if key in numbers else _plain(value) for key, value in read.items()}
+
+
+def _plain(value: Any) -> Any:
     if isinstance(value, Mapping):
-        return {key: of_command_line(item) for key, item in value.items()}
+        return {key: _plain(item) for key, item in value.items()}
     if isinstance(value, list):
-        return [of_command_line(item) for item in value]
+        return [_plain(item) for item in value]
     return plain_value(value) if isinstance(value, str) else value
 
 

@@ -15,7 +15,7 @@ from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.basins.settings import BasinSettings, EdgeSettings, PhaseSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.continuation.settings import RefinementSettings
-from burridge_knopoff.laws import LAWS
+from burridge_knopoff.laws import LAWS, unknown_law
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
 from burridge_knopoff.model.initial import STATE_NAME, InitialState
@@ -54,11 +54,21 @@ PARAMETER_NAME = Text(
 STUDY_NAME = Text("letters, digits, _ and -, at most 64, a letter or digit first", "[A-Za-z0-9][A-Za-z0-9_-]{0,63}")
 
 
+class _BuiltInLaw(OneOf):
+    """The name of a built-in law."""
+
+    def form(self, value: Any, key: str) -> Any:
+        """Return a name. Raises ValueError, one line with the closest name, or with the way to give a formula."""
+        if self._fit(value, key) is None:
+            raise unknown_law(key, value)
+        return value
+
+
 class LawKeys(Range):
     """The description of a law: `law` or `formula`, and parameters under any other names."""
 
     fields: Mapping[str, Field] = {
-        "law": Field(OneOf(tuple(LAWS)), "built-in law, to use it under another name"),
+        "law": Field(_BuiltInLaw(tuple(LAWS)), "built-in law, to use it under another name"),
         "formula": Field(
             Text(), "friction over the static friction of the block, as a function of u, a and other names"
         ),
@@ -74,6 +84,9 @@ class LawKeys(Range):
 
     def __str__(self) -> str:
         return "law or formula, and parameters; {} for a built-in law with its defaults"
+
+
+_LAW_KEY = replace(LAW_NAME, words=f"{LAW_NAME.words}; a formula as NAME: {{formula: ...}}")
 
 
 def _settings_of(kind: type, *without: str, **other: Field) -> dict[str, Field]:
@@ -205,14 +218,14 @@ CONFIG = Keys(
         "initial": Field(
             Named(STATE_NAME, Keys(_STATE, "; {} for one of the paper's"), 1),
             "initial states by name, each with position U(0) and velocity U'(0): one number for all blocks, one per "
-            "block, or random; minus: {} and plus: {} are the paper's states",
+            "block, or random; minus: {} and plus: {} are the paper's states, which follow v",
         ),
         "without": Field(
             Several(OneOf(tuple(STAGES)), distinct=True),
             "stages to leave out; stages that use their results are left out as well",
             [],
         ),
-        "laws": Field(Named(LAW_NAME, LawKeys(), 1), "friction laws by name", {law: {} for law in PAPER_LAWS}),
+        "laws": Field(Named(_LAW_KEY, LawKeys(), 1), "friction laws by name", {law: {} for law in PAPER_LAWS}),
         "chain": _section("blocks and springs, by default the paper's", _settings_of(Chain)),
         **_settings_of(Model),
         **_settings_of(

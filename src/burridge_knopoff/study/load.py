@@ -64,7 +64,7 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     values = list(study.grid.values())
     if "transient" in config and filled["lyapunov_alignment"] > filled["transient"] and "lyapunov_alignment" in config:
         raise refusal("lyapunov_alignment", filled["lyapunov_alignment"], "at most transient, of which it is a part")
-    rules.fill_states(filled)
+    rules.fill_states(filled, study.parameters.get("v", {"": filled["v"]}).values())
     rules.fill_blocks(filled)
     rules.fill_chains(filled)
     rules.fill_names(filled)

@@ -3,8 +3,7 @@
 #: The friction laws of the paper.
 PAPER_LAWS = ("linearized", "nonlinear")
 
-#: The velocity v of the driver, and the durations of the runs.
-PAPER_V = 0.1
+#: The durations of the runs.
 PAPER_TRANSIENT = 3000.0
 PAPER_WINDOW = 7000.0
 

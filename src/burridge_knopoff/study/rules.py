@@ -13,10 +13,10 @@ from operator import getitem
 from typing import Any
 
 from burridge_knopoff.basins.initial_phases import has_free_ends
-from burridge_knopoff.laws import LAWS, law_of
+from burridge_knopoff.laws import LAWS, law_of, unknown_law
 from burridge_knopoff.model.chain import BLOCKS, Chain
 from burridge_knopoff.model.fields import Field, Keys
-from burridge_knopoff.model.initial import PAPER_STATES, InitialState
+from burridge_knopoff.model.initial import PAPER_STATES, PAPER_V, initial_state
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import plain_name, set_parameters
 from burridge_knopoff.model.ranges import OneOf, Range, Several
@@ -44,17 +44,20 @@ def error_prefix(place: str) -> Iterator[None]:
         raise ValueError(f"{place}{error}") from error
 
 
-def fill_states(config: Mapping[str, Any]) -> None:
-    """Fill in the numbers of the paper's initial states."""
+def fill_states(config: Mapping[str, Any], velocities: Collection[float]) -> None:
+    """Fill in the numbers of the paper's initial states if the driver always has the paper's velocity.
+
+    velocities : all v of the study; at others these states have no numbers of their own, but follow v
+    """
     states = config["initial"]
     for name, state in states.items():
         if not state and name not in PAPER_STATES:
-            known = " | ".join(PAPER_STATES)
-            raise ValueError(f"initial.{name}: got no position and velocity, which only {known} may leave out")
+            known = f"{' | '.join(PAPER_STATES)} may leave out{suggestion(name, PAPER_STATES)}"
+            raise ValueError(f"initial.{name}: got no position and velocity, which only {known}")
         for key in ("position", "velocity"):
             if state and key not in state:
                 raise ValueError(f"initial.{name}.{key}: got none, expected position and velocity together")
-        if not state:
+        if not state and {*velocities} == {PAPER_V}:
             position, velocity = PAPER_STATES[name].coordinates(BLOCKS)
             state.update(position=position.tolist(), velocity=velocity.tolist())
 
@@ -69,8 +72,12 @@ def fill_blocks(config: Mapping[str, Any]) -> None:
                 raise refusal(f"{section}.{key}", value, f"at most {MOST_LISTED} numbers in a list, or random numbers")
     for name, state in config["initial"].items():
         with error_prefix(f"initial.{name}."):
-            blocks[name] = InitialState(name, **state).blocks
-    lists = {name: blocks[name] for name, state in config["initial"].items() if list in map(type, state.values())}
+            blocks[name] = initial_state(name, **state).blocks
+    lists = {
+        name: blocks[name]
+        for name, state in config["initial"].items()
+        if not state or list in map(type, state.values())
+    }
     if len({*lists.values()}) > 1:
         counts = ", ".join(f"{name}: {count}" for name, count in lists.items())
         raise ValueError(f"initial: got different numbers of positions ({counts}), expected one for all states")
@@ -89,7 +96,7 @@ def fill_names(config: dict[str, Any]) -> None:
     laws, state, solver = config["laws"], next(iter(config["initial"])), config["solver"]
     for name, description in laws.items():
         if name not in LAWS and not {"law", "formula"} & description.keys():
-            raise refusal(f"laws.{name}", name, f"{' | '.join(LAWS)}, or a formula{suggestion(name, LAWS)}")
+            raise unknown_law(f"laws.{name}", name)
     known, first = OneOf(tuple(laws)), next(iter(laws))
     known.form(config["figures"].setdefault("law", first), "figures.law")
     Several(known).form(config["chains"].setdefault("laws", [first]), "chains.laws")
@@ -138,7 +145,7 @@ def check_models(
                     law_of(name, a, laws[name])
     for name, state in config["initial"].items():
         with error_prefix(f"initial.{name}."):
-            model.initial_coordinates(InitialState(name, **state))
+            model.initial_coordinates(initial_state(name, **state))
 
 
 def _reason(model: Model) -> str:

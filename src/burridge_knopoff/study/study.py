@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff.model.fields import settings_from_config
-from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.initial import InitialState, initial_state
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import parse_indexed_name, plain_name
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.running.command import simulate_command
-from burridge_knopoff.running.cost import cost_note, is_stiff
 from burridge_knopoff.running.settings import SOLVERS, Settings
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paper import PAPER_A
@@ -173,15 +172,16 @@ class Study:
         return next((key for key, value in chain.items() if isinstance(value, list) or key == "springs"), "")
 
     @property
-    def marked_states(self) -> dict[str, tuple[float, float]]:
-        """U_1(0) and U_N(0) of the initial states in the plane of the basin maps, by name."""
-        states = {name: self.state(name).coordinates(self.blocks) for name in self.initial}
-        plane, speed = states[self.config["basins"]["initial"]]
-        return {
-            name: (float(position[0]), float(position[-1]))
-            for name, (position, velocity) in states.items()
-            if np.array_equal(position[1:-1], plane[1:-1]) and np.array_equal(velocity, speed)
-        }
+    def marked_states(self) -> dict[str, list[tuple[float, float]]]:
+        """U_1(0) and U_N(0) on each basin map of the initial states in its plane, by name."""
+        models = [self.model(law, self.grid[a]) for law, a in self.basin_maps]
+        base = self.config["basins"]["initial"]
+        marked = {}
+        for name in self.initial:
+            states = [[model.initial_coordinates(self.state(which)) for which in (name, base)] for model in models]
+            if all(np.array_equal(u[1:-1], v[1:-1]) and np.array_equal(w, z) for (u, w), (v, z) in states):
+                marked[name] = [(float(u[0]), float(u[-1])) for (u, _), _ in states]
+        return marked
 
     def model(self, law: str, a: float, **others: float) -> Model:
         """Return the model of the study for one of its laws at one a, and at values of its other parameters."""
@@ -229,7 +229,7 @@ class Study:
 
     def state(self, initial: str) -> InitialState:
         """Return an initial state of the study from its name."""
-        return InitialState(initial, **self.config["initial"][initial])
+        return initial_state(initial, **self.config["initial"][initial])
 
     def run_of(
         self, law: str, initial: str, a: str, solver: str | None = None, **others: str
@@ -270,28 +270,3 @@ def solver_points(study: Study) -> list[dict[str, str]]:
     """Return the wildcards of every run that repeats a point with another solver."""
     points = [point for point in all_points(study) if point["a"] in study.compared_values]
     return [{**point, "solver": solver} for point in points for solver in study.other_solvers(point["law"])]
-
-
-def remarks(study: Study, given: Mapping[str, Any]) -> list[str]:
-    """Return a line for each part that a user may expect and the study lacks, and for runs that take very long.
-
-    given : its config as written
-    """
-    lines = _cost_remarks(study)
-    if study.blocks == 1:
-        lines.append("one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks")
-    elif given.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
-        lines.append("basins: no map, since no default value of basins.a is on the grid; set basins.a")
-    return lines
-
-
-def _cost_remarks(study: Study) -> list[str]:
-    """Return the cost of a run of the stiffest chain, if that is over a minute."""
-    law, initial = study.laws[0], study.initial[0]
-    chains = study.other_values[: 1 if study.has_one_chain else None]
-    models = [study.model(law, study.shown_a, **others) for others in chains]
-    stiffest, settings = max(models, key=lambda model: model.chain.highest_rate), study.settings(law)
-    if not is_stiff(stiffest.chain):
-        return []
-    note = cost_note(stiffest, stiffest.begin(study.state(initial), settings.start), settings)
-    return [f"each run: {note}"] if note else []

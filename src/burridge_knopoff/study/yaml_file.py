@@ -10,7 +10,7 @@ from typing import Any
 import yaml
 
 from burridge_knopoff.provenance.files import display_path
-from burridge_knopoff.values import full_key
+from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER, full_key
 
 _TAG = "tag:yaml.org,2002:"
 
@@ -48,9 +48,9 @@ class _Loader(yaml.SafeLoader):
         return node
 
 
-_FLOAT = r"[-+]?([0-9]+\.[0-9]*|\.[0-9]+|[0-9]+(?=[eE]))([eE][-+]?[0-9]+)?|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)"
-_Loader.add_implicit_resolver(f"{_TAG}int", re.compile(r"[-+]?(0|[1-9][0-9]*)$"), list("-+0123456789"))
-_Loader.add_implicit_resolver(f"{_TAG}float", re.compile(f"({_FLOAT})$"), list("-+0123456789."))
+_FLOAT = rf"{OTHER_NUMBER}|[-+]?\.(inf|Inf|INF)|\.(nan|NaN|NAN)"
+_Loader.add_implicit_resolver(f"{_TAG}int", re.compile(rf"{WHOLE_NUMBER}\Z"), list("-+0123456789"))
+_Loader.add_implicit_resolver(f"{_TAG}float", re.compile(rf"({_FLOAT})\Z"), list("-+0123456789."))
 
 
 def _size(node: yaml.Node, known: dict[yaml.Node, float]) -> float:

@@ -81,7 +81,7 @@ VARIABLES = {
         ("initial", "a", "corner"),
         "i2",
         "branch reached, under the study's convention, by states whose positions and velocities are each 0.0005 above "
-        "or below those of an initial state",
+        "or below those of an initial state; for a state that follows v, 0.0005 v/0.1",
         NOTHING,
     ),
     "sweep_branch": _V(_SWEEP, "i2", "branch that a sweep of a follows", NOTHING),
@@ -232,6 +232,8 @@ def _is_allowed(state: InitialState, contact: str, blocks: int) -> bool:
 def corners(state: InitialState, contact: str, blocks: int) -> list[InitialState]:
     """Return CORNERS states, whose positions and velocities are each ROUNDING above or below those of a state.
 
+    Those of a state of the paper follow v, as it does.
+
     With three blocks these are all corners of the box around the state; in longer chains every sixth number changes
     together.
     contact : if one_sided, velocities are at least 0
@@ -240,7 +242,7 @@ def corners(state: InitialState, contact: str, blocks: int) -> list[InitialState
     numbers = np.concatenate(state.coordinates(blocks)) + ROUNDING * (2 * above - 1)
     if contact == "one_sided":
         numbers[:, blocks:] = np.maximum(numbers[:, blocks:], 0.0)
-    return [InitialState(state.name, tuple(row[:blocks].tolist()), tuple(row[blocks:].tolist())) for row in numbers]
+    return [replace(state, position=row[:blocks].tolist(), velocity=row[blocks:].tolist()) for row in numbers]
 
 
 def _labels_of_states(

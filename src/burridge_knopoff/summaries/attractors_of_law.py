@@ -12,7 +12,7 @@ from burridge_knopoff.attractors.stored_returns import returns_of_law
 from burridge_knopoff.continuation.along_a import continue_attractors
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.dataset.given import Given
-from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.initial import initial_state
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.model import model_of
@@ -26,7 +26,7 @@ def make(given: Given, model: Mapping[str, Any], grid: Sequence[float], **config
     config : initial, start, attractors, refine and motion, as in a config
     """
     models, start = [model_of(model, given.law, a) for a in grid], config["start"]
-    initial = [InitialState(name, **state) for name, state in config["initial"].items()]
+    initial = [initial_state(name, **state) for name, state in config["initial"].items()]
     settings, motion = SearchSettings(**config["attractors"]), MotionSettings(**config["motion"])
     refine = RefinementSettings(**config["refine"])
     kept = given.cache(

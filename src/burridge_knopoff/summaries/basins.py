@@ -20,7 +20,7 @@ from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_expone
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
-from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.initial import initial_state
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.study.formatting import to_ascii, with_error
 from burridge_knopoff.study.model import model_of
@@ -100,7 +100,7 @@ def _known_attractors(
 
     state : the positions and velocities shared by all states of the plane; the other arguments as in a config
     """
-    plane = BasinSettings(initial=InitialState(**state), threads=given.cores, **basins)
+    plane = BasinSettings(initial=initial_state(**state), threads=given.cores, **basins)
     found = given.summary("attractors"), given.summary("returns")
     return known_attractors(*found, model_of(model, given.law, a)), plane, SearchSettings(**attractors)
 
@@ -118,7 +118,7 @@ def make(
 
     maps : law and a of each; the other arguments as in `_known_attractors`
     """
-    plane = BasinSettings(initial=InitialState(**state), **basins)
+    plane = BasinSettings(initial=initial_state(**state), **basins)
     tiles, of_pairs = given.summaries("tiles"), given.summaries("pairs")
     parts = [
         (model_of(model, law, a), tiles[n * plane.tiles : (n + 1) * plane.tiles], of_pairs[n])
@@ -138,7 +138,7 @@ def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit
     """
     first = pixel_centres(basins.first_position, basins.pixels)
     last = np.array_split(pixel_centres(basins.last_position, basins.pixels), basins.tiles)[number]
-    u, w = basins.initial.coordinates(known.model.blocks)
+    u, w = known.model.initial_coordinates(basins.initial)
     position, velocity = plane(u, first, last, w)
     labels, times = _labels(known, position, velocity, basins, label_limit, start)
     shape = (len(last), len(first))
@@ -155,7 +155,7 @@ def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit
 def pairs(known: KnownAttractors, basins: BasinSettings, label_limit: float, seed: int, start: str) -> xarray.Dataset:
     """Label pairs of nearby states in the plane of a map, for the uncertainty exponent of its boundary; see `tile`."""
 
-    u, w = basins.initial.coordinates(known.model.blocks)
+    u, w = known.model.initial_coordinates(basins.initial)
 
     def label(points: np.ndarray) -> np.ndarray:
         first, last = points.T
@@ -227,7 +227,7 @@ def merge(
     coordinates["law"] = ("map", names, {"long_name": "friction law"})
     a = {"long_name": "friction parameter a", "units": "1"}
     coordinates["a"] = ("map", np.array([model.a for model in models]), a)
-    u, w = basins.initial.coordinates(models[0].blocks)
+    u, w = models[0].initial_coordinates(basins.initial)
     attributes = {
         "history": "snakemake, from attractors.nc",
         "v": models[0].v,

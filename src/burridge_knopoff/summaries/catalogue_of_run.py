@@ -10,7 +10,7 @@ import xarray
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.catalogue.slip_events import catalogue_of_run
 from burridge_knopoff.dataset.given import Given
-from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.initial import initial_state
 from burridge_knopoff.study.model import model_of
 
 
@@ -24,4 +24,4 @@ def make(
 ) -> xarray.Dataset:
     """Return the slip events of a run; run : its start, solver and step; the other arguments as in a config."""
     settings = CatalogueSettings(**catalogue)
-    return catalogue_of_run(model_of(model, given.law, a), InitialState(**state), settings, **run)
+    return catalogue_of_run(model_of(model, given.law, a), initial_state(**state), settings, **run)

@@ -16,7 +16,7 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.model.initial import InitialState
+from burridge_knopoff.model.initial import InitialState, initial_state
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import plain_name
 from burridge_knopoff.provenance.seal import check_seal
@@ -54,7 +54,7 @@ class Grid:
         """Return the grid of the points that `Study.points` describes."""
         return cls(
             Path(folder),
-            {name: InitialState(name, **state) for name, state in points["initial"].items()},
+            {name: initial_state(name, **state) for name, state in points["initial"].items()},
             points["parameters"],
             {law: Settings(**settings) for law, settings in points["settings"].items()},
             {key: points[key] for key in MODEL_KEYS},

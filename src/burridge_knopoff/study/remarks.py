@@ -1,0 +1,50 @@
+"""What a user may not expect of a study, told before it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from burridge_knopoff.model.initial import PAPER_V, PaperState, has_paper_numbers
+from burridge_knopoff.model.parameters import remarks_on_states
+from burridge_knopoff.running.cost import cost_note, is_stiff
+from burridge_knopoff.study.study import Study
+
+
+def remarks(study: Study, given: Mapping[str, Any]) -> list[str]:
+    """Return lines on missing parts, on numbers that do not follow the model, and on runs that take very long.
+
+    given : the config as written
+    """
+    return [*_on_cost(study), *_on_parts(study, given), *_on_states(study)]
+
+
+def _on_cost(study: Study) -> list[str]:
+    """Return the cost of a run of the stiffest chain, if that is over a minute."""
+    law, initial = study.laws[0], study.initial[0]
+    chains = study.other_values[: 1 if study.has_one_chain else None]
+    models = [study.model(law, study.shown_a, **others) for others in chains]
+    stiffest, settings = max(models, key=lambda model: model.chain.highest_rate), study.settings(law)
+    if not is_stiff(stiffest.chain):
+        return []
+    note = cost_note(stiffest, stiffest.begin(study.state(initial), settings.start), settings)
+    return [f"each run: {note}"] if note else []
+
+
+def _on_parts(study: Study, given: Mapping[str, Any]) -> Iterator[str]:
+    if study.blocks == 1:
+        yield "one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks"
+    elif given.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
+        yield "basins: no map, since no default value of basins.a is on the grid; set basins.a"
+
+
+def _on_states(study: Study) -> Iterator[str]:
+    states = [study.state(name) for name in study.initial]
+    yield from remarks_on_states(states, (name for name, values in study.parameters.items() if len(values) > 1))
+    velocities: Iterable[float] = study.parameters.get("v", {"": study.config["v"]}).values()
+    fixed = [state.name for state in states if has_paper_numbers(state) and not isinstance(state, PaperState)]
+    if fixed and {*velocities} != {PAPER_V}:
+        yield (
+            f"initial: {', '.join(fixed)}: the numbers of the paper, which are for v = {PAPER_V:g}; with "
+            f"{', '.join(f'{name}: {{}}' for name in fixed)} they follow v"
+        )
