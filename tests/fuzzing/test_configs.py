@@ -266,6 +266,12 @@ def check_states(study):
     lengths = set()
     for name, state in study.config["initial"].items():
         assert re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,31}", name)
+        if not state:
+            # A state of the paper that follows v.
+            assert name in ("minus", "plus")
+            assert {study.config["v"], *study.parameters.get("v", {}).values()} != {0.1}
+            lengths.add(3)
+            continue
         assert set(state) == {"position", "velocity"}
         # One number is that of all blocks.
         lists = {key: value if isinstance(value, list) else [value] * study.blocks for key, value in state.items()}
