@@ -24,10 +24,7 @@ from burridge_knopoff.claims.verdict import (
 PREDICATES = {
     HOLDS: ("holds", "hold"),
     LOOSELY: ("holds loosely", "hold loosely"),
-    CONVENTION: (
-        "depends on a convention that the paper leaves open",
-        "depend on conventions that the paper leaves open",
-    ),
+    CONVENTION: ("depends on the convention", "depend on the convention"),
     READING: ("depends on how it is read", "depend on how they are read"),
     FAILS: ("fails", "fail"),
     NOT_TESTABLE: ("cannot be tested", "cannot be tested"),

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 STANDARD_ERRORS = 3.0
 
 #: The two readings of «frequency locking».
-ONE_FREQUENCY, NO_MODE = "one frequency with attracting phases", "locking, not a normal mode"
+ONE_FREQUENCY, NO_MODE = "one frequency with a stable relative phase", "locking, not a normal mode"
 
 TORUS = "quasiperiodic motion, or chaos too weak to be distinguished from it,"
 UNFOLLOWED = "a periodic orbit too long to be continued, or a torus near it,"
@@ -96,7 +96,9 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, mode_share: flo
                 Measured(f"largest third exponent, {name}", third.max()),
                 Measured(f"smallest share of the largest mode, {name}", largest.min()),
             ]
-            where += describe_where("the end blocks do not keep one frequency with attracting phases", grid, ~one, name)
+            where += describe_where(
+                "the end blocks do not keep one frequency with a stable relative phase", grid, ~one, name
+            )
             where += describe_where("the end blocks are locked", grid, locked, name)
         of_law, further = _locked_to_middle(found, a, law)
         measured, where = measured + of_law, where + further
@@ -108,8 +110,8 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, mode_share: flo
     reason = (
         f"With {100 * detuning:g} % more mass on one of them, the end blocks keep one frequency, and a perturbation of "
         f"their relative phase decays (the third Lyapunov exponent is negative), at {kept} of the values of a with {a} "
-        f"({verdicts[ONE_FREQUENCY]}). They are locked, with less than {100 * mode_share:g} % of the energy of this "
-        f"oscillation in any normal mode, at {locked_shares} ({verdicts[NO_MODE]}). Each motion was followed for "
+        f"({verdicts[ONE_FREQUENCY]}). They are locked, with less than {100 * mode_share:g} % of the kinetic energy of "
+        f"this oscillation in any normal mode, at {locked_shares} ({verdicts[NO_MODE]}). Each motion was followed for "
         f"{rotation.attrs['detuned_transient'] + 2.0 * rotation.attrs['detuned_window']:g} time units."
     )
     return combine_readings(verdicts, reason, measured, where)
