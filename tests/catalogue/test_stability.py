@@ -274,3 +274,15 @@ def test_exponents_do_not_depend_on_the_clock_of_the_state(loading):
         assert other.events == found[0].events
         assert other.exponent == pytest.approx(found[0].exponent, rel=1e-6)
         assert other.error == pytest.approx(found[0].error, rel=1e-3)
+
+
+@pytest.mark.parametrize("loading", ["steady", "quasistatic"])
+@pytest.mark.parametrize("end", [0.5, 1.5, 2.5, 4.0])
+def test_no_exponent_without_an_event(loading, end):
+    """Neither before the first event, nor if only one time of rest lies in the run."""
+    law = law_of("linearized", 0.3) if loading == "steady" else law_of("carlson_langer", 0.0, {"sigma": 0.2})
+    model = Model(Chain(1, pulling=1.0), law, 0.1 if loading == "steady" else 0.01)
+    start = model.begin(InitialState("rest", (-0.8,), (0.0,)), "tested")
+    found = event_exponents(model, start, end, loading=loading)
+    assert found.events == 0
+    assert np.isnan([found.exponent, found.error]).all()

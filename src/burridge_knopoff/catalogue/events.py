@@ -102,8 +102,8 @@ def record_events(
     profiles : whether the slip of every block is stored
     loading : steady: the driver moves at velocity v | quasistatic: the driver stops while any block slips; when all
         stick or creep it advances to the next slip. In the second case τ is the displacement of the driver divided by
-        v, and the slip clock runs while blocks slip. An overdamped slip does not end: it creeps at the threshold of
-        slip, and its event goes on
+        v, and the slip clock runs while blocks slip. An overdamped slip does not end: it creeps, at the kinetic
+        friction of zero speed, and its event goes on
     solver : series, map (where the motion has a closed form), or, for comparison, a solver with a fixed step and events
         at step ends: rk4, or euler (explicit)
     step : step of rk4 and euler

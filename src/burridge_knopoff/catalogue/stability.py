@@ -27,7 +27,7 @@ class EventExponents:
     """Lyapunov exponents of the map from one slip event to the next, in descending order.
 
     exponent, error : growth of the logarithm of perturbations per event, and its standard error from batches, shape
-        (count,); −∞ for perturbations that events remove
+        (count,); −∞ for perturbations that events remove, NaN without an event
     events : number of events in the average
     status : how the run ended
 
@@ -89,21 +89,24 @@ def event_exponents(
     if end <= begin:
         raise refusal("end", end, f"a time after begin ({begin:g})")
     edges = np.linspace(begin, end, BATCHES + 1)
-    if loading == "steady" and len(rests := _rest_times(model, start, edges)) > 1:
-        edges = rests
+    rests = _rest_times(model, start, edges) if loading == "steady" else edges[:0]
+    edges = rests if len(rests) > 1 else edges
     catalogue = Catalogue(model.blocks, edges[0], False, MOST_EVENTS)
     exponents = Exponents(model.blocks, count, 0.5 * (start.time + begin), edges, at_rest=True)
     runner = Runner(model, exponents=exponents, catalogue=catalogue, loading=loading, groups=False)
     runner.begin(start)
     status = runner.run(edges[-1])
     time, growth = catalogue.take()["time"], exponents.results()["growth"]
-    events, batches = len(time), len(growth)
+    # A single time of rest bounds no event.
+    events, batches = len(time) if len(rests) != 1 else 0, len(growth)
+    if events == 0:
+        return EventExponents(np.full(count, math.nan), np.full(count, math.nan), 0, status)
     with np.errstate(divide="ignore", invalid="ignore"):
         mean = growth.sum(axis=0) / events
         scatter = growth - mean * np.histogram(time, edges)[0][:, None]
         error = np.sqrt(np.divide(batches, batches - 1) * np.sum(scatter**2, axis=0)) / events
     order = np.argsort(-mean, kind="stable")
-    return EventExponents(mean[order], np.where(np.isfinite(mean), error, 0.0)[order], events, status)
+    return EventExponents(mean[order], np.where(np.isneginf(mean), 0.0, error)[order], events, status)
 
 
 def _rest_times(model: Model, start: ChainState, edges: np.ndarray) -> np.ndarray:

@@ -54,23 +54,23 @@ def draw(rotation: xarray.Dataset) -> Figure:
 def _ratios(panel: Axes, rotation: xarray.Dataset) -> None:
     """Draw the ratios where both end blocks have one frequency, and those of the modes."""
     for detuning in rotation["detuning"].values:
-        one = rotation.sel(detuning=detuning)
-        kept = has_one_frequency(one["detuned_frequency"].values)
-        if not kept.any():
+        detuned = rotation.sel(detuning=detuning)
+        together = has_one_frequency(detuned["detuned_frequency"].values)
+        if not together.any():
             continue
-        most = one["detuned_mode_share"].values[kept].mean(axis=0).argmax()
-        of_mode = abs(one["mode_end_ratio"].values[most])
+        leading_mode = detuned["detuned_mode_share"].values[together].mean(axis=0).argmax()
+        of_mode = abs(detuned["mode_end_ratio"].values[leading_mode])
         panel.axhline(of_mode, color="0.4", linewidth=0.6, zorder=0)
         panel.annotate(
-            f"$d$ = {detuning:g}", (1.0, of_mode), xycoords=("axes fraction", "data"), xytext=(-3, 2), ha="right",
-            textcoords="offset points", fontsize=8.0,
+            f"$d$ = {detuning:g}", (1.0, of_mode), xycoords=("axes fraction", "data"), xytext=(-3, -2), ha="right",
+            va="top", textcoords="offset points", fontsize=8.0,
         )  # fmt: skip
-        for place, branch in enumerate(one["branch"].values.tolist()):
-            drawn = kept[:, place]
+        for place, branch in enumerate(detuned["branch"].values.tolist()):
+            drawn = together[:, place]
             if drawn.any():
                 look: Any = {"color": BRANCHES[branch % len(BRANCHES)], "markerfacecolor": "none", "markersize": 3.0}
                 panel.plot(
-                    one["a"].values[drawn], one["detuned_end_ratio"].values[drawn, place],
+                    detuned["a"].values[drawn], detuned["detuned_end_ratio"].values[drawn, place],
                     MARKERS[branch % len(MARKERS)], label=f"branch {branch}", **look,
                 )  # fmt: skip
     if not panel.lines:

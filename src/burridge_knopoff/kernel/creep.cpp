@@ -1,8 +1,8 @@
 // Creep under quasi-static loading.
 //
 // Behind a driver that does not move, the speed of an overdamped slip tends to 0 and never changes sign: the block does
-// not stop. It stays at the threshold of slip, s_i = θ_i Φ(0), and moves as the driver advances. With C the blocks that
-// creep, the others stuck, a displacement of the driver moves them in proportion to
+// not stop. The force on it stays equal to the kinetic friction at zero speed, s_i = θ_i Φ(0), and it moves as the driver
+// advances. With C the blocks that creep, the others stuck, a displacement of the driver moves them in proportion to
 //
 //     w_C = K_CC⁻¹ D_C,    0 ≤ w_i ≤ 1,
 //
@@ -53,7 +53,7 @@ void Run::begin_creep(Group &group) {
     }
     if (members.empty()) return;
     const std::vector<double> creep = solve(members, right);
-    // What is left of the slip.
+    // The distance at which the forces balance kinetic friction exactly.
     for (size_t m = 0; m < members.size(); m++) {
         const int lane = lane_of[members[m]];
         right[m] = state.force(lane / LANES)[lane % LANES] - springs.threshold[members[m]] * model.law.at_rest;
@@ -114,9 +114,9 @@ Group *Run::release(Group &group) {
     retire(group);
     for (auto &members : sets) {
         std::sort(members.begin(), members.end());
-        Group &made = build(members, now);
-        begin_creep(made);
-        retire(made);
+        Group &creeping = build(members, now);
+        begin_creep(creeping);
+        retire(creeping);
         for (int i : members) {
             begins[i] = {NEVER, 0.0};
             version[i]++;

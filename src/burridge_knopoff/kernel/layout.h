@@ -25,7 +25,7 @@ struct Model {
     Law law;
     double v;
     bool symmetric;  // whether a block that is pulled below −θ_i slips backward
-    // Speed below which a slip creeps: behind a driver that does not move, its speed tends to 0 and rounding decides
+    // Speed below which a slip creeps: unless the driver pulls the block on, its speed tends to 0 and rounding decides
     // the sign. A block stops where its speed has fallen below minus this. 0 if no slip can creep.
     double creep_speed;
 

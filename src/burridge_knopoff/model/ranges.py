@@ -139,7 +139,7 @@ class Several(Range):
     distinct: bool = False
 
     def _fit(self, value: Any, key: str) -> tuple[Any, ...] | None:
-        if not isinstance(value, list | tuple | np.ndarray):
+        if not isinstance(value, list | tuple | np.ndarray) or getattr(value, "ndim", 1) == 0:
             return None
         items = tuple(self.each.form(item, f"{key}[{i}]") for i, item in enumerate(value))
         fits = self.least <= len(items) <= self.most and not (self.distinct and len(set(items)) < len(items))

@@ -7,6 +7,9 @@ import numpy as np
 from burridge_knopoff.kernel._core import KernelModel
 from burridge_knopoff.model.model import Model
 
+# A weaker spring to the driver moves a block that creeps less than rounding does.
+UNPULLED = 1e-9
+
 
 def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
     """Return the chain, friction law and driver of a model for the kernel; loading : see `Runner`."""
@@ -35,19 +38,24 @@ def kernel_model(model: Model, loading: str = "steady") -> KernelModel:
         steepest=law.steepest_slope,
         v=v,
         symmetric=model.contact == "symmetric",
-        creep_speed=0.0 if loading == "steady" else creep_speed(model),
+        creep_speed=creep_speed(model, loading),
     )
 
 
-def creep_speed(model: Model) -> float:
-    """Return the speed below which a slip creeps under quasi-static loading; 0 if no slip of the model can creep.
+def creep_speed(model: Model, loading: str) -> float:
+    """Return the speed below which a slip that can creep does not stop; 0 if no slip of the model can creep.
 
-    It is a small fraction of the slowest speed at which a block slips after the drop of friction at its start, and far
-    above the speeds that rounding of forces causes.
+    Behind a driver at rest it is a small fraction of the slowest speed at which a block slips after the drop of
+    friction at its start. A driver that moves pulls blocks that creep, but for those without a spring to it: their
+    speed tends to 0 as well, and must not fall below 0 by rounding of forces.
     """
     chain, slope = model.chain, float(model.law.slope(0.0))
     if not chain.is_damped and slope <= 0.0:
         return 0.0
     damping = chain.damping_diagonal + chain.thresholds * max(slope, 0.0)
     resistance = np.maximum(np.sqrt(chain.diagonal * chain.masses), damping)
-    return 1e-6 * float((chain.thresholds * (1.0 - float(model.law(0.0))) / resistance).min())
+    if loading == "quasistatic":
+        return 1e-6 * float((chain.thresholds * (1.0 - float(model.law(0.0))) / resistance).min())
+    if (chain.driving > UNPULLED).all():
+        return 0.0
+    return 1e-13 * float((np.maximum(chain.thresholds, chain.diagonal) / resistance).min())
