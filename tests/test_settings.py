@@ -100,7 +100,7 @@ def test_a_field_takes_no_value_that_it_does_not_keep(kind, name, value):
     assert kept == value
     assert isinstance(kept, str) or math.isfinite(kept)
     assert isinstance(value, bool) == (field is not None and isinstance(field.range, TrueOrFalse))
-    if default is not None and not isinstance(value, float | int):
+    if default is not None and not isinstance(value, float | int | np.ndarray):
         assert isinstance(kept, type(default))
 
 
