@@ -29,7 +29,7 @@ CAPTION = """\
 Are the end blocks locked to each other without synchrony? With a mass of block 3 larger by the detuning d, the
 amplitude of block 3 over that of block 1 in their common oscillation, on branches 1 and 2, where both have one
 frequency. Lines: the same ratio in the normal mode of the sliding chain that has most of the energy. In a normal mode
-the ratio follows the masses; oscillators that are locked to each other have amplitudes of their own.
+the ratio follows the masses; for oscillators of equal amplitude that are locked to each other it is 1.
 """
 
 
@@ -42,6 +42,8 @@ def draw(rotation: xarray.Dataset) -> Figure:
     for panel, law in zip(panels, laws, strict=True):
         _ratios(panel, rotation.sel(law=law))
         show_all(panel, grid)
+        # Room for the label of the lowest line.
+        panel.margins(y=0.1)
         panel.set_xlabel("$a$")
     panels[0].set_ylabel("amplitude of block 3 over that of block 1")
     label_panels(panels, [f"{law} law" for law in laws])
