@@ -1,8 +1,9 @@
 // Creep under quasi-static loading.
 //
 // Behind a driver that does not move, the speed of an overdamped slip tends to 0 and never changes sign: the block does
-// not stop. The force on it stays equal to the kinetic friction at zero speed, s_i = θ_i Φ(0), and it moves as the driver
-// advances. With C the blocks that creep, the others stuck, a displacement of the driver moves them in proportion to
+// not stop. The force on it stays equal to the kinetic friction at zero speed, s_i = θ_i Φ(0), and it moves as the
+// driver advances. With C the blocks that creep, the others stuck, a displacement of the driver moves them in
+// proportion to
 //
 //     w_C = K_CC⁻¹ D_C,    0 ≤ w_i ≤ 1,
 //

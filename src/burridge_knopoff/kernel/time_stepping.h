@@ -270,7 +270,8 @@ class TimeStepping {
                     state.transition(c, Blocks::from_bits(1 << lane));
                     const double x = state.position.lane(i);
                     if (catalogue && kind) catalogue->start(model.springs, i, {clock, 0.0}, {clock, 0.0}, x);
-                    if (catalogue && !kind) catalogue->stop(model.springs, model.v, 0.0, i, {clock, 0.0}, {clock, 0.0}, x);
+                    if (catalogue && !kind)
+                        catalogue->stop(model.springs, model.v, 0.0, i, {clock, 0.0}, {clock, 0.0}, x);
                     log.add(i, kind, clock, [&](double *row) {
                         watch.worked(n);
                         std::copy(&state.position.lane(0), &state.position.lane(0) + n, row);
