@@ -1,5 +1,7 @@
 """Amplitudes and phases of normal modes, compared with closed forms, energies, and fits of sines."""
 
+import warnings
+
 import numpy as np
 import pytest
 from scipy.linalg import eigh
@@ -130,3 +132,17 @@ def test_a_state_or_a_chain_that_does_not_fit_is_refused():
     long = Model(Chain(20_000), law_of("linearized", 0.06))
     with refused("model.blocks: 20000", match="at most 10000"):
         mode_amplitudes(long, state)
+
+
+def test_a_line_without_motion_or_beyond_the_sampling_has_no_shares():
+    """In uniform sliding every x is 0; states at intervals of Δt resolve frequencies up to 1/(2Δt)."""
+    model = Model(Chain(3), law_of("linearized", 0.06))
+    modes = mode_amplitudes(model, ChainState(np.zeros(3), np.full(3, model.v), np.zeros(3, bool)), 50.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert np.isnan(modes.line_shares(0.2)).all()
+    highest = 0.5 / modes.time[1]
+    assert modes.line(0.999 * highest).shape == (3,)
+    for method in (modes.line, modes.line_shares):
+        with refused("frequency: ", match="expected a number between 0 and"):
+            method(1.001 * highest)

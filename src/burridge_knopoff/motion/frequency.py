@@ -19,7 +19,7 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.ensemble import new_ensemble
-from burridge_knopoff.running.runner import check_state
+from burridge_knopoff.running.runner import Runner, check_state
 from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
 
@@ -30,12 +30,16 @@ PADDING = 8
 # times the frequency of the fastest mode.
 SPACING = 2.0
 
-# A velocity whose relative variation is at most this is constant: the variation is rounding.
+# Relative rounding of velocities and of rates of starts. A velocity that varies by less is constant.
 ROUNDING = 1e-10
 
 # A block moves in short slips if it is faster than its mean velocity for a smaller fraction of the time. With one slip
 # of the shape 1 − cos in each period, the second line is then more than 0.7 times as high as the first.
 SHORT_SLIPS = 0.25
+
+# After a slip a block that never stops is slower than this fraction of the way from the median of its velocity, that
+# between short slips, to the mean. If it stays faster, a neighbour pushes it on in the same slip.
+SLIP_END = 0.25
 
 # The fewest cycles that have a frequency, and the number of parts of the time that are compared.
 LEAST_CYCLES = 2
@@ -53,9 +57,10 @@ def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0)
 
     The frequency is that of the strongest line in the spectrum of U', refined by the phases of this line in the two
     halves of the time. If a block is faster than on average for less than a quarter of the time, as in a relaxation
-    oscillation, its frequency is the rate of its slips. The error is the largest deviation in four successive parts of
-    the time, for slips with the sampling interval added; the true error is smaller, on a periodic orbit or a torus by
-    orders of magnitude.
+    oscillation, its frequency is the rate of its slips: of its starts, at the times of the events, or if it never
+    stops, of the rises of U' through the mean, each after a fall of U' nearly to its median. The error is the largest
+    deviation in four successive parts of the time, for rises through the mean with the sampling interval added; the
+    true error is smaller, on a periodic orbit or a torus by orders of magnitude.
 
     Both are NaN for a block whose velocity is constant, and for a block that is not observed to complete two cycles:
     because the driver moves by less than twice the range of its position, because it slips fewer than three times,
@@ -77,9 +82,12 @@ def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0)
     """
     instance_of(model, Model, "model")
     time, position, velocity = sampled_motion(model, state, duration)
-    unrepeated = LEAST_CYCLES * np.ptp(position, axis=0) > model.v * time[-1]
-    per_sample = np.array([_frequency(one) for one in velocity.T])
-    frequency, error = np.where(unrepeated, math.nan, per_sample.T / time[1])
+    repeated = LEAST_CYCLES * np.ptp(position, axis=0) <= model.v * time[-1]
+    starts: list[np.ndarray | None] = [None] * model.blocks
+    if any(has_short_slips(values) for values in velocity.T):
+        starts = slip_starts(model, state, time)
+    per_sample = np.array([_frequency(*block) for block in zip(velocity.T, starts, strict=True)])
+    frequency, error = np.where(repeated, per_sample.T / time[1], math.nan)
     return frequency, error
 
 
@@ -99,12 +107,23 @@ def sampled_motion(model: Model, state: ChainState, duration: float) -> tuple[np
     return time, motion["position"][0], motion["velocity"][0]
 
 
-def _frequency(values: np.ndarray) -> tuple[float, float]:
-    """Return the frequency of equidistant samples in cycles per sample, and its error; NaN without two full cycles."""
+def slip_starts(model: Model, state: ChainState, time: np.ndarray) -> list[np.ndarray | None]:
+    """Return the starts of each block during equidistant times, in samples; None for a block that never stops."""
+    runner = Runner(model, events_from=math.inf, keep_events=True)
+    runner.begin(state, 0.0)
+    runner.run(time[-1])
+    log = runner.log.earlier_events
+    at, (block, is_start) = log.times() / time[1], log.values().T
+    own = [block == 1 + n for n in range(model.blocks)]
+    return [at[one & (is_start == 1)] if (is_start[one] == 0).any() else None for one in own]
+
+
+def _frequency(values: np.ndarray, starts: np.ndarray | None) -> tuple[float, float]:
+    """Return the frequency in cycles per sample and its error, from samples and starts; NaN without two full cycles."""
     if is_constant(values):
         return math.nan, math.nan
     slips = has_short_slips(values)
-    whole = np.diff(slip_times(values)) if slips else values
+    whole = np.diff(slip_times(values) if starts is None else starts) if slips else values
     cycles = len(whole) if slips else int(np.nan_to_num(_line_frequency(values)) * len(values))
     if cycles < LEAST_CYCLES:
         return math.nan, math.nan
@@ -113,7 +132,7 @@ def _frequency(values: np.ndarray) -> tuple[float, float]:
     frequency, *others = (mean_rate(part) if slips else _line_frequency(part) for part in (whole, *parts))
     error = float(np.abs(np.subtract(others, frequency)).max())
     if slips:
-        error += frequency / len(values)
+        error += frequency * (1.0 / len(values) if starts is None else ROUNDING)
     return (frequency, error) if error <= LARGEST_ERROR * frequency else (math.nan, math.nan)
 
 
@@ -121,8 +140,8 @@ def leading_frequency(values: np.ndarray, duration: float) -> float:
     """Return the frequency of the highest peak of the spectrum of equidistant samples that last for `duration`.
 
     The mean is taken off, a Hann window put on, and the peak's place is that of the parabola through the logarithms of
-    the power around it. Of short slips it is their rate. NaN if the values are constant, if no peak has a full cycle
-    within the duration, and for fewer than three short slips.
+    the power around it. Of short slips it is their rate, see `slip_times`. NaN if the values are constant, if no peak
+    has a full cycle within the duration, and for fewer than three short slips.
     """
     if is_constant(values) or len(values) < 4:
         return math.nan
@@ -154,9 +173,15 @@ def has_short_slips(values: np.ndarray) -> bool:
 
 
 def slip_times(values: np.ndarray) -> np.ndarray:
-    """Return the times, in samples, at which a velocity rises through its mean."""
+    """Return the times, in samples, at which a velocity rises through its mean, in each slip for the first time.
+
+    A slip ends where the block rests, or if it never does, where the velocity falls nearly to its median.
+    """
     above = values - values.mean()
+    rests = values == 0.0
+    ends = np.cumsum(rests if rests.any() else above < (1.0 - SLIP_END) * np.median(above))
     before = np.flatnonzero((above[:-1] <= 0.0) & (above[1:] > 0.0))
+    before = before[np.diff(ends[before], prepend=0) > 0]
     return before + above[before] / (above[before] - above[before + 1])
 
 

@@ -14,6 +14,7 @@ Reference: A. Pikovsky, M. Rosenblum and J. Kurths, Synchronization (Cambridge U
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -23,7 +24,6 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.motion.frequency import sampled_motion, smooth_weight
-from burridge_knopoff.running.settings import LONGEST
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
 
 # A block with a smaller share of the largest displacement in a mode does not decide the sign of the mode.
@@ -67,21 +67,25 @@ class ModeAmplitudes:
     def line(self, frequency: float) -> np.ndarray:
         """Return the part of each mode that oscillates at a frequency, as complex amplitudes, shape (modes,).
 
-        frequency : in cycles per unit time, such as one of `block_frequencies`; ValueError if it is not a number
+        frequency : in cycles per unit time, such as one of `block_frequencies`; ValueError, one line, if it is not a
+            number from 0 to 1/(2Δt), the highest frequency that states at intervals of Δt resolve
 
         A cos(2πft + θ) gives A e^{iθ}. The product with `shape` gives the amplitudes of the blocks. The error decreases
         with the distance of other lines from this one, faster than any power of its product with the time.
         """
-        frequency = Number(0.0, LONGEST).form(frequency, "frequency")
+        frequency = Number(0.0, 0.5 / float(self.time[1])).form(frequency, "frequency")
         values = self.amplitude * np.cos(self.phase)
         weight = smooth_weight(len(self.time))
         weight /= weight.sum()
         return 2.0 * (weight * np.exp(-2j * np.pi * frequency * self.time)) @ (values - weight @ values)
 
     def line_shares(self, frequency: float) -> np.ndarray:
-        """Return the shares of the modes in the kinetic energy of the part of the motion at a frequency: (modes,)."""
+        """Return the shares of the modes in the kinetic energy of the part of the motion at a frequency: (modes,).
+
+        NaN if nothing moves at this frequency.
+        """
         square = np.abs(self.line(frequency)) ** 2
-        return square / square.sum()
+        return square / (square.sum() or math.nan)
 
 
 def mode_amplitudes(model: Model, state: ChainState, duration: float = 4000.0) -> ModeAmplitudes:
