@@ -1,4 +1,4 @@
-"""Detuned end blocks without synchrony: one frequency with unequal masses, a stable relative phase, and the mode of both."""
+"""Detuned end blocks without synchrony: one frequency at unequal masses, a stable phase, and the mode of both."""
 
 import numpy as np
 import pytest
