@@ -160,7 +160,7 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     "pull_word": (f"{GOOD}chain: {{pulling: all}}\n", ["chain.pulling: 'all'", "neighbours"]),
     "thresholds": (
         f"{GOOD}chain: {{threshold: [1]}}\n",
-        ["chain.threshold: got a list of 1 number, expected a number, or 3"],
+        ["chain.threshold: got a list of 1 number, expected a number, or a list of 3"],
     ),
     "weak": (f"{GOOD}chain: {{threshold: 0}}\n", ["chain.threshold: got 0, expected a number between 1e-06 and 1e+06"]),
     "spring_text": (f"{GOOD}chain: {{coupling: [1, stiff]}}\n", ["chain.coupling[1]: 'stiff'", "a number"]),
@@ -192,7 +192,10 @@ BAD_FILES: dict[str, tuple[str | bytes, list[str]]] = {
     ),
     "springs_number": (f"{GOOD}chain: {{springs: 3}}\n", ["chain.springs: 3", "name of a text file"]),
     "light": (f"{GOOD}chain: {{mass: 0}}\n", ["chain.mass: got 0, expected a number between 1e-06 and 1e+06"]),
-    "masses": (f"{GOOD}chain: {{mass: [1]}}\n", ["chain.mass: got a list of 1 number, expected a number, or 3"]),
+    "masses": (
+        f"{GOOD}chain: {{mass: [1]}}\n",
+        ["chain.mass: got a list of 1 number, expected a number, or a list of 3"],
+    ),
     "drawn_law": (
         f"{GOOD}chain: {{mass: {{random: normal, low: 1, high: 2, seed: 1}}}}\n",
         ["chain.mass.random: 'normal'"],

@@ -428,6 +428,12 @@ def test_a_study_whose_config_has_changed_is_not_pruned(results, capsys):
     assert left.exists()
 
 
+def test_the_config_of_another_study_is_no_changed_config(results, capsys):
+    (results.parent.parent / "small.yaml").write_text(CONFIG.replace("study: small", "study: other"))
+    assert main(["prune", str(results)]) == 2
+    assert "small.yaml is not the config of study.json: run snakemake first" in capsys.readouterr().err
+
+
 FOREIGN = {
     "another name": ({"study": "other"}, "study.json is the record of study other"),
     "other runs": (
@@ -436,7 +442,7 @@ FOREIGN = {
     ),
     "other values": (
         {"a": [0.06, 0.07], "solvers": {"a": [0.06]}},
-        "its files are not those of study.json ({other}: not made yet)",
+        "incomplete ({other}: not made yet), so that its record cannot be verified",
     ),
     "fewer values": (
         {"a": [0.08]},

@@ -205,7 +205,7 @@ def test_no_events(tmp_path):
         ([*RUN, "--a", "nan", "--out", "x.nc"], "a: nan"),
         ([*RUN, "--a", "1e400", "--out", "x.nc"], "a: inf"),
         ([*RUN, "--law", "linear", "--out", "x.nc"], f"{' | '.join(LAWS)}, or a formula (did you mean linearized?)"),
-        ([*RUN, "--law", "1 - a*u", "--out", "x.nc"], 'on a command line --formula "1 - a*u"'),
+        ([*RUN, "--law", "1 - a*u", "--out", "x.nc"], 'or a formula: --formula "1 - a*u"'),
         ([*RUN, "--law", "nonlinear", "--solver", "map", "--out", "x.nc"], "series | rk4"),
         ([*RUN, "--solver", "euler", "--out", "x.nc"], "series | map | rk4"),
         (["simulate", "--a", "0.1", "--out", "x.nc"], "--law --formula"),

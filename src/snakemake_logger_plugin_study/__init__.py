@@ -28,6 +28,7 @@ from snakemake_logger_plugin_study.refusal import (
     cores_of_command_line,
     is_ctrl_c,
     is_nothing_to_do,
+    is_touch,
     provide_cache,
     replacement,
 )
@@ -203,6 +204,8 @@ class LogHandler(LogHandlerBase):
                 run = Run() if self._has_stopped else PLAN.look_ahead()
                 run.cores = self._given_cores or os.cpu_count() or 1
                 run.capacity = f"on {format_count(int(run.cores), 'core')}"
+                if run.jobs and is_touch(sys.argv[1:]):
+                    return [f"{format_count(len(run.jobs), 'job')} would not run: --touch only marks existing files"]
                 return dry_run_lines(run) if run.jobs else []
             if not (run.results and run.jobs):
                 return []

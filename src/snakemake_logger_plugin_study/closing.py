@@ -75,10 +75,10 @@ def _remedies(failed: Sequence[Job]) -> list[str]:
 def _touched(results: Path, paths: Sequence[str]) -> list[str]:
     """Return what `snakemake --touch` did: it sets the times of files that exist, and makes none."""
     missing = [path for path in paths if not Path(path).exists()]
-    lines = [
-        f"study {results.name}: {format_count(len(paths) - len(missing), 'file')} marked as up to date, whatever their "
-        f"content; bk check {results} says whether they are"
-    ]
+    what = "no file needed touching"
+    if touched := len(paths) - len(missing):
+        what = f"{format_count(touched, 'file')} marked as up to date, whatever their content"
+    lines = [f"study {results.name}: {what}; bk check {results} says whether they are"]
     if missing:
         lines.append(f"not made yet, and left so: {_listed(results, missing)}; run the command without --touch")
     return lines

@@ -89,6 +89,11 @@ def is_nothing_to_do(message: str) -> bool:
     return message.startswith("Nothing to be done")
 
 
+def is_touch(arguments: Sequence[str]) -> bool:
+    """Return whether a command line has --touch, which Snakemake forgets in a dry run."""
+    return any(re.fullmatch("--touch|-n?tn?", argument) for argument in arguments)
+
+
 def _several_files_error(paths: Sequence[str | Path]) -> str:
     """Return the error if --configfile has several files: Snakemake reads targets that follow it as files."""
     first, second = map(display_path, paths[:2])

@@ -19,6 +19,7 @@ from snakemake_logger_plugin_study.plan import PLAN
 
 #: Largest number of values that a message lists.
 MOST_VALUES = 8
+_FOLDER = "it is a folder: name a file in it, or a rule, such as figures"
 
 
 def unknown_target(target: str) -> str:
@@ -27,9 +28,9 @@ def unknown_target(target: str) -> str:
         return f"{target}: unknown target"
     # Snakemake compares names of files letter by letter.
     path = os.path.relpath(target)
-    is_file = "/" in target or PurePosixPath(target).suffix or path != target
+    is_file = "/" in target or PurePosixPath(target).suffix or path != target or _is_above(path) or Path(path).is_dir()
     reason = _of_file(PLAN.jobs, path) if is_file else _of_rule(PLAN.jobs, target)
-    return f"{target}: unknown target: {reason}"
+    return f"{target}: {'not made' if reason in PLAN.jobs.absence.values() else 'unknown target'}: {reason}"
 
 
 def rule_with_wildcards() -> str | None:
@@ -62,13 +63,15 @@ def _of_rule(jobs: Jobs, target: str) -> str:
 def _of_file(jobs: Jobs, path: str) -> str:
     """Return why a file, by its path from the current folder, is not made."""
     folder, name = PLAN.results, path.removeprefix(f"{PLAN.results}/")
+    if path == folder or _is_above(path):
+        return _FOLDER
     files = [*jobs.all_files, *(file for rule in jobs.runs() for file in files_of(rule))]
     if name in files:
         return f"write {folder}/{name}"
     if name == path:
         return _of_other_study(jobs, path, files)
-    if any(file.startswith(f"{name}/") for file in files) or path == folder:
-        return "it is a folder: name a file in it, or a rule, such as figures"
+    if any(file.startswith(f"{name}/") for file in files):
+        return _FOLDER
     rules = [(rule, found) for rule, form in _forms(jobs) if (found := re.fullmatch(jobs.pattern(form), name))]
     for rule, _ in rules:
         if rule.name not in jobs.existing:
@@ -85,6 +88,11 @@ def _of_file(jobs: Jobs, path: str) -> str:
     return f"no {kind} has that name{_similar(path, files) or '; snakemake --list-rules says what each rule makes'}"
 
 
+def _is_above(path: str) -> bool:
+    """Return whether a folder contains the results folder of the study."""
+    return PurePosixPath(path) in PurePosixPath(PLAN.results).parents
+
+
 def _forms(jobs: Jobs) -> Iterator[tuple[Rule, str]]:
     """Yield each rule with the forms of its files, the most specific first: those without wildcards."""
     pairs = [(rule, form) for rule in jobs.rules.values() for form in rule.files]
@@ -94,10 +102,14 @@ def _forms(jobs: Jobs) -> Iterator[tuple[Rule, str]]:
 def _of_other_study(jobs: Jobs, path: str, files: list[str]) -> str:
     """Return why a file outside the results of this study is not made, with the command that makes it if one does."""
     results, name, *inside = [*PurePosixPath(path).parts, "", ""]
+    arguments = _arguments(name) if results == "results" else ""
+    if not inside[0] and arguments:
+        return f"the folder of study {name}, and this is study {jobs.study.name}: snakemake -c2 {arguments}"
     if results != "results" or not inside[0]:
-        return f"this study makes files in {PLAN.results}{_similar(path, files)}"
+        similar = _similar(path, files) if PurePosixPath(path).suffix else ""
+        return f"this study makes files in {PLAN.results}{similar}"
     study = f"a file of study {name}, and this is study {jobs.study.name}"
-    if arguments := _arguments(name):
+    if arguments:
         return f"{study}: snakemake -c2 {shlex.join([path])} {arguments}"
     if suggestion(name, [jobs.study.name]):
         return f"{study}{_similar(path, files)}"

@@ -86,10 +86,13 @@ def test_the_chain_of_the_paper():
         *(({"blocks": blocks}, f"blocks: got {blocks}, expected a whole number") for blocks in (2.0, True)),
         ({"ends": "loose"}, "chain.ends: 'loose'"),
         *(
-            ({key: [0.1]}, f"chain.{key}: got a list of 1 number, expected a number, or 2: one per spring")
+            ({key: [0.1]}, f"chain.{key}: got a list of 1 number, expected a number, or a list of 2: one per spring")
             for key in ("coupling", "damping")
         ),
-        ({"pulling_damping": [0.1]}, "chain.pulling_damping: got a list of 1 number, expected a number, or 3: one per"),
+        (
+            {"pulling_damping": [0.1]},
+            "chain.pulling_damping: got a list of 1 number, expected a number, or a list of 3: one per",
+        ),
         ({"grid": [1, 3], "damping": [0.1]}, "chain.damping: got a list of 1 number, expected one together with"),
         ({"coupling": [1.0, 1.0], "ends": "ring"}, "chain.coupling: got 2 numbers, expected 1, or 3"),
         ({"threshold": [1.0, 2.0]}, "chain.threshold: got 2 numbers, expected 1, or 3"),

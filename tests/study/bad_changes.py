@@ -72,7 +72,7 @@ BAD_CHANGES = [
     ({"zzz": 1}, ["zzz: unknown key, expected one of: a, a_digits, "]),
     ({"laws": {"linearised": {}}}, ["laws.linearised: got", "or a formula (did you mean linearized?)"]),
     ({"laws": {"mine": {"law": "linear"}}}, ["laws.mine.law: 'linear'", "or a formula (did you mean linearized?)"]),
-    ({"laws": {"mine": {"law": "1 - a*u"}}}, ["laws.mine.law: '1 - a*u'", 'or a formula: {"formula": "1 - a*u"}']),
+    ({"laws": {"mine": {"law": "1 - 2*u"}}}, ["laws.mine.law: '1 - 2*u'", 'or a formula: NAME: {formula: "1 - 2*u"}']),
     ({"laws": {"1 - a*u": {}}}, ["laws: '1 - a*u'", "a formula as NAME: {formula: ...}"]),
     ({"agreement": []}, ["agreement: []"]),
     ({"lyapunov_exponents": 7}, ["lyapunov_exponents: 7", "at most 6", "two per block"]),

@@ -164,7 +164,7 @@ def test_a_grid_whose_file_names_are_too_long_is_refused(tmp_path):
             words = str(error)
         lengths[not words].add(len(name))
         if words:
-            assert words.startswith(f"plane.yaml: grid: got points with file names of {len(name)} letters (a0.0500_mas")
+            assert words.startswith(f"plane.yaml: grid: got points with file names of {len(name)} characters (a0.0500")
             assert words.endswith("expected at most 240: fewer parameters, shorter numbers, or fewer a_digits")
             with pytest.raises(OSError, match="File name too long"):
                 write_text(tmp_path / name, "")

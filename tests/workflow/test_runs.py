@@ -116,7 +116,7 @@ def test_stages_that_the_config_leaves_out(tmp_path):
     left_out = "without attractors, bifurcations, edges, basins, phases, proof, claims: the study still contains"
     assert f"{left_out} solvers (only the figures of the paper: snakemake curves)" in output
     run = study.run("-n", "results/tiny/summary/attractors.nc")
-    assert "results/tiny/summary/attractors.nc: unknown target" in run.stdout
+    assert "results/tiny/summary/attractors.nc: not made: part of stage attractors" in run.stdout
 
 
 def test_stage_targets(study):
@@ -193,6 +193,9 @@ def test_touch_makes_no_file_and_says_so(tmp_path, limited):
     assert re.search(r"^study limits: \d+ files marked as up to date, whatever their content; bk check", output, re.M)
     left = "not made yet, and left so: summary 1, figures 2, report.html; run the command without --touch"
     assert left in output.splitlines()
+    planned = study.ok("-n", "--touch")
+    assert re.search(r"^\d+ jobs? would not run: --touch only marks existing files$", planned, re.M)
+    assert "a run takes" not in planned
     # Without --touch they are made.
     again = study.ok()
     assert "equilibrium.png" in again

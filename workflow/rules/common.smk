@@ -16,7 +16,9 @@ def abouts(rule):
 
     def of_job(wildcards):
         if rule.name not in JOBS.existing:
-            raise ConfigError(rule.refusal)
+            names = [rule.name, *paths(form.format(**wildcards) for form in rule.files)]
+            asked = [name for name in names if name in workflow.dag_settings.targets]
+            raise ConfigError(f"{[*asked, rule.name][0]}: not made: {rule.refusal}")
         return JOBS.abouts(rule, dict(wildcards))
 
     return of_job

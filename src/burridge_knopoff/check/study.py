@@ -204,7 +204,10 @@ def config_change(results: Path, record: dict[str, Any]) -> Finding | None:
     if not path.exists():
         return Finding("note", file, "does not exist; the config of the last run is checked")
     try:
-        if read_yaml(path) != record["given"]:
+        given = read_yaml(path)
+        if isinstance(given, dict) and given.get("study") != record["given"].get("study"):
+            return Finding("stale", file, f"is not the config of {NAME}; the config of the last run is checked")
+        if given != record["given"]:
             return Finding("stale", file, "has changed since the last run; the config of the last run is checked")
     except ConfigError as error:
         reason = str(error).partition(": ")[2]
@@ -222,13 +225,16 @@ def check_record(results: Path) -> None:
     change = config_change(results, record)
     reason = ""
     if change and change.kind == "stale":
-        reason = f"{record['config_file']} has changed since the last run"
+        reason = f"{change.path} {change.reason.partition(';')[0]}"
     elif study.name != results.resolve().name:
         reason = f"{NAME} is the record of study {study.name}"
     else:
         for finding in check_study(results).findings:
             is_point = finding.path.is_relative_to(results / "points")
-            if finding.kind == "stale" or (finding.kind == "missing" and is_point):
+            if finding.kind == "missing" and is_point:
+                reason = f"incomplete ({finding.path}: {finding.reason}), so that its record cannot be verified"
+                break
+            if finding.kind == "stale":
                 reason = f"its files are not those of {NAME} ({finding.path}: {finding.reason})"
                 break
     if reason:

@@ -11,7 +11,7 @@ from itertools import pairwise
 from pathlib import Path
 from typing import Any, TypeVar
 
-from burridge_knopoff.laws import LAWS, Law, law_of
+from burridge_knopoff.laws import LAWS, Law, law_of, unknown_law
 from burridge_knopoff.library.coercion import OWN
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of
@@ -216,6 +216,8 @@ def simulated_law(options: argparse.Namespace) -> Law:
     numbers = dict(options.number)
     if len(numbers) < len(options.number):
         raise ValueError(f"--number: got {' '.join(name for name, _ in options.number)}, expected each name once")
+    if options.formula is None and options.law not in LAWS:
+        raise unknown_law("law", options.law, '--formula "{}"')
     kind = {"law": options.law} if options.formula is None else {"formula": options.formula}
     name = options.law_name or (options.law if options.formula is None else "formula")
     return law_of(name, options.a, {**kind, **numbers})

@@ -94,7 +94,7 @@ class Jobs:
         if stage in study.omitted_stages:
             without = study.config["without"]
             left_out = " and ".join(name for name in (stage, STAGES[stage]) if name in without)
-            needs = f", which needs {STAGES[stage]}" if STAGES[stage] else ""
+            needs = f", which needs {STAGES[stage]}" if STAGES[stage] in without else ""
             return f"part of stage {stage}{needs}: remove {left_out} from `without: [{', '.join(without)}]`"
         for form in () if declared.optional_reads else chain.from_iterable(declared.inputs.values()):
             if form not in self._made_by:

@@ -67,7 +67,7 @@ def condition_refusal(study: Study, condition: str) -> str:
     """Return what a study needs to meet a condition, the name of a property of `Study`; empty if it meets it."""
     if not condition or getattr(study, condition):
         return ""
-    return f"study {study.name}: not made, since it needs {_CONDITIONS.get(condition, condition)}"
+    return f"it needs {_CONDITIONS.get(condition, condition)}"
 
 
 def law_jobs(study: Study) -> list[dict[str, str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,7 +12,7 @@ from burridge_knopoff.laws.law import FormulaLaw, Law
 from burridge_knopoff.laws.linearized import Linearized
 from burridge_knopoff.laws.nonlinear import Nonlinear
 from burridge_knopoff.laws.stribeck import Stribeck
-from burridge_knopoff.values import refusal, suggestion
+from burridge_knopoff.values import cut, refusal, suggestion
 
 __all__ = ["LAWS", "FormulaLaw", "Law", "law_of"]
 
@@ -53,11 +54,15 @@ def law_of(name: str, a: float, description: Mapping[str, Any] | None = None) ->
         return FormulaLaw(a, values.pop("formula"), name=name, **values)
     kind = values.pop("law", name)
     if not isinstance(kind, str) or kind not in LAWS:
-        raise unknown_law("law", kind)
+        raise unknown_law("law", kind, '{{"formula": "{}"}}')
     return LAWS[kind](a, name=name, **values)
 
 
-def unknown_law(key: str, name: Any) -> ValueError:
-    """Return the error for a name that is not that of a built-in law: the closest name, or how to give a formula."""
-    hint = suggestion(name, LAWS) or ': {"formula": "1 - a*u"}, on a command line --formula "1 - a*u"'
+def unknown_law(key: str, name: Any, way: str = 'NAME: {{formula: "{}"}}') -> ValueError:
+    """Return the error for a name that is not that of a built-in law: the closest name, or how to give a formula.
+
+    way : how a formula is given, with {} in its place; by default in a config
+    """
+    formula = cut(name) if isinstance(name, str) and re.search(r"\bu\b", name) else "1 - a*u"
+    hint = suggestion(name, LAWS) or f": {way.format(formula)}"
     return refusal(key, name, f"{' | '.join(LAWS)}, or a formula{hint}")

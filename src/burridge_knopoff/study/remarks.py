@@ -28,7 +28,7 @@ def _on_cost(study: Study) -> list[str]:
     if not is_stiff(stiffest.chain):
         return []
     note = cost_note(stiffest, stiffest.begin(study.state(initial), settings.start), settings)
-    return [f"each run: {note}"] if note else []
+    return [f"each simulation: {note}; the time estimated for a first run leaves this out"] if note else []
 
 
 def _on_parts(study: Study, given: Mapping[str, Any]) -> Iterator[str]:

@@ -246,7 +246,7 @@ def check_names(config: Mapping[str, Any], parameters: Mapping[str, Collection[s
     name = point_file(parameters).format(law="", initial="", **longest).rpartition("/")[2]
     if len(name) > LONGEST_NAME:
         raise ValueError(
-            f"{'grid' if config['grid'] else 'a'}: got points with file names of {len(name)} letters ({cut(name)}), "
+            f"{'grid' if config['grid'] else 'a'}: got points with file names of {len(name)} characters ({cut(name)}), "
             f"expected at most {LONGEST_NAME}: fewer parameters, shorter numbers, or fewer a_digits"
         )
 
