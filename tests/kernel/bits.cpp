@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "creep.cpp"
 #include "ensemble.cpp"
 #include "groups.cpp"
 #include "lockstep.cpp"

@@ -7,7 +7,8 @@ from scipy.linalg import eigh
 from burridge_knopoff import Chain, ChainState, Model, law_of
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
-from burridge_knopoff.summaries.detuning import DetunedMotion, detuned_motion, has_one_frequency
+from burridge_knopoff.summaries.detuning import DetunedMotion, detuned_motion
+from burridge_knopoff.summaries.one_frequency import has_one_frequency
 
 
 def frequencies_of_branch_1(law: str, a: float, detuning: float) -> DetunedMotion:

@@ -30,7 +30,7 @@ from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.motion.kind import CHAOS, REGULAR, MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries.detuning import has_one_frequency
+from burridge_knopoff.summaries.one_frequency import has_one_frequency
 from burridge_knopoff.summaries.plateaux import plateaux
 
 if TYPE_CHECKING:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
+from numpy.typing import ArrayLike
 
 from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.figures.branches import map_colors, map_parts
@@ -29,12 +31,11 @@ COLUMNS = 2
 
 
 @styled
-def draw(
-    basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: dict[str, list[tuple[float, float]]]
-) -> Figure:
+def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: Mapping[str, ArrayLike]) -> Figure:
     """Draw each map in the colours of the branches reached: mirror images in a lighter shade, undetermined in black.
 
-    marked_states : U_1(0) and U_N(0) on each map, by name, of the initial states in its plane
+    marked_states : U_1(0) and U_N(0), by name, of the initial states in the plane of the maps, shape (2,), or (maps, 2)
+        if they differ between maps
     """
     count = basins.sizes["map"]
     columns = min(COLUMNS, count)
@@ -44,9 +45,10 @@ def draw(
     colors = map_colors(attractors, np.unique(basins["branch"]).tolist())
     names = branch_names(attractors)
     extent = (*basins.attrs["first_range"], *basins.attrs["last_range"])
+    marks = {name: np.broadcast_to(points, (count, 2)) for name, points in marked_states.items()}
     there = {
         name: points
-        for name, points in marked_states.items()
+        for name, points in marks.items()
         if all(extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3] for x, y in points)
     }
     titles = []

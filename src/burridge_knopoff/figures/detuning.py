@@ -1,4 +1,4 @@
-"""The amplitudes of end blocks of unequal mass, compared with the normal modes: locked, or moved by one mode?"""
+"""The amplitudes of end blocks of unequal mass, compared with the normal modes."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from burridge_knopoff.figures.style import (
     show_all,
     styled,
 )
-from burridge_knopoff.summaries.detuning import has_one_frequency
+from burridge_knopoff.summaries.one_frequency import has_one_frequency
 
 TITLE = "End blocks of unequal mass"
 CATEGORY = "Attractors"

@@ -140,7 +140,7 @@ class Model(Unchanging):
         OneOf(STARTS).form(start, "start")
         OneOf(LOADINGS).form(loading, "loading")
         u, w = self.initial_coordinates(initial)
-        stuck = self.stuck_blocks(u, w, start, self.v if loading == "steady" else 0.0)
+        stuck = self.stuck_blocks(u, w, start, loading)
         return ChainState(u - self.sliding_offset, np.where(stuck, 0.0, w), stuck)
 
     def initial_coordinates(self, initial: InitialState) -> tuple[np.ndarray, np.ndarray]:
@@ -170,15 +170,13 @@ class Model(Unchanging):
             )
 
     def stuck_blocks(
-        self, position: np.ndarray, velocity: np.ndarray, start: str, driver_velocity: float | None = None
+        self, position: np.ndarray, velocity: np.ndarray, start: str, loading: str = "steady"
     ) -> np.ndarray:
         """Return a mask of the blocks that stick at τ = 0 for a choice of `start`; U(0), U'(0) and mask: (…, blocks).
 
-        driver_velocity : by default v
-
         The force includes the dashpots, with the block at rest and its neighbours moving unless they stick as well.
         """
-        chain, v = self.chain, self.v if driver_velocity is None else driver_velocity
+        chain, v = self.chain, self.v if loading == "steady" else 0.0
         # Spring forces from U itself: rounding in co-moving coordinates could move a block across its threshold.
         force = chain.force(position)
         stuck = np.zeros(position.shape, dtype=bool)

@@ -27,9 +27,6 @@ from burridge_knopoff.running.simulation import run
 #: modes, are measured.
 TRANSIENT, WINDOW = 4000.0, 4000.0
 
-# End blocks whose frequencies differ by no more have one frequency; on tori frequencies are known to a tenth of this.
-FREQUENCY_TOLERANCE = 1e-6
-
 
 @dataclass(frozen=True, eq=False)
 class DetunedMotion:
@@ -91,8 +88,3 @@ def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: 
         math.degrees(np.angle(ratio)) % 360.0,
         settled.final,
     )
-
-
-def has_one_frequency(frequency: np.ndarray) -> np.ndarray:
-    """Return whether the end blocks have one frequency, from the frequencies of the blocks, shape (…, blocks)."""
-    return np.abs(frequency[..., -1] - frequency[..., 0]) <= FREQUENCY_TOLERANCE
