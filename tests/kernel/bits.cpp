@@ -70,6 +70,7 @@ void read_model(Model &model) {
     model.law.complete();
     model.v = number[5];
     model.symmetric = number[6] != 0.0;
+    model.creep_speed = number[7];
 }
 
 template <class Solver>
