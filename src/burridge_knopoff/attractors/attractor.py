@@ -56,7 +56,7 @@ class Attractor:
     patience: float = 0.0
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        """Refuse a pickle of a version in which attractors did not know their model."""
+        """Refuse a pickle without a model."""
         if "model" not in state:
             raise ValueError("attractor: got a pickle without its model, expected one of this version: search again")
         vars(self).update(state)

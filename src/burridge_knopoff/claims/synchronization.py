@@ -107,7 +107,7 @@ def edge_of_synchrony(
             measured.append(Measured(name, critical, error, proved=proved is not None))
             losses.append(f"a_c = {critical:.5g} ({law}{', proved' if proved else ''})")
             low = high = critical
-        # A range that reaches further than claimed reaches that far.
+        # Under "at least", an edge beyond the claimed one counts as the claimed one.
         clip = min if is_upper else max
         ends = (low, high), (clip(low, claimed), clip(high, claimed))
         for of_laws, (first, last) in zip(readings.values(), ends, strict=True):
