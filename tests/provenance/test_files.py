@@ -4,6 +4,7 @@ import errno
 import io
 import os
 import re
+import resource
 import signal
 import subprocess
 import sys
@@ -49,6 +50,23 @@ def test_a_full_disk_is_reported(tmp_path, error):
 
     with pytest.raises(OSError, match="a.nc: cannot be written: No space left on device$"):
         write_whole(tmp_path / "a.nc", fail)
+
+
+def test_a_disk_with_a_little_room_is_full(tmp_path):
+    """Part of the bytes fits, as when another job has just removed its file."""
+
+    def fail(name):
+        open(name, "w").close()
+        raise RuntimeError("NetCDF: HDF error")
+
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 16, limits[1]))
+    try:
+        with pytest.raises(OSError, match="a.nc: cannot be written: File too large$"):
+            write_whole(tmp_path / "a.nc", fail)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_an_interrupted_write_leaves_nothing(tmp_path):

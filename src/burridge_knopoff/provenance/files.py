@@ -66,9 +66,11 @@ def _remove(*paths: Path) -> None:
 def _reason(error: OSError | RuntimeError, temporary: Path) -> object:
     """Return the reason why a file could not be written."""
     # netCDF4 reports a full disk as "NetCDF: HDF error" or "Permission denied"; writing more bytes shows the reason.
+    # Without a buffer, `write` is content with the part that fits.
     try:
-        with temporary.open("ab", buffering=0) as file:
+        with temporary.open("ab") as file:
             file.write(bytes(PROBE))
+            file.flush()
             os.fsync(file.fileno())
     except OSError as refused:
         return refused.strerror or refused
