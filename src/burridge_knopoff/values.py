@@ -122,14 +122,14 @@ def suggestion(name: Any, known: Iterable[str]) -> str:
     """
     if not isinstance(name, str) or len(name) > LONGEST:
         return ""
-    given, near = name.casefold(), []
+    folded, near = name.casefold(), []
     for word in known:
         meant = word.casefold()
-        ratio = SequenceMatcher(None, given, meant).ratio()
-        if ratio >= _CLOSE or (len(given) >= _START and meant.startswith(given)):
-            shared = sum(given[:k] == meant[:k] for k in (1, 2, 3, 4))
+        ratio = SequenceMatcher(None, folded, meant).ratio()
+        if ratio >= _CLOSE or (len(folded) >= _START and meant.startswith(folded)):
+            shared = sum(folded[:k] == meant[:k] for k in (1, 2, 3, 4))
             near.append((ratio + 0.1 * shared * (1.0 - ratio), word))
-    return f" (did you mean {max(near, key=lambda found: found[0])[1]}?)" if near else ""
+    return f" (did you mean {max(near, key=lambda pair: pair[0])[1]}?)" if near else ""
 
 
 def cut(text: str, longest: int = LONGEST) -> str:

@@ -60,8 +60,8 @@ def replacement(message: str) -> str | None:
         found = pattern.search(message)
         if found and not Path(found.groupdict().get("missing", "")).is_file():
             return found.expand(text)
-    if found := _UNKNOWN.search(message):
-        return unknown_target(found[1])
+    if match := _UNKNOWN.search(message):
+        return unknown_target(match[1])
     return rule_with_wildcards() if _WILDCARDS.search(message) else None
 
 

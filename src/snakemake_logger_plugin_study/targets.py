@@ -72,12 +72,12 @@ def _of_file(jobs: Jobs, path: str) -> str:
         return _of_other_study(jobs, path, files)
     if any(file.startswith(f"{name}/") for file in files):
         return _FOLDER
-    rules = [(rule, found) for rule, form in _forms(jobs) if (found := re.fullmatch(jobs.pattern(form), name))]
+    rules = [(rule, match) for rule, form in _forms(jobs) if (match := re.fullmatch(jobs.pattern(form), name))]
     for rule, _ in rules:
         if rule.name not in jobs.existing:
             return jobs.absence[rule.name]
-    for rule, found in rules:
-        for key, value in found.groupdict().items():
+    for rule, match in rules:
+        for key, value in match.groupdict().items():
             values = list(dict.fromkeys(job[key] for job in rule.each))
             if value not in values:
                 shown = " | ".join([*values[:MOST_VALUES], *["…"] * (len(values) > MOST_VALUES)])

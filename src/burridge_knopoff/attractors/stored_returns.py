@@ -90,7 +90,7 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
 
     Raises ValueError, one line, if the files are not of this law, a, v, contact and number of blocks.
     """
-    held = [
+    properties = [
         ("law", model.law.name, attractors["law"].values.tolist()),
         ("law", model.law.name, [returns.attrs.get("law", model.law.name)]),
         ("a", model.a, attractors["a"].values.tolist()),
@@ -98,7 +98,7 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
         ("contact", model.contact, [attractors.attrs["contact"]]),
         ("blocks", model.blocks, [attractors.sizes["block"]]),
     ]
-    for name, value, values in held:
+    for name, value, values in properties:
         if value not in values:
             raise refusal(f"model.{name}", value, f"{format_value(values)}, as in the files")
     found = attractors.sel(law=model.law.name, a=model.a)

@@ -204,10 +204,10 @@ def config_change(results: Path, record: dict[str, Any]) -> Finding | None:
     if not path.exists():
         return Finding("note", file, "does not exist; the config of the last run is checked")
     try:
-        given = read_yaml(path)
-        if isinstance(given, dict) and given.get("study") != record["given"].get("study"):
+        config = read_yaml(path)
+        if isinstance(config, dict) and config.get("study") != record["given"].get("study"):
             return Finding("stale", file, f"is not the config of {NAME}; the config of the last run is checked")
-        if given != record["given"]:
+        if config != record["given"]:
             return Finding("stale", file, "has changed since the last run; the config of the last run is checked")
     except ConfigError as error:
         reason = str(error).partition(": ")[2]

@@ -73,22 +73,22 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, mode_share: flo
     shares: dict[str, dict[str, Share]] = {ONE_FREQUENCY: {}, NO_MODE: {}}
     measured, where = [], []
     for law in PAPER_LAWS:
-        found = rotation.sel(law=law)
-        own = a.choose(found["a"].values) & (found["in_grid"].values == 1)
+        of_law = rotation.sel(law=law)
+        in_range = a.choose(of_law["a"].values) & (of_law["in_grid"].values == 1)
         for branch in rotation["branch"].values.tolist():
             name = f"branch {branch}, {law}"
-            detuned = found.sel(branch=branch, detuning=detuning)
-            detuned = detuned.isel(value=own & np.isfinite(detuned["detuned_exponent"].values[:, 2]))
+            detuned = of_law.sel(branch=branch, detuning=detuning)
+            detuned = detuned.isel(value=in_range & np.isfinite(detuned["detuned_exponent"].values[:, 2]))
             if detuned.sizes["value"] < MIN_VALUES:
                 raise NotTestableError(f"branch {branch} is regular at fewer than {MIN_VALUES} values of a ({law})")
             grid, frequency = detuned["a"].values, detuned["detuned_frequency"].values
             third, error = (detuned[key].values[:, 2] for key in ("detuned_exponent", "detuned_exponent_error"))
             largest = detuned["detuned_mode_share"].values.max(axis=1)
-            one = has_one_frequency(frequency) & (third < -STANDARD_ERRORS * error)
-            locked = one & (largest < mode_share)
-            shares[ONE_FREQUENCY][name], shares[NO_MODE][name] = count_share(one), count_share(locked)
+            one_frequency = has_one_frequency(frequency) & (third < -STANDARD_ERRORS * error)
+            locked = one_frequency & (largest < mode_share)
+            shares[ONE_FREQUENCY][name], shares[NO_MODE][name] = count_share(one_frequency), count_share(locked)
             measured += [
-                Measured(f"share of a at which the end blocks keep one frequency, {name}", one.mean()),
+                Measured(f"share of a at which the end blocks keep one frequency, {name}", one_frequency.mean()),
                 Measured(f"share of a at which they are locked, {name}", locked.mean()),
                 Measured(
                     f"largest difference of their frequencies, {name}", np.ptp(frequency[:, [0, -1]], axis=1).max()
@@ -97,11 +97,11 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, mode_share: flo
                 Measured(f"smallest share of the largest mode, {name}", largest.min()),
             ]
             where += describe_where(
-                "the end blocks do not keep one frequency with a stable relative phase", grid, ~one, name
+                "the end blocks do not keep one frequency with a stable relative phase", grid, ~one_frequency, name
             )
             where += describe_where("the end blocks are locked", grid, locked, name)
-        of_law, further = _locked_to_middle(found, a, law)
-        measured, where = measured + of_law, where + further
+        numbers, texts = _locked_to_middle(of_law, a, law)
+        measured, where = measured + numbers, where + texts
     verdicts = {
         reading: worst_verdict(judge_share(share, loose_share) for share in of_branch.values())
         for reading, of_branch in shares.items()
@@ -120,23 +120,23 @@ def branch_locked(evidence: Evidence, a: Range, detuning: float, mode_share: flo
 def _locked_to_middle(rotation: xarray.Dataset, a: Range, law: str) -> tuple[list[Measured], list[str]]:
     """Return the numbers that tell where branch 1 is locked to the middle block under a law, and describe where."""
     inside = a.choose(rotation["a"].values)
-    known = inside & (rotation["in_grid"].values == 1) & (rotation["locked"].values >= 0)
-    locked = rotation["locked"].values[known] == 1
-    share = count_share(locked).value if known.any() else np.nan
+    decided = inside & (rotation["in_grid"].values == 1) & (rotation["locked"].values >= 0)
+    locked = rotation["locked"].values[decided] == 1
+    share = count_share(locked).value if decided.any() else np.nan
     measured = [Measured(f"share of a at which branch 1 is locked to the middle block, {law}", share)]
     number = rotation["rotation_number"].values[inside]
     if np.isfinite(number).any():
         measured += extremes("rotation number", number[np.isfinite(number)], law)
     where = []
-    found = [one for one in plateaux(rotation.isel(value=inside)) if one.last > one.first]
-    if found:
-        width = sum(one.last - one.first for one in found)
+    wide = [plateau for plateau in plateaux(rotation.isel(value=inside)) if plateau.last > plateau.first]
+    if wide:
+        width = sum(plateau.last - plateau.first for plateau in wide)
         measured.append(Measured(f"width in a of all plateaux that were found, {law}", width))
-        widest = max(found, key=lambda one: one.last - one.first)
+        widest = max(wide, key=lambda plateau: plateau.last - plateau.first)
         where.append(
             f"the widest plateau, {widest.ratio}, reaches from a = {widest.first:.5g} to {widest.last:.5g} ({law})"
         )
-    where += describe_where("branch 1 is locked to the middle block", rotation["a"].values[known], locked, law)
+    where += describe_where("branch 1 is locked to the middle block", rotation["a"].values[decided], locked, law)
     return measured, where
 
 
@@ -164,13 +164,13 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
     before, after, kinds = (bifurcations[key].values for key in ("motion_before", "motion_after", "kind"))
     readings: dict[str, list[str]] = {LOCKED: [], CLOSED: []}
     texts: dict[str, list[str]] = {LOCKED: [], CLOSED: []}
-    measured, others = [], []
+    measured, remarks = [], []
     for name in PAPER_LAWS:
         if name not in laws:
             raise NotTestableError(f"the study has no {name} law")
         refined = evidence.summary("refined").sel(law=name)
-        own = bifurcations["law"].values == name
-        changes = own & (bifurcations["change"].values != Change.PASSED) & np.isin(after, CHAOS)
+        is_law = bifurcations["law"].values == name
+        changes = is_law & (bifurcations["change"].values != Change.PASSED) & np.isin(after, CHAOS)
         changes &= ~_was_chaotic(bifurcations, refined)
         onset = changes & np.isin(before, (MotionKind.SYNCHRONIZED, *REGULAR))
         unknown = changes & (before == MotionKind.UNDETERMINED)
@@ -182,7 +182,7 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
         if not places:
             raise NotTestableError(f"no branch of attractors becomes chaotic under the {name} law")
         precursors = {at: _possible_precursor(before[k], kinds[k]) for at, k in places.items()}
-        of_law = bifurcations.isel(bifurcation=own)
+        of_law = bifurcations.isel(bifurcation=is_law)
         on_torus = {
             at: _was_torus(of_law, refined, int(bifurcations["from_branch"].values[k]), at[0])
             for at, k in places.items()
@@ -197,24 +197,24 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
             measured.append(Measured(f"share of the onsets of chaos that {reading} precedes, {name}", share.value))
             if reading == LOCKED and certain:
                 where = ", ".join(f"{low:g}" for low, _ in sorted(certain))
-                others.append(f"{reading} precedes chaos just above a = {where} ({name})")
+                remarks.append(f"{reading} precedes chaos just above a = {where} ({name})")
         ends = Counter(int(kinds[k]) for k in np.flatnonzero(onset))
         for kind, often in sorted(ends.items()):
             measured.append(Measured(f"bifurcations there, {BifurcationKind(kind).name.lower()}, {name}", often))
         if unknown.any():
             values = np.unique(bifurcations["a"].values[unknown])
-            others.append(
+            remarks.append(
                 f"the motion before chaos is undetermined at a = {', '.join(f'{a:.5g}' for a in values)} ({name})"
             )
         for precursor in (TORUS, UNFOLLOWED):
             if there := sorted(low for (low, _), text in precursors.items() if text == precursor):
-                others.append(
+                remarks.append(
                     f"{precursor} precedes chaos just above a = {', '.join(f'{a:g}' for a in there)} ({name})"
                 )
     verdicts = {reading: worst_verdict(of_laws) for reading, of_laws in readings.items()}
     counts = "; ".join(f"{reading} in {join_words(texts[reading])} cases ({verdicts[reading]})" for reading in readings)
     reason = f"Where a branch of attractors becomes chaotic as a grows, this precedes chaos: {counts}."
-    return combine_readings(verdicts, reason, measured, others)
+    return combine_readings(verdicts, reason, measured, remarks)
 
 
 def _possible_precursor(before: int, bifurcation: int) -> str:

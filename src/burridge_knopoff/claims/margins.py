@@ -146,13 +146,13 @@ def _bound_choices(changed_verdict: ChangedVerdict, evidence: Evidence, paramete
     for name, (words, summary, coordinate) in BOUNDS.items():
         if name not in parameters or summary not in evidence.summaries:
             continue
-        own, values = parameters[name], np.unique(evidence.summaries[summary][coordinate].values)
-        smaller = values[(values >= own / FACTOR) & (values < own)][::-1]
-        larger = values[(values > own) & (values <= own * FACTOR)]
+        current, values = parameters[name], np.unique(evidence.summaries[summary][coordinate].values)
+        smaller = values[(values >= current / FACTOR) & (values < current)][::-1]
+        larger = values[(values > current) & (values <= current * FACTOR)]
         for side, candidates in (("most", smaller), ("least", larger)):
             for value in candidates.tolist():
                 if other := changed_verdict(evidence, {**parameters, name: value}):
-                    yield f"{other} if {words} is at {side} {value:g} (here {own:g})"
+                    yield f"{other} if {words} is at {side} {value:g} (here {current:g})"
                     break
 
 

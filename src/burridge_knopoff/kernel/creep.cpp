@@ -179,4 +179,13 @@ void Run::add_creep(int i, double distance) {
         event->energy += model.springs.threshold[i] * model.law.at_rest * distance;
 }
 
+// A block that may have crept up to now sticks or slips from now on.
+void Run::end_creep(int i) {
+    Block &block = alone[i];
+    if (block.creeps) add_creep(i, loading * block.loaded.until(load) * block.creep);
+    block.loaded = load;
+    block.creeps = false;
+    block.creep = 0.0;
+}
+
 }  // namespace bk

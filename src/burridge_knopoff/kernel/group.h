@@ -60,14 +60,11 @@ struct Group {
 
     // Whether all blocks stick at a time of the piece, or slip so slowly that they creep; fastest : see State::rests
     bool rests_at(double t, double fastest) const {
+        const vec at = Blocks::splat(t);
         for (int c = 0; c < layout.columns; c++) {
-            vec slope{};
-            for (int k = Blocks::ORDER; k > 0; k--)
-                slope = slope * t + double(k) * series.velocity[size_t(k) * series.columns + c];
-            const vec speed = series.value(series.velocity, c, Blocks::splat(t));
-            const mask slow =
-                (magnitude(speed) <= layout.creep_speed) & (magnitude(slope) <= fastest * layout.creep_speed);
-            if (any(layout.present[c] & (state.slip[c] != vec{}) & ~slow)) return false;
+            const mask rests =
+                state.rests(c, series.value(series.velocity, c, at), series.acceleration(c, at), fastest);
+            if (any(layout.present[c] & ~rests)) return false;
         }
         return true;
     }

@@ -139,8 +139,8 @@ void Run::regroup() {
         if (catalogue) group->record(*catalogue, polynomial, 0.0, length, true);
         for (int k = 0; k < group->size(); k++) {
             const int i = group->layout.member[k];
-            if (alone[i].creeps) add_creep(i, loading * alone[i].loaded.until(load) * alone[i].creep);
             group->state.position.lane(k) -= lag(i);
+            end_creep(i);
         }
         retire(*group);
     }
@@ -167,13 +167,9 @@ Group &Run::collect(std::vector<int> &members) {
     std::sort(members.begin(), members.end());
     members.erase(std::unique(members.begin(), members.end()), members.end());
     for (int i : members) {
-        Block &block = alone[i];
-        if (block.creeps) add_creep(i, loading * block.loaded.until(load) * block.creep);
-        if (block.slip == 0.0 || block.creeps) block.x = position_at_rest(i, now);
-        block.since = now;
-        block.loaded = load;
-        block.creeps = false;
-        block.creep = 0.0;
+        if (alone[i].slip == 0.0 || alone[i].creeps) alone[i].x = position_at_rest(i, now);
+        alone[i].since = now;
+        end_creep(i);
         version[i]++;
     }
     return build(members, now);

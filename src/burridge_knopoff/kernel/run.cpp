@@ -363,12 +363,7 @@ bool Run::load_next(Group &group) {
     load = from.after(least);
     // A batch of exponents begins before an event.
     if (exponents.running) exponents.follow(group.slip(), load.time, false);
-    for (int i = 0; i < blocks; i++) {
-        if (alone[i].creeps) add_creep(i, loading * least * alone[i].creep);
-        alone[i].loaded = load;
-        alone[i].creeps = false;
-        alone[i].creep = 0.0;
-    }
+    for (int i = 0; i < blocks; i++) end_creep(i);
     due.assign(layout.columns, 0);
     for (int c = 0; c < layout.columns; c++) {
         group.state.position[c] -= loading * least * (1.0 - creep[c]);

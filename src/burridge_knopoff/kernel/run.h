@@ -200,6 +200,7 @@ class Run {
     std::vector<double> solve(const std::vector<int> &members, const std::vector<double> &right);
     double creep_rate(int i) const;
     void add_creep(int i, double distance);
+    void end_creep(int i);
 
     // One group.
     int run_whole();

@@ -106,6 +106,13 @@ struct Series {
         return (even * square + t * odd) + term[0];
     }
 
+    // The derivative of the velocities of a column at t.
+    BK_INLINE vec acceleration(int c, vec t) const {
+        vec slope{};
+        for (int k = ORDER; k > 0; k--) slope = slope * t + double(k) * velocity[size_t(k) * columns + c];
+        return slope;
+    }
+
     // The integral of the positions of a column from 0 to t.
     vec integral(int c, vec t) const {
         const vec *term = position.at(c), square = t * t;
@@ -147,9 +154,7 @@ struct Series {
             state.age[c] = select(moved & (slipping[c] > zero), state.age[c] + t, state.age[c]);
             const mask young = moved & (state.age[c] < layout.young);
             if (!any(young)) continue;
-            vec slope{};
-            for (int k = ORDER; k > 0; k--) slope = slope * t + double(k) * u(k)[c];
-            state.acceleration[c] = select(young, slope, state.acceleration[c]);
+            state.acceleration[c] = select(young, acceleration(c, t), state.acceleration[c]);
         }
     }
 

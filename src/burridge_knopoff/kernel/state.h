@@ -132,10 +132,11 @@ struct State {
     }
     // Where a block sticks, or its slip has become so slow that it creeps; fastest : the highest angular frequency of
     // the chain, above the rate at which the speed of an overdamped slip decays
-    mask rests(int c, double fastest) const {
-        const vec zero{}, size = magnitude(slip_acceleration(c, force(c)));
-        return (slip[c] == zero) |
-               ((magnitude(velocity[c]) <= layout.creep_speed) & (size <= fastest * layout.creep_speed));
+    mask rests(int c, double fastest) const { return rests(c, velocity[c], slip_acceleration(c, force(c)), fastest); }
+    // The same for a slip of another speed and acceleration.
+    mask rests(int c, vec speed, vec change, double fastest) const {
+        return (slip[c] == vec{}) |
+               ((magnitude(speed) <= layout.creep_speed) & (magnitude(change) <= fastest * layout.creep_speed));
     }
     // The largest |U_i'| of all blocks.
     vec fastest() const {

@@ -139,11 +139,11 @@ class Chain(Unchanging):
         for key in (*SPRING_PARAMETERS, *BLOCK_PARAMETERS):
             value, count = getattr(self, key), self.parameter_count(key)
             if isinstance(value, tuple) and len(value) != count:
-                got, some = f"{len(value)} numbers, expected 1", f"{count}"
+                got, several = f"{len(value)} numbers, expected 1", f"{count}"
                 if len(value) == 1:
-                    got, some = "a list of 1 number, expected a number", f"a list of {count}"
-                each = "spring" if key in SPRING_PARAMETERS else "block"
-                raise ValueError(f"chain.{key}: got {got}{f', or {some}: one per {each}' * (count > 1)}")
+                    got, several = "a list of 1 number, expected a number", f"a list of {count}"
+                part = "spring" if key in SPRING_PARAMETERS else "block"
+                raise ValueError(f"chain.{key}: got {got}{f', or {several}: one per {part}' * (count > 1)}")
         if self.blocks == 1 and self.ends == "ring":
             raise ValueError("chain.ends: got ring, expected open for one block")
         if not isinstance(self.pulling, str) and np.max(self.pulling) < STRENGTH.least:

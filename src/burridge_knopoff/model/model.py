@@ -96,12 +96,12 @@ class Model(Unchanging):
         """
         part = self.chain.different_key(other.chain)
         if part is not None:
-            name, own, others = f"chain.{part}", getattr(self.chain, part), getattr(other.chain, part)
+            name, value, other_value = f"chain.{part}", getattr(self.chain, part), getattr(other.chain, part)
         else:
             values = ((name, getattr(self, name), getattr(other, name)) for name in ("a", "law", "v", "contact"))
-            name, own, others = next((item for item in values if item[1] != item[2]), ("", None, None))
+            name, value, other_value = next((item for item in values if item[1] != item[2]), ("", None, None))
         if name:
-            raise refusal(f"{key}.{name}", others, f"{format_value(own)}, as in the model")
+            raise refusal(f"{key}.{name}", other_value, f"{format_value(value)}, as in the model")
 
     @property
     def has_closed_form(self) -> bool:

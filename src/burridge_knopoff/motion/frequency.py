@@ -114,8 +114,8 @@ def slip_starts(model: Model, state: ChainState, time: np.ndarray) -> list[np.nd
     runner.run(time[-1])
     log = runner.log.earlier_events
     at, (block, is_start) = log.times() / time[1], log.values().T
-    own = [block == 1 + n for n in range(model.blocks)]
-    return [at[one & (is_start == 1)] if (is_start[one] == 0).any() else None for one in own]
+    of_blocks = [block == 1 + n for n in range(model.blocks)]
+    return [at[events & (is_start == 1)] if (is_start[events] == 0).any() else None for events in of_blocks]
 
 
 def _frequency(values: np.ndarray, starts: np.ndarray | None) -> tuple[float, float]:
@@ -129,8 +129,8 @@ def _frequency(values: np.ndarray, starts: np.ndarray | None) -> tuple[float, fl
         return math.nan, math.nan
     # Each part has two cycles if the whole has four.
     parts = np.array_split(whole, min(max(cycles // 2, 2), PARTS))
-    frequency, *others = (mean_rate(part) if slips else _line_frequency(part) for part in (whole, *parts))
-    error = float(np.abs(np.subtract(others, frequency)).max())
+    frequency, *of_parts = (mean_rate(part) if slips else _line_frequency(part) for part in (whole, *parts))
+    error = float(np.abs(np.subtract(of_parts, frequency)).max())
     if slips:
         error += frequency * (1.0 / len(values) if starts is None else ROUNDING)
     return (frequency, error) if error <= LARGEST_ERROR * frequency else (math.nan, math.nan)

@@ -150,10 +150,10 @@ def motion_of_completed_run(run: Mapping[str, Any], mean_distance: float, settin
       attracting uniform sliding, which has no exponent 0 and whose section points are rounding.
     """
     exponents = run["lyapunov_exponent"], run["lyapunov_error"]
-    found = repetition_of(run, settings)
+    repetition = repetition_of(run, settings)
     is_zero = not len(exponents[0]) or not exponents[0][0] > settings.zero_exponent
-    if found.divergence <= (DIVERGENCE if is_zero else 1.0):
-        return motion_from_period(found.points, found.period, mean_distance, *exponents, settings)
+    if repetition.divergence <= (DIVERGENCE if is_zero else 1.0):
+        return motion_from_period(repetition.points, repetition.period, mean_distance, *exponents, settings)
     motion = motion_from_period(0, math.nan, mean_distance, *exponents, settings)
     return motion if motion.kind in CHAOS else Motion(MotionKind.UNDETERMINED)
 

@@ -42,10 +42,10 @@ def cost_note(model: Model, begun: ChainState, settings: Settings) -> str:
 
     Empty for a run of less than a minute, and for one with a fixed step.
     """
-    each, memory = cost_of(model, begun, settings)
-    if settings.solver == "rk4" or each * settings.duration <= LONG:
+    seconds, memory = cost_of(model, begun, settings)
+    if settings.solver == "rk4" or seconds * settings.duration <= LONG:
         return ""
-    whole = f"{_time(each)} per time unit, {_time(each * settings.duration)} for the run if they keep slipping"
+    whole = f"{_time(seconds)} per time unit, {_time(seconds * settings.duration)} for the run if they keep slipping"
     blocks = f"{model.blocks} block{'s' * (model.blocks > 1)}: about {whole}"
     if not is_stiff(model.chain):
         return f"{blocks}; {1e-9 * memory:.2g} GB in addition to the recorded events"

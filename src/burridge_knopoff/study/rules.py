@@ -52,8 +52,8 @@ def fill_states(config: Mapping[str, Any], velocities: Collection[float]) -> Non
     states = config["initial"]
     for name, state in states.items():
         if not state and name not in PAPER_STATES:
-            known = f"{' | '.join(PAPER_STATES)} may leave out{suggestion(name, PAPER_STATES)}"
-            raise ValueError(f"initial.{name}: got no position and velocity, which only {known}")
+            names = f"{' | '.join(PAPER_STATES)} may leave out{suggestion(name, PAPER_STATES)}"
+            raise ValueError(f"initial.{name}: got no position and velocity, which only {names}")
         for key in ("position", "velocity"):
             if state and key not in state:
                 raise ValueError(f"initial.{name}.{key}: got none, expected position and velocity together")

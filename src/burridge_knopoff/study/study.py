@@ -178,7 +178,7 @@ class Study:
         base = self.config["basins"]["initial"]
         marked = {}
         for name in self.initial:
-            states = [[model.initial_coordinates(self.state(which)) for which in (name, base)] for model in models]
+            states = [[model.initial_coordinates(self.state(state)) for state in (name, base)] for model in models]
             if all(np.array_equal(u[1:-1], v[1:-1]) and np.array_equal(w, z) for (u, w), (v, z) in states):
                 marked[name] = [(float(u[0]), float(u[-1])) for (u, _), _ in states]
         return marked
