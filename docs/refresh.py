@@ -122,9 +122,16 @@ def copy_figure(source: Path) -> None:
     few.save(DOCS / "figures" / source.name, optimize=True)
 
 
+def published_ledger(results: Path) -> dict[str, Any]:
+    """Return the ledger of a study without the fingerprint of the sources, which change more often than verdicts do."""
+    ledger: dict[str, Any] = json.loads((results / "summary/claims.json").read_text(encoding="utf-8"))
+    del ledger["source_fingerprint"]
+    return ledger
+
+
 def main(results: Path) -> None:
     """Update the pages, the JSON files and the figures from the results of a study."""
-    ledger = json.loads((results / "summary/claims.json").read_text(encoding="utf-8"))
+    ledger = published_ledger(results)
     with xarray.open_dataset(results / "summary/attractors.nc") as attractors:
         found = branches(attractors)
     write_text(LEDGER, as_json(ledger))
