@@ -199,17 +199,22 @@ module.{function} = provoked
 """
 
 
-def out_of_memory(modules: str) -> str:
-    """Return code that leaves a process, after its imports, only memory in free blocks of less than 16 KiB."""
+def out_of_memory(module: str, function: str) -> str:
+    """Return code that leaves a function of the package only memory in free blocks of less than 16 KiB."""
     return f"""
-import resource, netCDF4, {modules}
-resource.setrlimit(resource.RLIMIT_AS, (1, 1))
-taken, size = [], 1 << 24
-while size > 1 << 13:
-    try:
-        taken.append(bytearray(size))
-    except MemoryError:
-        size //= 2
+import netCDF4, {module} as module
+function = module.{function}
+def starved(*arguments, **options):
+    import resource
+    resource.setrlimit(resource.RLIMIT_AS, (1, 1))
+    taken, size = [], 1 << 24
+    while size > 1 << 13:
+        try:
+            taken.append(bytearray(size))
+        except MemoryError:
+            size //= 2
+    return function(*arguments, **options)
+module.{function} = starved
 """
 
 

@@ -90,7 +90,7 @@ def test_points_that_die(finished, study):
     faults = {
         "points/linearized/plus/a0.0800.nc": killed_at_the_move("a0.0800.nc"),
         "points/linearized/minus/a0.0500.nc": crash("burridge_knopoff.running.simulation", "run"),
-        "points/nonlinear/plus/a0.2000.nc": out_of_memory("burridge_knopoff.dataset.point"),
+        "points/nonlinear/plus/a0.2000.nc": out_of_memory("burridge_knopoff.dataset.point", "write_point"),
     }
     process = begin(study, "points", environment=broken(study, faults))
     assert process.wait() == 1
@@ -123,7 +123,7 @@ def test_scripts_that_die(finished, copy):
         (results / name).unlink()
     faults = {
         "figure_equilibrium.log": killed_at_the_move("equilibrium.png"),
-        "figure_distance.log": out_of_memory("snakemake.script, burridge_knopoff.figures.distance"),
+        "figure_distance.log": out_of_memory("burridge_knopoff.figures.distance", "draw"),
         "logs/stick_slip.log": crash("burridge_knopoff.summaries.stick_slip", "summarize"),
     }
     process = begin(copy, environment=broken(copy, faults))
