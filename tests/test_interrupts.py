@@ -4,13 +4,11 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
 pytestmark = pytest.mark.slow
 
-BK = Path(sys.executable).with_name("bk")
 HEAD = """
 from concurrent.futures import ThreadPoolExecutor
 from burridge_knopoff import Chain, Model, law_of, simulate
@@ -64,11 +62,21 @@ SEVERAL = {
 }
 
 
-def run_interrupted(command, times, *, begins=True):
+# Compiled modules turn an interrupt during their import into an ImportError.
+COMMAND = """
+import sys
+from burridge_knopoff import basin_map
+from burridge_knopoff.cli import main
+print("begun", flush=True)
+sys.exit(main())
+"""
+
+
+def run_interrupted(program, times, *arguments):
     """Return the exit code of a program, its output, and the seconds from the first Ctrl-C to its end."""
+    command = [sys.executable, "-c", program, *arguments]
     with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
-        if begins:
-            assert process.stdout.readline() == "begun\n"
+        assert process.stdout.readline() == "begun\n"
         time.sleep(1.0)
         assert process.poll() is None
         begin = time.monotonic()
@@ -85,7 +93,7 @@ def run_interrupted(command, times, *, begins=True):
 @pytest.mark.parametrize("program", PROGRAMS)
 def test_ctrl_c_ends_all_that_computes(program):
     """It takes 0.2 s on a free processor."""
-    code, output, seconds = run_interrupted([sys.executable, "-c", HEAD + PROGRAMS[program]], 1)
+    code, output, seconds = run_interrupted(HEAD + PROGRAMS[program], 1)
     assert code == -signal.SIGINT
     assert output.splitlines()[-1] == "KeyboardInterrupt"
     assert seconds < 10
@@ -94,7 +102,7 @@ def test_ctrl_c_ends_all_that_computes(program):
 @pytest.mark.parametrize("program", SEVERAL)
 def test_a_second_ctrl_c_does_not_abort(program):
     """The interpreter may be shutting down, or waiting for threads that it did not interrupt."""
-    code, output, seconds = run_interrupted([sys.executable, "-c", HEAD + SEVERAL[program]], 2)
+    code, output, seconds = run_interrupted(HEAD + SEVERAL[program], 2)
     assert code in (1, -signal.SIGINT)
     assert "terminate called" not in output
     assert seconds < 10
@@ -103,8 +111,8 @@ def test_a_second_ctrl_c_does_not_abort(program):
 @pytest.mark.parametrize("times", [1, 2])
 def test_ctrl_c_ends_a_command(times, tmp_path):
     options = "--law linearized --a 0.08 --pixels 1500 --threads 2 --samples 2 --transient 500 --window 500"
-    command = [BK, "basins", *options.split(), "--out", tmp_path / "basins.nc"]
-    code, output, seconds = run_interrupted(command, times, begins=False)
+    out = tmp_path / "basins.nc"
+    code, output, seconds = run_interrupted(COMMAND, times, "basins", *options.split(), "--out", out)
     assert code in (130, -signal.SIGINT) if times == 1 else code != -signal.SIGABRT
     assert output.splitlines()[-1] in ("bk basins: interrupted, nothing was written", "KeyboardInterrupt")
     assert seconds < 10
