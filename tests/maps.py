@@ -104,7 +104,8 @@ class Ensemble:
                 break
             x[left] = self.model.map(x[left], self.model.a)
             for index, (tree, radius) in enumerate(clouds.near):
-                close = tree.query(x[left, None])[0] <= radius
+                # A trajectory of a map may diverge.
+                close = tree.query(np.clip(x[left, None], -1e9, 1e9))[0] <= radius
                 counts[index, left] = np.where(close, counts[index, left] + 1, 0)
                 captured = left[counts[index, left] >= close_returns[index]]
                 captured = captured[labels_[captured] < 0]

@@ -7,8 +7,9 @@ import pytest
 from scipy.stats import binomtest
 
 from burridge_knopoff import Chain, ChainState, FormulaLaw, InitialState, Model, Settings, Symmetry, law_of, simulate
+from burridge_knopoff.attractors import search as search_module
 from burridge_knopoff.attractors.capture_radius import Capture
-from burridge_knopoff.attractors.labels import label
+from burridge_knopoff.attractors.labels import label, label_arrays
 from burridge_knopoff.attractors.lifetime import lifetimes
 from burridge_knopoff.attractors.search import Search, find_attractors
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
@@ -53,6 +54,29 @@ def test_labels_hold_for_whole_runs(search):
         assert run.mean_distance == pytest.approx(expected, abs=2e-4)
         reached.add(index)
     assert len(reached) >= 2
+
+
+def test_a_discovery_is_compared_with_undecided_states_only(monkeypatch):
+    """No state is compared twice with an attractor that it has not reached, until all labels are made at the end."""
+    calls = []
+
+    def recorded(model, attractors, position, *rest):
+        found = label_arrays(model, attractors, position, *rest)
+        calls.append(([item.motion for item in attractors], len(position), int((found[0] < 0).sum()), rest[-1]))
+        return found
+
+    monkeypatch.setattr(search_module, "label_arrays", recorded)
+    found = Search(model(), SETTINGS)
+    labels = found.labels([model().begin(state) for state in states(40)], check=False)
+    assert len(found.attractors) >= 3
+    quick = [call for call in calls if call[3] == 0.3 * SETTINGS.transient]
+    seen = [motion for motions, *_ in quick for motion in motions]
+    assert len({*map(id, seen)}) == len(seen) == len(found.attractors)
+    # Each call takes the states that the one before has left.
+    assert quick[0][1] <= 40
+    assert [count for _, count, *_ in quick[1:]] == [left for _, _, left, _ in quick[:-1]]
+    assert (labels >= 0).all()
+    assert (found.known_labels([model().begin(state) for state in states(40)]) == labels).all()
 
 
 def test_mirrored_states_reach_mirrored_attractors():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from burridge_knopoff.basins.fractions import STEP, required_states
+from burridge_knopoff.basins.fractions import LABELLED_AT_ONCE, STEP, further_states, required_states
 from burridge_knopoff.model.sampling import fraction_interval, half_width, required_samples
 
 
@@ -35,3 +35,16 @@ def test_a_small_fraction_needs_fewer_states_than_a_large_one():
     counts = [required_states(np.arange(3000) % 100 < 100 * share, 0.02) for share in (0.05, 0.2, 0.5)]
     assert counts == sorted(counts)
     assert counts[0] < counts[-1] / 3
+
+
+@pytest.mark.parametrize("shares", [(1.0,), (0.5, 0.5), (0.9, 0.1), (0.2, 0.3, 0.5)])
+def test_about_as_many_states_are_labelled_as_are_needed(shares):
+    """After the first states, hardly more than the required number."""
+    labels = np.random.default_rng(1).choice(len(shares), size=5000, p=shares)
+    width, taken, batches = 0.03, 0, 0
+    while required_states(labels[:taken], width) is None:
+        count = further_states(labels[:taken], width)
+        assert 0 < count <= LABELLED_AT_ONCE
+        taken, batches = taken + count, batches + 1
+    assert taken - required_states(labels[:taken], width) < (2 * STEP if len(shares) > 1 else LABELLED_AT_ONCE)
+    assert batches <= 7

@@ -37,8 +37,7 @@ LONGEST_PATIENCE = 10_000.0
 # Largest radius as a fraction of the distance to another attractor; below one half, so that no state is near both.
 SEPARATION_SHARE = 0.4
 
-#: Number of perturbed trajectories that are followed together. If one does not come back, the other groups are not
-#: followed.
+#: Number of perturbed trajectories that are followed first. If one does not come back, the others are not followed.
 PERTURBATION_GROUP = 4
 
 
@@ -130,9 +129,9 @@ class Capture:
             narrow = [replace(item, radius=min(item.radius, close)) for item in attractors]
             if inner:
                 narrow[index] = replace(narrow[index], patience=0.0)
-            left = settings.perturbations
-            while left > 0:
-                chosen = generator.integers(len(motion.returns), size=min(PERTURBATION_GROUP, left))
+            # Most radii that are too large are refused by the first few trajectories.
+            for count in filter(None, (PERTURBATION_GROUP, settings.perturbations - PERTURBATION_GROUP)):
+                chosen = generator.integers(len(motion.returns), size=count)
                 starts = [perturb(state_of(motion.returns[k]), radius, generator) for k in chosen]
                 if close >= radius:
                     # The returns are too far apart to show that a trajectory comes closer. It has to be on the
@@ -141,7 +140,6 @@ class Capture:
                 reached, _ = label(model, narrow, starts, settings.time_limit)
                 if not np.isin(reached, [index, *inner]).all():
                     break
-                left -= len(chosen)
             else:
                 return radius
             radius /= self.shrinking

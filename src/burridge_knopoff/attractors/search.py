@@ -13,7 +13,7 @@ import numpy as np
 from burridge_knopoff.attractors.attractor import CLOSE_RETURNS, Attractor, perturb, required_returns
 from burridge_knopoff.attractors.capture_radius import SMALLEST_RADIUS, TINY_RADIUS, Capture, embedded_orbits
 from burridge_knopoff.attractors.convergence import Convergence
-from burridge_knopoff.attractors.labels import UNDETERMINED, label
+from burridge_knopoff.attractors.labels import UNDETERMINED, label, label_arrays, stack_states
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.slow_set import SLOW_TIME, sample_slow_set
 from burridge_knopoff.model.initial import InitialState
@@ -21,7 +21,7 @@ from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.sampling import sample_initial_states
 from burridge_knopoff.motion.kind import CHAOS
 from burridge_knopoff.motion.observables import SteadyMotion, is_on_attractor
-from burridge_knopoff.motion.section_returns import Returns
+from burridge_knopoff.motion.section_returns import Returns, state_of
 from burridge_knopoff.motion.set_distance import is_near
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
@@ -77,10 +77,10 @@ def find_attractors(
 # Time limit, in transients, of the first labels. Most trajectories reach an attractor within it.
 QUICK_SEARCH = 0.3
 
-# Undecided trajectories that are followed in one round before the others are labelled with the known attractors.
+# Undecided trajectories that are followed in one round before the others are compared with the new attractor.
 ATTEMPTS = 3
 
-# Largest number of rounds of labelling. Each but the first follows the discovery of an attractor.
+# Largest number of rounds. Each but the first follows the discovery of an attractor.
 ROUNDS = 20
 
 # Number of states, the first of each sample, whose labels are verified.
@@ -149,24 +149,36 @@ class Search(Convergence):
         −1 if a trajectory does not settle on an attractor.
         check : whether some of the labels are verified by following the trajectories for longer
         """
-        # Most states are decided early, so the first rounds are short; only the second ones use the full time limit.
-        # The labels do not depend on the order of the states once all attractors are known.
-        undecided = list(range(len(starts)))
-        for _ in range(ROUNDS):
-            found, _ = label(
-                self.model, self.attractors, [starts[k] for k in undecided], QUICK_SEARCH * self.settings.transient
-            )
-            undecided = [k for k, index in zip(undecided, found, strict=True) if index == UNDETERMINED]
-            if not self.discover([starts[k] for k in undecided]):
-                break
+        self._discover_all(starts)
         for _ in range(ROUNDS):
             labels = self.known_labels(starts)
-            more = self.discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()])
-            if more:
+            if self.discover([starts[k] for k in np.flatnonzero(labels == UNDETERMINED).tolist()]):
                 continue
             if not check or (self._verify_labels(starts, labels) and self._verify_chaotic_labels(starts, labels)):
                 break
         return labels
+
+    def _discover_all(self, starts: Sequence[ChainState]) -> None:
+        """Add the attractors to which some of the states lead that reach none of those that are known.
+
+        Most states are decided early, so all of them are followed for a short time first. A state that is not decided
+        continues where it is, and is compared with the new attractors only.
+        """
+        undecided, states = list(starts), stack_states(starts)
+        for time in (QUICK_SEARCH * self.settings.transient, self.settings.time_limit):
+            new: Sequence[Attractor] = self.attractors
+            for _ in range(ROUNDS):
+                if new and undecided:
+                    # Whether a state stays in chaos or goes on to an orbit embedded in it, it is decided.
+                    prompt = [replace(item, patience=0.0) for item in new]
+                    found, _, ends = label_arrays(self.model, prompt, *states, time)
+                    left = np.flatnonzero(found == UNDETERMINED)
+                    undecided = [undecided[k] for k in left.tolist()]
+                    states = stack_states([state_of(end) for end in ends[left]])
+                known = len(self.attractors)
+                if not self.discover(undecided):
+                    break
+                new, time = self.attractors[known:], QUICK_SEARCH * self.settings.transient
 
     def _verify_chaotic_labels(self, starts: Sequence[ChainState], labels: np.ndarray) -> bool:
         """Follow a few states assigned to chaotic attractors, and return whether they lead to no new attractor."""

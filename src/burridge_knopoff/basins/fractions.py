@@ -6,6 +6,7 @@ decide how many that takes; small fractions take few.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
@@ -19,7 +20,7 @@ from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.model.sampling import half_width, required_samples, sample_states, seed_at
 from burridge_knopoff.running.processes import ParallelMap
 
-#: Number of states that one process labels at a time; the labels do not depend on it.
+#: Largest number of states that one process labels at a time; the labels do not depend on it.
 LABELLED_AT_ONCE = 250
 
 # Patience of an attractor in which periodic orbits are embedded, in units of the longest time that a state of a sample
@@ -48,7 +49,8 @@ def fraction_labels(searches: Sequence[Search], start: str, each: ParallelMap) -
         wide = [k for k in waiting if required_samples(searches[k].settings.fraction_width)]
         while wide:
             those, firsts = [searches[k] for k in wide], [len(labels[k]) for k in wide]
-            found = each("labelled for basin fractions", partial(_label_next, start=start), those, firsts)
+            counts = [further_states(labels[k], searches[k].settings.fraction_width) for k in wide]
+            found = each("labelled for basin fractions", partial(_label_next, start=start), those, firsts, counts)
             for k, part in zip(wide, found, strict=True):
                 labels[k] = np.concatenate([labels[k], part])
             enough = {k: required_states(labels[k], searches[k].settings.fraction_width) for k in wide}
@@ -84,6 +86,18 @@ def required_states(labels: np.ndarray, width: float) -> int | None:
     return most
 
 
+def further_states(labels: np.ndarray, width: float) -> int:
+    """Return how many more states to label at a time: as many as the fractions of the labels so far require.
+
+    labels, width : see `required_states`
+    """
+    most = required_samples(width)
+    shares = np.unique(labels, return_counts=True)[1] / max(1, len(labels))
+    needed = 4.0 * float((shares * (1.0 - shares)).max()) * most if len(labels) else most
+    count = STEP * math.ceil((needed - len(labels)) / STEP)
+    return min(max(count, STEP), LABELLED_AT_ONCE, most - len(labels))
+
+
 def _draw_states(search: Search, start: str, first: int, count: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return `count` drawn states from number `first` on: x_i, U_i' and stuck blocks, each of shape (count, blocks)."""
     settings, model = search.settings, search.model
@@ -116,11 +130,9 @@ def _reduce_patience(search: Search, start: str) -> Search | None:
     return search
 
 
-def _label_next(search: Search, first: int, start: str) -> np.ndarray:
-    """Return the labels of the next drawn states from number `first` on."""
-    part = _draw_states(
-        search, start, first, min(LABELLED_AT_ONCE, required_samples(search.settings.fraction_width) - first)
-    )
+def _label_next(search: Search, first: int, count: int, start: str) -> np.ndarray:
+    """Return the labels of the next `count` drawn states from number `first` on."""
+    part = _draw_states(search, start, first, count)
     if not search.attractors:
         return np.full(len(part[0]), UNDETERMINED, dtype=np.intc)
     labels, _, _ = label_arrays(search.model, search.attractors, *part, search.settings.label_limit)
