@@ -16,6 +16,7 @@ from rich.table import Table
 from rich.text import Text
 
 from burridge_knopoff.study.formatting import format_count
+from burridge_knopoff.study.job_log import progress_of
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Run
 
 #: Least time in seconds between two lines; time after which a line is due in any case; share of the run after which one
@@ -160,8 +161,11 @@ class Picture:
         table.columns[-2].justify = "right"
         so_far = f"{outlook(self._run, now)}, {format_elapsed(now - self._begin)} so far"
         lines = [(so_far, "bold red" if self._run.jobs_in(FAILED) else "bold")]
-        jobs = sorted((job.begin, job.message or job.name) for job in self._run.jobs_in(RUNNING))[:LONG_JOBS]
-        lines += [(f"{job}: {format_elapsed(now - begin)}", "dim") for begin, job in jobs if now - begin > LONG_JOB]
+        jobs = sorted(self._run.jobs_in(RUNNING), key=lambda job: (job.begin, job.name))[:LONG_JOBS]
+        for job in (job for job in jobs if now - job.begin > LONG_JOB):
+            share = progress_of(job.log)
+            done = f", {int(100 * share)} % done" if share else ""
+            lines.append((f"{job.message or job.name}: {format_elapsed(now - job.begin)}{done}", "dim"))
         return Group(table, *(Text(*line, no_wrap=True, overflow="ellipsis") for line in lines))
 
     def close(self) -> None:

@@ -7,11 +7,14 @@ from collections import Counter, defaultdict
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from burridge_knopoff.study.job_log import progress_of
 from snakemake_logger_plugin_study.durations import Durations
 
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"
 #: Seconds for which a forecast holds.
 FRESH = 2.0
+# A job that is done to one in CERTAIN takes as long as its progress shows, and one that begins as long as expected.
+CERTAIN = 4.0
 
 
 @dataclass
@@ -101,6 +104,8 @@ class Run:
         expected, stages, total = self.expected(), dict[str, Stage](), Stage("all")
         for job in self.jobs.values():
             work = expected[job.rule] if job.seconds is None else job.seconds
+            if job.state == RUNNING:
+                work = self._work(job, work, now)
             running = min(work, (now - job.begin) * job.threads)
             done = work if job.state == DONE else running if job.state == RUNNING else 0.0
             for stage in (stages.setdefault(job.stage, Stage(job.stage)), total):
@@ -134,11 +139,20 @@ class Run:
         }
         seconds = {number: expected[job.rule] / job.threads for number, job in left.items()}
         ends = {
-            number: max(0.0, seconds.pop(number) - (now - job.begin))
+            number: max(0.0, self._work(job, seconds.pop(number) * job.threads, now) / job.threads - now + job.begin)
             for number, job in left.items()
             if job.state == RUNNING
         }
         return max(schedule(left, seconds, self.cores, ends).values(), default=0.0)
+
+    @staticmethod
+    def _work(job: Job, expected: float, now: float) -> float:
+        """Return the seconds of a running job, times its threads: as expected, and as its progress shows."""
+        share = progress_of(job.log)
+        if not share:
+            return expected
+        weight = min(1.0, CERTAIN * share)
+        return (1.0 - weight) * expected + weight * (now - job.begin) * job.threads / share
 
     def expected(self) -> dict[str, float]:
         """Return {rule: expected seconds of a job, times its threads}."""

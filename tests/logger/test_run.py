@@ -81,6 +81,19 @@ def test_a_running_job_counts_with_what_is_left_of_it():
     assert run(*begun, short(), cores=2).forecast(100.0) == 1.0
 
 
+def test_a_running_job_that_reports_its_progress_takes_as_long_as_this_shows(tmp_path):
+    """At first it counts as expected; from a quarter on, only its progress does."""
+    log = tmp_path / "log"
+    made = run(job("long", state=RUNNING, log=[log]))
+    left = []
+    for share in ("", "progress 0.125\n", "progress 0.250\n", "progress 0.500\n"):
+        with log.open("a") as file:
+            file.write(f"searched: 10, 5.0 s, the longest 1.0 s\n{share}")
+        left.append(made.forecast(8.0))
+    assert left == [2.0, 0.5 * 10.0 + 0.5 * 64.0 - 8.0, 24.0, 8.0]
+    assert made.stages(8.0)[-1].share_done == 0.5
+
+
 def test_the_time_left_is_counted_down_until_it_is_worked_out_again():
     made = run(job("long"), *[short()] * 20)
     assert [made.time_left(now) for now in (0.0, 0.5)] == [30.0, 29.5]

@@ -9,6 +9,7 @@ import sys
 import psutil
 import pytest
 
+from burridge_knopoff.running import processes as running
 from burridge_knopoff.running.processes import parallel_map
 
 
@@ -50,6 +51,25 @@ def test_calls_that_follow_from_results_are_made_as_well(processes, caplog):
     assert all(half == width / 2 for _, width, half, _ in found)
     assert ({process for *_, process in found} == {os.getpid()}) == (processes == 1)
     assert caplog.messages[0].startswith("halved: 8, ")
+
+
+@pytest.mark.parametrize("processes", [1, 3])
+def test_the_progress_is_logged_from_time_to_time(processes, caplog, monkeypatch):
+    """Each call of a span advances it by the same part; calls without a span report nothing."""
+    monkeypatch.setattr(running, "REPORTED", 0.0)
+    with parallel_map(processes) as each, caplog.at_level(logging.INFO):
+        each("sums", sum_and_process, range(4), range(4), span=(0.2, 0.6))
+        each("sums", sum_and_process, range(4), range(4))
+        each.work_through("halved", halves, [("a", 8.0), ("b", 2.0)], lambda *_: [], span=(0.6, 1.0))
+    shares = [float(text.split()[1]) for text in caplog.messages if text.startswith("progress ")]
+    assert shares[:4] == [0.3, 0.4, 0.5, 0.6]
+    assert shares[-1] == 1.0
+    assert sorted(shares) == shares
+    monkeypatch.setattr(running, "REPORTED", 60.0)
+    caplog.clear()
+    with parallel_map(processes) as each, caplog.at_level(logging.INFO):
+        each("sums", sum_and_process, range(4), range(4), span=(0.0, 1.0))
+    assert not any(text.startswith("progress") for text in caplog.messages)
 
 
 @pytest.mark.parametrize("processes", [1, 3])

@@ -5,7 +5,7 @@ import shutil
 import pytest
 
 from burridge_knopoff.running.processes import parallel_map
-from burridge_knopoff.study.job_log import SILENT, failure_line, logged_error, remedies
+from burridge_knopoff.study.job_log import SILENT, failure_line, logged_error, progress_of, remedies
 
 TRACEBACK = """Traceback (most recent call last):
   File "a.py", line 3, in <module>
@@ -63,3 +63,21 @@ def test_a_job_with_an_empty_log(tmp_path, monkeypatch, free, words):
     log = tmp_path / "not there" / "log"
     assert words in failure_line("simulate", [log])
     assert failure_line("simulate", []) == f"failed: simulate: {SILENT} (log none)"
+
+
+@pytest.mark.parametrize(
+    ("texts", "share"),
+    [
+        ([], 0.0),
+        (["", "progress 0.2\nfollowed: 3, 0.1 s, the longest 0.1 s\nprogress 0.311\n"], 0.311),
+        (["no progress 0.9 at all\n"], 0.0),
+        (["progress 0.9"], 0.9),
+    ],
+)
+def test_the_progress_of_a_running_job(tmp_path, texts, share):
+    logs = [tmp_path / str(number) for number in range(len(texts))]
+    for log, text in zip(logs, texts, strict=True):
+        log.write_text(text)
+        # It reports no failure.
+        assert logged_error(log) in ("", text.strip()) if "no progress" in text else logged_error(log) == ""
+    assert progress_of([*logs, tmp_path / "absent"]) == share

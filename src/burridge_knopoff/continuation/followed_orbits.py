@@ -33,6 +33,9 @@ LEAST_A = 0.0
 # Orbits per process in a round: enough to keep the processes busy, few enough that few of them lie on one segment.
 ORBITS_PER_PROCESS = 4
 
+# Fraction of the time that finding the orbits takes.
+PERIODIC_ORBITS = 0.1
+
 # Time after which a motion has come closer to a slowly attracting orbit than to any other nearby orbit.
 LONG_SETTLING = 100_000.0
 
@@ -90,12 +93,13 @@ def follow_orbits(
     states = ([one[name].values[place] for place in places] for name in ("position", "velocity"))
     found = FollowedOrbits()
     with parallel_map(processes, folder) as each:
-        orbits = each("periodic orbits", _periodic_orbit, models, *states)
+        orbits = each("periodic orbits", _periodic_orbit, models, *states, span=(0.0, PERIODIC_ORBITS))
         closed = [pair for pair in zip(places, orbits, strict=True) if not _is_lost(model, pair[1])]
         for following in _rounds(_sort(closed), found, ORBITS_PER_PROCESS * processes):
             before = len(found.segments)
             twice, upward = [orbit for _, orbit in following for _ in range(2)], [False, True] * len(following)
-            halves = each("followed", partial(_half, largest=largest), twice, upward)
+            share = PERIODIC_ORBITS + (1.0 - PERIODIC_ORBITS) * len(found.of_place) / len(closed)
+            halves = each("followed", partial(_half, largest=largest), twice, upward, span=(share, share))
             for (place, orbit), *both in zip(following, halves[::2], halves[1::2], strict=True):
                 if not found.assign(place, orbit, before) and not any(_is_lost(model, item) for item in both):
                     found.add(place, BranchSegment(*both))

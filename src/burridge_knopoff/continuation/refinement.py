@@ -13,7 +13,7 @@ from burridge_knopoff.attractors.search import Search
 from burridge_knopoff.continuation.matching import Matcher, Outline, outlines
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.running.processes import ParallelMap
+from burridge_knopoff.running.processes import ParallelMap, Span
 
 #: Indices of the attractors at both ends of a gap that differ.
 Differing = tuple[list[int], list[int]]
@@ -42,12 +42,16 @@ class Gap:
 
 
 def refine_searches(
-    searches: Sequence[Search], refine: RefinementSettings, matcher: Matcher, each: ParallelMap
+    searches: Sequence[Search],
+    refine: RefinementSettings,
+    matcher: Matcher,
+    each: ParallelMap,
+    span: Span | None = None,
 ) -> list[list[Search]]:
     """Return the searches at values of a inserted between each two neighbours of the grid, ascending.
 
     refine : how closely changes are located
-    each : from `running.processes.parallel_map`
+    each, span : from `running.processes.parallel_map`, and see `ParallelMap`
 
     No value is inserted if nothing changes. At an inserted value only those attractors are followed that change between
     its neighbours, in kind, symmetry or period, or that have no counterpart. No value is inserted next to one without
@@ -70,7 +74,11 @@ def refine_searches(
         return [(k, half) for half in both if half.is_open(refine)]
 
     each.work_through(
-        "values inserted", partial(_bisect, matcher=matcher), [one for one in gaps if one[1].is_open(refine)], halves
+        "values inserted",
+        partial(_bisect, matcher=matcher),
+        [one for one in gaps if one[1].is_open(refine)],
+        halves,
+        span,
     )
     return [sorted(inner, key=lambda search: search.model.a) for inner in found]
 

@@ -23,6 +23,11 @@ from burridge_knopoff.running.cache import cached_call, delete_unused
 
 _LOG = logging.getLogger(__name__)
 
+#: Least time in seconds between two reports of the progress of a job.
+REPORTED = 5.0
+
+Span = tuple[float, float]
+
 _K = TypeVar("_K")
 _T = TypeVar("_T")
 _R = TypeVar("_R")
@@ -40,15 +45,23 @@ class ParallelMap:
         self._pool, self._folder = pool, folder
         self.asked: set[Path] = set()
         self._taken: list[tuple[float, bool]] = []
-        self._last = ""
+        self._last, self._reported = "", time.monotonic()
 
-    def __call__(self, what: str, function: Callable[..., Any], *items: Sequence[Any]) -> list[Any]:
+    def __call__(
+        self, what: str, function: Callable[..., Any], *items: Sequence[Any], span: Span | None = None
+    ) -> list[Any]:
         """Return the results of a function for the items of one or several sequences, in order.
+
+        span : fractions of the time of the whole job at which these calls begin and end, to log the progress
 
         The time of the calls is logged in seconds; successive calls with the same `what` are logged together.
         """
         call = partial(_timed, self._begin(what), function)
-        return list(map(self._record, self._pool.map(call, *items) if self._pool else map(call, *items)))
+        results = []
+        for result in self._pool.map(call, *items) if self._pool else map(call, *items):
+            results.append(self._record(result))
+            self._report(span, len(results) / len(items[0]))
+        return results
 
     def work_through(
         self,
@@ -56,18 +69,22 @@ class ParallelMap:
         function: Callable[[_T], _R],
         items: Iterable[tuple[_K, _T]],
         successors: Callable[[_K, _T, _R], Iterable[tuple[_K, _T]]],
+        span: Span | None = None,
     ) -> None:
         """Apply a function to items, and to the further items that follow from its results, as soon as they are known.
 
         items : pairs of a name and an item
         successors : takes name, item and result, in any order of the items, and returns further pairs
+        span : see `__call__`
         """
-        call = partial(_timed, self._begin(what), function)
+        call, done = partial(_timed, self._begin(what), function), 0
         if self._pool is None:
             todo = deque(items)
             while todo:
                 name, item = todo.popleft()
                 todo.extend(successors(name, item, self._record(call(item))))
+                done += 1
+                self._report(span, done / (done + len(todo)))
             return
         running = {self._pool.submit(call, item): (name, item) for name, item in items}
         try:
@@ -76,6 +93,8 @@ class ParallelMap:
                     known = running.pop(future)
                     for name, item in successors(*known, self._record(future.result())):
                         running[self._pool.submit(call, item)] = name, item
+                    done += 1
+                self._report(span, done / (done + len(running)))
         finally:
             for future in running:
                 future.cancel()
@@ -86,6 +105,12 @@ class ParallelMap:
             _log(self._last, self._taken)
             self._taken.clear()
             self._last = what
+
+    def _report(self, span: Span | None, share: float) -> None:
+        """Log the progress of the job from time to time, from the share of these calls that are done."""
+        if span and time.monotonic() - self._reported >= REPORTED:
+            self._reported = time.monotonic()
+            _LOG.info("progress %.3f", span[0] + share * (span[1] - span[0]))
 
     def _begin(self, what: str) -> Path | None:
         self.log(what)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import shutil
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from burridge_knopoff.provenance.files import nearest_folder
@@ -28,8 +29,9 @@ INTERRUPTED = "interrupted, nothing was written"
 #: With fewer bytes left on the disk, there may have been no room for a log.
 ROOM = 1 << 16
 
-#: A line that reports no failure: a note, or the times of calls that `running.processes` logs in a long job.
-_NO_FAILURE = re.compile(r"note: |.+: \d+, [\d.]+ s, the longest [\d.]+ s")
+#: A line that reports no failure: a note, or the times of calls and the progress that `running.processes` logs.
+_NO_FAILURE = re.compile(r"note: |.+: \d+, [\d.]+ s, the longest [\d.]+ s|progress [\d.]+$")
+_PROGRESS = re.compile(rb"^progress ([\d.]+)$", re.MULTILINE)
 
 
 def logged_error(log: str | Path) -> str:
@@ -39,6 +41,15 @@ def logged_error(log: str | Path) -> str:
     """
     words = _last_error(log).partition(REMEDY)[0]
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
+
+
+def progress_of(logs: Iterable[str | Path]) -> float:
+    """Return the share of a running job that is done by its logs, from 0 to 1; 0 if it reports none."""
+    shares = [0.0]
+    for log in logs:
+        with suppress(OSError):
+            shares += map(float, _PROGRESS.findall(Path(log).read_bytes()[-_TAIL:]))
+    return min(max(shares), 1.0)
 
 
 def remedies(logs: Iterable[str | Path]) -> list[str]:

@@ -199,7 +199,9 @@ def make_of_law(
     known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
     limit = SearchSettings(**attractors).label_limit
     with parallel_map(given.cores) as each:
-        at = each("edge states", partial(edges_at, settings=EdgeSettings(**edges), time_limit=limit), known)
+        at = each(
+            "edge states", partial(edges_at, settings=EdgeSettings(**edges), time_limit=limit), known, span=(0.0, 0.95)
+        )
     states = [edge for one in at for edge in one]
     segments, numbers = continue_edges(states, float(found["a"].max()))
     crises = [

@@ -103,7 +103,7 @@ def one_law(
     processes : number of parallel processes; no result depends on it
     """
     with parallel_map(processes) as each:
-        found = each("phases", partial(_values_at, phases=phases, label_limit=label_limit), known)
+        found = each("phases", partial(_values_at, phases=phases, label_limit=label_limit), known, span=(0.0, 1.0))
     model, grid = known[0].model, [item.model.a for item in known]
     inner = model.chain.blocks - 2
     coordinates: dict[str, Any] = {"a": ("a", np.array(grid, dtype=float), AXES["a"].all_attributes())}

@@ -177,7 +177,8 @@ def summarize(
     with parallel_map(processes) as each:
         for c, (name, chosen) in enumerate(zip(CHAINS, (trains, models), strict=True)):
             of_one = partial(_compare_at, chosen, initial=initial, settings=settings, search=search, motion=motion)
-            for k, found in enumerate(each(f"two blocks, {name}", of_one, grid)):
+            span = c / 2, (c + 1) / 2
+            for k, found in enumerate(each(f"two blocks, {name}", of_one, grid, span=span)):
                 for variable, value in found.items():
                     values[variable][c, ..., k] = value
         of_one = partial(_one_block, alone, initial=first, settings=settings, motion=motion)
