@@ -10,7 +10,7 @@ from scipy.stats import poisson
 from burridge_knopoff import Chain, Model, MotionKind, SearchSettings, find_attractors, law_of
 from burridge_knopoff.attractors import lifetime
 from burridge_knopoff.attractors.capture_radius import LONGEST_PATIENCE
-from burridge_knopoff.attractors.lifetime import EXPOSURE, EXTENSION, TRAJECTORIES, Lifetime, lifetimes
+from burridge_knopoff.attractors.lifetime import EXPOSURE, EXTENSIONS, TRAJECTORIES, Lifetime, lifetimes
 from burridge_knopoff.motion.set_distance import SPACINGS
 from tests.motion.stand_in import stand_in
 
@@ -114,20 +114,24 @@ def chaos(partner=0):
     return stand_in(partner=partner, kind=MotionKind.CHAOTIC)
 
 
-MANY = 32 * EXTENSION
 NEVER = math.nan
-#: Enough to show that chaos lasts: no trajectory leaves.
-ALL_STAY = ([NEVER] * MANY, 0, [])
+
+
+def all_stay(times):
+    """Return a round in which no trajectory leaves."""
+    return [NEVER] * (32 * times), 0, []
 
 
 def test_trajectories_that_have_left_are_counted_with_their_times(find):
     """Six are captured by the other attractor, two of them too early to count; seven leave for an unknown set."""
     when = [LATE + 20.0] * 4 + [LATE, 0.5 * LATE] + [NEVER] * 26
-    found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (when, 7, [-1, 0, 0, -1, 0, 0, 0]), ALL_STAY)
-    # Nine escapes are too few: more trajectories are followed.
-    assert found == [Lifetime(9, (19 + MANY) * TIME + 4 * 20.0 + 5 * 0.5 * TIME), None]
-    asked = [call for call in asked if 0 < call[0] <= 32]
-    assert asked == [(7, LATE), (32, LATE + TIME, 1), (26, 50.0, 2), (7, 50.0, 2)]
+    found, asked = find(
+        [chaos(), stand_in(partner=1, **CAUGHT)], (when, 7, [-1, 0, 0, -1, 0, 0, 0]), *map(all_stay, EXTENSIONS)
+    )
+    # Nine escapes do not decide: more trajectories are followed, until six times as many are enough.
+    assert found == [Lifetime(9, (19 + 6 * 32) * TIME + 4 * 20.0 + 5 * 0.5 * TIME), None]
+    assert [call for call in asked if 0 < call[0] < 32] == [(7, LATE), (26, 50.0, 2), (7, 50.0, 2)]
+    assert [call for call in asked if call[1:] == (LATE + TIME, 1)] == [(32 * n, LATE + TIME, 1) for n in (1, 1, 2, 3)]
 
 
 def test_all_captures_count_if_chaos_is_short(find):
@@ -141,10 +145,27 @@ def test_all_captures_count_if_chaos_is_short(find):
 
 def test_more_trajectories_are_followed_if_some_leave(find):
     first = [LATE + 20.0] + [NEVER] * 31
-    found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (first, 0, []), ALL_STAY)
-    assert found == [Lifetime(1, (31 + MANY) * TIME + 20.0), None]
+    found, asked = find([chaos(), stand_in(partner=1, **CAUGHT)], (first, 0, []), *map(all_stay, EXTENSIONS))
+    assert found == [Lifetime(1, (31 + 3 * 32) * TIME + 20.0), None]
+    assert found[0].is_decided(SETTINGS.lifetime)
     assert found[0].is_longer_than(SETTINGS.lifetime)
-    assert asked[:2] == [(32, LATE + TIME, 1), (MANY, LATE + TIME, 1)]
+    assert asked[:3] == [(32 * n, LATE + TIME, 1) for n in (1, 1, 2)]
+
+
+@pytest.mark.parametrize(
+    ("ends", "time", "decided"),
+    [
+        (0, 4000.0, False),
+        (0, 5000.0, True),
+        (4, 11_000.0, True),
+        (29, 8000.0, False),
+        (30, 8000.0, True),
+        (30, 20_000.0, False),
+    ],
+)
+def test_a_lifetime_is_decided_by_an_interval_of_high_confidence(ends, time, decided):
+    """Below the limit it takes thirty ends as well."""
+    assert Lifetime(ends, time).is_decided(800.0) == decided
 
 
 def test_a_change_to_the_mirror_image_does_not_end_chaos(find):

@@ -66,7 +66,10 @@ _SYMMETRY = flag("i1", {-1: "none", **{int(item): item.name.lower() for item in 
 _SLOW = flag("i1", {-1: "none", 0: "no", 1: "yes"})
 _SIDE = "side of the branch: 1 and -1 for the two of a mirror pair, 0 for a set that is its own mirror image"
 _POINTS = "number of upward section points after which the state of all blocks repeats, 0 if it does not"
-_LIFE = "mean lifetime of chaos, inf if no trajectory of an ensemble left it; NaN for other motion"
+_LIFE = (
+    "mean lifetime of chaos, inf if no trajectory of an ensemble left it; NaN for other motion, and at inserted values "
+    "of a between two at which the chaos lasts"
+)
 _RETURNS = "number of successive returns within the radius after which a trajectory counts as captured"
 _PATIENCE = "time by which a captured trajectory may still reach a periodic orbit embedded in the attractor; 0 if none"
 _POSITION = "positions of one state on the attractor, at a stop of the block nearest to an end that stops often"

@@ -31,8 +31,12 @@ from burridge_knopoff.continuation.refinement import refine_searches
 from burridge_knopoff.continuation.settings import REFINEMENT, RefinementSettings
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.motion.kind import CHAOS
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.running.processes import ParallelMap, parallel_map
+
+# Fractions of the time in a study of the paper's size at which the longest steps begin and end.
+SEARCHED, INSERTED, LIFETIMES = (0.0, 0.34), (0.49, 0.87), (0.87, 1.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +46,8 @@ class Continuation:
     models : at each a, ascending: the given ones and those inserted between them
     grid : indices in `models` of the given ones
     attractors : for each given model those that coexist there; for each inserted one those that change near it
-    lifetimes : for each model and attractor its lifetime if it is chaotic, None otherwise
+    lifetimes : for each model and attractor its lifetime if it is chaotic, None otherwise; also None at inserted values
+        where the same branch is chaotic at both neighbouring values and chaos lasts there
     branch, side : for each model and attractor the number of its branch and its side; see `branches.branches`
     upward, downward : for each given model and attractor the index of the attractor reached at the next or the previous
         given model, −1 if it is undetermined or there is none
@@ -89,7 +94,8 @@ def continue_attractors(
     matcher = Matcher(models[0].scale, refine.longest_period)
     with parallel_map(processes, folder) as each:
         searches = [Search(model, settings, motion) for model in models]
-        searches = each("searched from initial states", partial(_search, starts=starts, start=start), searches)
+        from_states = partial(_search, starts=starts, start=start)
+        searches = each("searched from initial states", from_states, searches, span=SEARCHED)
         searches = _seed_neighbours(searches, each, matcher, [True] * len(searches))
         samples = [np.zeros(0, dtype=np.intc) for _ in searches]
         gained = [True] * len(searches)
@@ -112,21 +118,24 @@ def continue_attractors(
         upward = each("swept upward", _attractors_at_neighbour, searches[:-1], searches[1:])
         downward = each("swept downward", _attractors_at_neighbour, searches[1:], searches[:-1])
         whole = [searches[0]]
-        for inner, search in zip(refine_searches(searches, refine, matcher, each), searches[1:], strict=True):
-            whole += [*inner, search]
-        lives = each("lifetimes", _lifetimes, whole)
-    attractors = [search.attractors for search in whole]
+        inserted = refine_searches(searches, refine, matcher, each, INSERTED)
+        for inner, grown in zip(inserted, searches[1:], strict=True):
+            whole += [*inner, grown]
+        attractors = [search.attractors for search in whole]
+        grid = [whole.index(search) for search in searches]
+        values = [search.model.a for search in whole]
+        width = max((other.a - one.a for one, other in pairwise(models)), default=0.0)
+        branch, side = branches(values, attractors, grid, REMEMBERED * width, matcher)
+        lives = _lifetimes_along_a(whole, branch, grid, each)
     # Nothing follows at the ends of the grid.
     first, last = (np.full(len(search.attractors), UNDETERMINED) for search in (searches[0], searches[-1]))
-    width = max((other.a - one.a for one, other in pairwise(models)), default=0.0)
-    grid = [whole.index(search) for search in searches]
-    values, reach = [search.model.a for search in whole], REMEMBERED * width
     return Continuation(
         [search.model for search in whole],
         grid,
         attractors,
         lives,
-        *branches(values, attractors, grid, reach, matcher),
+        branch,
+        side,
         [*upward, last],
         [first, *downward],
         samples,
@@ -185,6 +194,31 @@ def _seeded_search(source: Search, target: Search, matcher: Matcher) -> Search |
 def _attractors_at_neighbour(source: Search, target: Search) -> np.ndarray:
     """Return the index of the attractor at a neighbouring a that is reached from each attractor."""
     return target.known_labels(target.seeds(source.attractors))
+
+
+def _lifetimes_along_a(
+    searches: Sequence[Search], branch: Sequence[np.ndarray], grid: Sequence[int], each: ParallelMap
+) -> list[list[Lifetime | None]]:
+    """Return the lifetimes at all values of a; see `Continuation`.
+
+    Chaos loses its permanence at a crisis, where its branch ends or changes. Between two values at which the branch is
+    chaotic its lifetime is measured only if chaos is transient at one of them.
+    """
+    chaotic = [
+        {number for number, item in zip(numbers.tolist(), search.attractors, strict=True) if item.motion.kind in CHAOS}
+        for numbers, search in zip(branch, searches, strict=True)
+    ]
+    inserted = set(range(len(searches))) - set(grid)
+    inner = {k for k in inserted if chaotic[k] <= chaotic[k - 1] & chaotic[k + 1]}
+    known: dict[int, list[Lifetime | None]] = {}
+    wanted = sorted(set(range(len(searches))) - inner)
+    while wanted:
+        lives = each("lifetimes", _lifetimes, [searches[k] for k in wanted], span=LIFETIMES)
+        known |= zip(wanted, lives, strict=True)
+        least = searches[0].settings.lifetime
+        short = {k for k, lives in known.items() if any(life and not life.is_longer_than(least) for life in lives)}
+        wanted = sorted(k for k in inner - known.keys() if not short.isdisjoint((k - 1, k + 1)))
+    return [known.get(k, [None] * len(search.attractors)) for k, search in enumerate(searches)]
 
 
 def _lifetimes(search: Search) -> list[Lifetime | None]:
