@@ -6,6 +6,7 @@ import ast
 import math
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 
 from burridge_knopoff.laws.tape import SPEED, Builder, Tape, Term, number
 from burridge_knopoff.values import cut, number_in
@@ -32,18 +33,23 @@ def compile_formula(formula: str, values: Mapping[str, float]) -> Tape:
     values : values of all other names, including `a`
     Raises FormulaError for syntax that is not allowed in a formula, and for names without a value.
     """
-    if not _ALLOWED.fullmatch(formula):
-        raise FormulaError(f"not a formula: {SYNTAX}")
-    try:
-        tree = ast.parse(formula.strip(), mode="eval")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        raise FormulaError(f"not a formula: {SYNTAX}") from None
-    builder = Builder()
+    tree, builder = _tree(formula), Builder()
     try:
         terms = {"u": SPEED} | {key: number(x) for key, x in values.items()}
         return builder.tape(_Reader(builder, formula.strip(), terms).read(tree))
     except (OverflowError, ZeroDivisionError):
         raise FormulaError("a constant term is not finite") from None
+
+
+@lru_cache(maxsize=64)
+def _tree(formula: str) -> ast.Expression:
+    """Return the syntax tree of a formula, which is not to be changed; raises FormulaError for wrong syntax."""
+    if not _ALLOWED.fullmatch(formula):
+        raise FormulaError(f"not a formula: {SYNTAX}")
+    try:
+        return ast.parse(formula.strip(), mode="eval")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        raise FormulaError(f"not a formula: {SYNTAX}") from None
 
 
 class _Reader:

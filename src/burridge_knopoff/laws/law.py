@@ -147,12 +147,12 @@ class Law(Unchanging):
     def __call__(self, speed: ArrayLike) -> np.ndarray:
         """Return Φ at speeds U' ≥ 0, elementwise."""
         speed = np.asarray(speed, dtype=float)
-        return self.tape.run(speed)[0] + np.zeros_like(speed)
+        return _of_shape(self.tape.run(speed)[0], speed.shape)
 
     def slope(self, speed: ArrayLike) -> np.ndarray:
         """Return dΦ/dU' at speeds U' ≥ 0, elementwise; negative where friction weakens."""
         speed = np.asarray(speed, dtype=float)
-        return self.tape.run(speed)[1] + np.zeros_like(speed)
+        return _of_shape(self.tape.run(speed)[1], speed.shape)
 
     @property
     def is_linear(self) -> bool:
@@ -208,6 +208,11 @@ class FormulaLaw(Law):
     def words(self) -> str:
         """The same as `text`, which already gives the parameters."""
         return self.text
+
+
+def _of_shape(value: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """Return a value of this shape; a law may be constant. Adding 0 turns −0 into 0."""
+    return value + 0.0 if np.shape(value) == shape else np.full(shape, value + 0.0)
 
 
 def _greek_letter(name: str) -> str:

@@ -323,12 +323,12 @@ class Chain(Unchanging):
         """The matrix C, dense, shape (blocks, blocks)."""
         return self._dashpots.dense
 
-    @property
+    @cached_property
     def is_damped(self) -> bool:
         """Whether the chain has a dashpot."""
         return bool(self.damping_diagonal.any())
 
-    @property
+    @cached_property
     def is_mirror_symmetric(self) -> bool:
         """Whether the chain is its own mirror image, so that mirror blocks can move synchronously.
 
@@ -406,4 +406,8 @@ class Chain(Unchanging):
 
         Uniform sliding is U_i = vτ + e_i if `friction` is Φ(v).
         """
-        return -friction * static_displacement(self)
+        return -friction * self._displacement
+
+    @cached_property
+    def _displacement(self) -> np.ndarray:
+        return read_only_copy(static_displacement(self))

@@ -41,12 +41,12 @@ class Laplacian:
         blocks = len(self.ground)
         return csr_array((self.weight, self.neighbours.index, self.neighbours.start), (blocks, blocks))
 
-    @property
+    @cached_property
     def dense(self) -> np.ndarray:
         """L as an array, shape (blocks, blocks)."""
         matrix = np.diag(self.diagonal)
         np.subtract.at(matrix, (self.neighbours.block, self.neighbours.index), self.weight)
-        return matrix
+        return read_only_copy(matrix)
 
     @property
     def sparse(self) -> csr_array:

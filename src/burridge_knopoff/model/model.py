@@ -124,9 +124,14 @@ class Model(Unchanging):
         return self.scale / units.velocity * units.state(self.blocks)
 
     @cached_property
+    def sliding_friction(self) -> float:
+        """The friction Φ(v) of uniform sliding."""
+        return float(self.law(self.v))
+
+    @cached_property
     def sliding_offset(self) -> np.ndarray:
         """Positions e of uniform sliding relative to the driver, shape (blocks,)."""
-        return read_only_copy(self.chain.sliding_offset(float(self.law(self.v))))
+        return read_only_copy(self.chain.sliding_offset(self.sliding_friction))
 
     def begin(self, initial: InitialState, start: str = "moving", loading: str = "steady") -> ChainState:
         """Return the state at τ = 0 of a run from an initial state.

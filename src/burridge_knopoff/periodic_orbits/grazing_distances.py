@@ -167,7 +167,7 @@ def _states(orbit: PeriodicOrbit, time: np.ndarray) -> Iterator[tuple[np.ndarray
 def _derivatives(model: Model, position: np.ndarray, velocity: np.ndarray, stuck: np.ndarray) -> tuple[np.ndarray, ...]:
     """Return the force, its rate, and acceleration and its rate of slipping blocks, each of shape (n, blocks)."""
     chain = model.chain
-    force = chain.thresholds * float(model.law(model.v)) - position @ chain.stiffness.T
+    force = chain.thresholds * model.sliding_friction - position @ chain.stiffness.T
     force_rate = -(velocity - model.v) @ chain.stiffness.T
     speed = np.abs(velocity)
     if chain.is_damped:

@@ -114,7 +114,7 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
 def sliding_position(model: Model) -> np.ndarray:
     """Return e with K e = −Φ(v)·threshold, shape (blocks,), independently of the simulation."""
     chain = model.chain
-    load = -float(model.law(model.v)) * chain.thresholds
+    load = -model.sliding_friction * chain.thresholds
     # SciPy rejects a band matrix of a single number.
     if chain.ends == "ring" or chain.blocks == 1 or chain.is_network:
         return np.array([_round(value) for value in solve(chain.stiffness, load, assume_a="pos")])
