@@ -10,10 +10,13 @@ masses, springs or thresholds are made different. So do blocks that move in a si
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
-from scipy.fft import next_fast_len
-from scipy.signal import find_peaks, periodogram
+from scipy.fft import next_fast_len, rfft
+from scipy.signal import find_peaks
+from scipy.signal.windows import hann
 
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
@@ -21,7 +24,7 @@ from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner, check_state
 from burridge_knopoff.running.settings import LONGEST
-from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
+from burridge_knopoff.values import MOST_NUMBERS, instance_of, read_only_copy, refusal
 
 # The spectrum is sampled more finely than its resolution by this factor, so that a parabola fits the top of a peak.
 PADDING = 8
@@ -81,21 +84,36 @@ def block_frequencies(model: Model, state: ChainState, duration: float = 4000.0)
     True
     """
     instance_of(model, Model, "model")
-    time, position, velocity = sampled_motion(model, state, duration)
-    repeated = LEAST_CYCLES * np.ptp(position, axis=0) <= model.v * time[-1]
-    starts: list[np.ndarray | None] = [None] * model.blocks
-    if any(has_short_slips(values) for values in velocity.T):
-        starts = slip_starts(model, state, time)
-    per_sample = np.array([_frequency(*block) for block in zip(velocity.T, starts, strict=True)])
-    frequency, error = np.where(repeated, per_sample.T / time[1], math.nan)
-    return frequency, error
+    return sampled_motion(model, state, duration).frequencies()
 
 
-def sampled_motion(model: Model, state: ChainState, duration: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return an even number of equal time steps from 0 to a duration, x and U' there: (n + 1,), (n + 1, blocks) twice.
+@dataclass(frozen=True, eq=False)
+class SampledMotion:
+    """A motion at an even number of equal time steps.
 
-    Raises ValueError, one line, for a duration or a state that is not allowed.
+    begin : state at time 0
+    time : from 0 to the duration, shape (n + 1,); position, velocity : x and U' there, shape (n + 1, blocks) each
     """
+
+    model: Model
+    begin: ChainState
+    time: np.ndarray
+    position: np.ndarray
+    velocity: np.ndarray
+
+    def frequencies(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return frequency and error of each block, see `block_frequencies`."""
+        repeated = LEAST_CYCLES * np.ptp(self.position, axis=0) <= self.model.v * self.time[-1]
+        starts: list[np.ndarray | None] = [None] * self.model.blocks
+        if any(has_short_slips(values) for values in self.velocity.T):
+            starts = slip_starts(self.model, self.begin, self.time)
+        per_sample = np.array([_frequency(*block) for block in zip(self.velocity.T, starts, strict=True)])
+        frequency, error = np.where(repeated, per_sample.T / self.time[1], math.nan)
+        return frequency, error
+
+
+def sampled_motion(model: Model, state: ChainState, duration: float) -> SampledMotion:
+    """Return the motion from a state; raises ValueError, one line, for a duration or a state that is not allowed."""
     duration = Number(0.0, LONGEST, above=True).form(duration, "duration")
     check_state(model, state)
     count = 2 * math.ceil(0.5 * duration / (SPACING * longest_spacing(model.chain)))
@@ -104,7 +122,7 @@ def sampled_motion(model: Model, state: ChainState, duration: float) -> tuple[np
     time = np.linspace(0.0, duration, count + 1)
     start = (state.position[None], state.velocity[None], state.stuck[None].astype(bool))
     motion = new_ensemble(model).run(*start, time.tolist())
-    return time, motion["position"][0], motion["velocity"][0]
+    return SampledMotion(model, state, time, motion["position"][0], motion["velocity"][0])
 
 
 def slip_starts(model: Model, state: ChainState, time: np.ndarray) -> list[np.ndarray | None]:
@@ -124,12 +142,13 @@ def _frequency(values: np.ndarray, starts: np.ndarray | None) -> tuple[float, fl
         return math.nan, math.nan
     slips = has_short_slips(values)
     whole = np.diff(slip_times(values) if starts is None else starts) if slips else values
-    cycles = len(whole) if slips else int(np.nan_to_num(_line_frequency(values)) * len(values))
+    frequency = _line_frequency(whole) if not slips else mean_rate(whole) if len(whole) else math.nan
+    cycles = len(whole) if slips else int(np.nan_to_num(frequency) * len(values))
     if cycles < LEAST_CYCLES:
         return math.nan, math.nan
     # Each part has two cycles if the whole has four.
     parts = np.array_split(whole, min(max(cycles // 2, 2), PARTS))
-    frequency, *of_parts = (mean_rate(part) if slips else _line_frequency(part) for part in (whole, *parts))
+    of_parts = [mean_rate(part) if slips else _line_frequency(part) for part in parts]
     error = float(np.abs(np.subtract(of_parts, frequency)).max())
     if slips:
         error += frequency * (1.0 / len(values) if starts is None else ROUNDING)
@@ -155,16 +174,23 @@ def leading_frequency(values: np.ndarray, duration: float) -> float:
 def _highest_peak(values: np.ndarray, duration: float) -> tuple[float, bool]:
     """Return the frequency of the highest peak of the spectrum, and whether the spectrum is nowhere higher."""
     length = next_fast_len(PADDING * len(values), real=True)
-    interval = duration / (len(values) - 1)
-    frequency, power = periodogram(values, 1.0 / interval, window="hann", nfft=length, detrend="constant")
+    step = (len(values) - 1) / (duration * length)
+    # A periodogram without its scale, which would take twice as long. Both ends have no image at negative frequencies.
+    power = np.abs(rfft(_hann_window(len(values)) * (values - values.mean()), length)) ** 2
+    power[[0, -1] if length % 2 == 0 else [0]] *= 0.5
     peaks = find_peaks(power)[0]
-    peaks = peaks[frequency[peaks] * duration >= 1.0]
+    peaks = peaks[peaks * step * duration >= 1.0]
     if not len(peaks):
         return math.nan, False
     top = peaks[np.argmax(power[peaks])]
     left, middle, right = (math.log(power[k]) for k in (top - 1, top, top + 1))
     offset = 0.5 * (left - right) / (left - 2.0 * middle + right)
-    return float(frequency[top] + offset * frequency[1]), bool(power[top] == power.max())
+    return float(step * (top + offset)), bool(power[top] == power.max())
+
+
+@lru_cache(maxsize=8)
+def _hann_window(count: int) -> np.ndarray:
+    return read_only_copy(hann(count, sym=False))
 
 
 def has_short_slips(values: np.ndarray) -> bool:

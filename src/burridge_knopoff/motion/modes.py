@@ -23,7 +23,7 @@ from scipy.linalg import eigh
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
-from burridge_knopoff.motion.frequency import sampled_motion, smooth_weight
+from burridge_knopoff.motion.frequency import SampledMotion, sampled_motion, smooth_weight
 from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
 
 # A block with a smaller share of the largest displacement in a mode does not decide the sign of the mode.
@@ -110,12 +110,17 @@ def mode_amplitudes(model: Model, state: ChainState, duration: float = 4000.0) -
     instance_of(model, Model, "model")
     if model.blocks**2 > MOST_NUMBERS:
         raise refusal("model.blocks", model.blocks, f"at most {int(MOST_NUMBERS**0.5)}, for a dense matrix")
-    time, position, velocity = sampled_motion(model, state, duration)
+    return modes_of(sampled_motion(model, state, duration))
+
+
+def modes_of(motion: SampledMotion) -> ModeAmplitudes:
+    """Return the amplitudes and phases of the normal modes along a motion, see `mode_amplitudes`."""
+    model = motion.model
     frequency, shape = sliding_modes(model.chain)
     projection = (shape * model.chain.masses).T
-    rate = (velocity - model.v) @ projection / (2.0 * np.pi * frequency)
-    oscillation = position @ projection - 1j * rate
-    return ModeAmplitudes(frequency, shape, time, np.abs(oscillation), np.angle(oscillation))
+    rate = (motion.velocity - model.v) @ projection / (2.0 * np.pi * frequency)
+    oscillation = motion.position @ projection - 1j * rate
+    return ModeAmplitudes(frequency, shape, motion.time, np.abs(oscillation), np.angle(oscillation))
 
 
 def sliding_modes(chain: Chain) -> tuple[np.ndarray, np.ndarray]:

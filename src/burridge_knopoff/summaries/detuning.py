@@ -18,8 +18,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
-from burridge_knopoff.motion.frequency import block_frequencies
-from burridge_knopoff.motion.modes import mode_amplitudes
+from burridge_knopoff.motion.frequency import sampled_motion
+from burridge_knopoff.motion.modes import modes_of
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 
@@ -72,10 +72,11 @@ def detuned_motion(model: Model, start: ChainState, detuning: float, exponents: 
         lyapunov_alignment=0.25 * TRANSIENT,
     )
     settled = run(detuned, start, settings, section_only=True)
-    frequency, error = block_frequencies(detuned, settled.final, WINDOW)
+    motion = sampled_motion(detuned, settled.final, WINDOW)
+    frequency, error = motion.frequencies()
     share, ratio = np.full(model.blocks, math.nan), complex(math.nan)
     if np.isfinite(frequency[0]):
-        modes = mode_amplitudes(detuned, settled.final, WINDOW)
+        modes = modes_of(motion)
         share, line = modes.line_shares(frequency[0]), modes.line(frequency[0]) @ modes.shape
         ratio = complex(line[-1] / line[0])
     return DetunedMotion(
