@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
@@ -27,12 +28,16 @@ from burridge_knopoff.periodic_orbits.flow import OrbitError, mean_distance
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 
-# Number of parts into which a segment is divided. Labelling many states together takes little longer than one.
-PARTS = 16
+# Number of parts into which a segment is divided: eight states within it take little longer than one.
+PARTS = 9
+
+# Fractions of the time limit. Most states near a boundary are decided by the first. Slow boundaries, and transient
+# chaos, hold some for longer; they are followed further only if the others do not bring the two sides closer.
+PROMPT = (0.01, 0.1, 1.0)
 
 #: Distances of the two states, for v = 0.1 in the chain's own units: the segment between them is bisected down to the
 #: first, a thousand times the rounding error, and again once they are the second apart.
-BISECTED_DISTANCE, SEPARATED_DISTANCE = 1e-12, 1e-7
+BISECTED_DISTANCE, SEPARATED_DISTANCE = 2e-12, 1e-7
 
 # Distance above which the direction between the two states is known to at least three digits.
 DIRECTION_DISTANCE = 1e-9
@@ -45,7 +50,10 @@ STEP = 5.0
 # come to the same side, as in strips of a fractal boundary thinner than the rounding error.
 LINE_DISTANCES = np.geomspace(0.1, 100.0, 32)
 
-# Growth of a perturbation in a step below which it counts as zero, as that of the velocity of a block that stops.
+# Steps after which perturbations are orthonormalized, and their growth is measured.
+ORTHONORMALIZED = 4
+
+# Growth of a perturbation in that time below which it counts as zero, as that of the velocity of a block that stops.
 LEAST_GROWTH = 1e-12
 
 
@@ -159,29 +167,43 @@ class EdgeTrack:
         slip = np.sign(place[chosen, self.model.blocks :])
         return position, np.where(velocity * slip > 0.0, velocity, 0.0), stuck
 
+    @cached_property
+    def _scale(self) -> np.ndarray:
+        return self.model.state_scale
+
     def _distance(self, first: ChainState, second: ChainState) -> float:
-        return float(np.abs((first.vector() - second.vector()) / self.model.state_scale).max())
+        return float(np.abs((first.vector() - second.vector()) / self._scale).max())
 
     def _bisect(self) -> None:
         """Bring the two states together. States between them that reach no attractor are ignored."""
         shares = np.arange(PARTS + 1) / PARTS
+        ends_known = False
         while (distance := self._distance(self.first, self.second)) > BISECTED_DISTANCE:
-            states, ours = self._sides(shares)
-            if len(ours) < 2 or not ours[0] or ours[-1]:
-                self._find_change()
-                continue
-            other = _widest_change(ours)
-            self.first, self.second = states[other - 1 : other + 1]
-            if self._distance(self.first, self.second) > (1.0 - 0.5 / PARTS) * distance:
+            for limit in (share * self.time_limit for share in PROMPT):
+                states, ours = self._sides(shares[1:-1] if ends_known else shares, limit)
+                if ends_known:
+                    states, ours = [self.first, *states, self.second], np.concatenate([[True], ours, [False]])
+                if not ends_known and (len(ours) < 2 or not ours[0] or ours[-1]):
+                    if limit < self.time_limit:
+                        continue
+                    self._find_change()
+                    break
+                other = _widest_change(ours)
+                if self._distance(*states[other - 1 : other + 1]) <= (1.0 - 0.5 / PARTS) * distance:
+                    self.first, self.second = states[other - 1 : other + 1]
+                    ends_known = True
+                    break
+            else:
                 raise OrbitError(
                     f"time_limit: got {self.time_limit:g}, by which no state between the basins reaches an attractor, "
                     f"expected more (a = {self.model.a:.12g})"
                 )
 
-    def _sides(self, shares: np.ndarray) -> tuple[list[ChainState], np.ndarray]:
+    def _sides(self, shares: np.ndarray, time_limit: float) -> tuple[list[ChainState], np.ndarray]:
         """Return states on the line through the two that reach an attractor, and whether each is on the first side.
 
         shares : positions on the line, 0 at the first state and 1 at the second, shape (n,)
+        time_limit : time by which a state has to reach an attractor
         """
         first, second, share = self.first, self.second, shares[:, None]
         stuck = np.tile(first.stuck & second.stuck, (len(shares), 1))
@@ -190,7 +212,7 @@ class EdgeTrack:
         velocity = (1.0 - share) * first.velocity + share * second.velocity
         # Outside the segment a slip could be reversed.
         velocity[velocity * np.sign(first.velocity + second.velocity) < 0.0] = 0.0
-        labels, _, _ = label_arrays(self.model, self.attractors, position, velocity, stuck, self.time_limit)
+        labels, _, _ = label_arrays(self.model, self.attractors, position, velocity, stuck, time_limit)
         known = np.flatnonzero(labels != UNDETERMINED)
         return [ChainState(position[k], velocity[k], stuck[k]) for k in known], self.on_first_side[labels[known]]
 
@@ -199,7 +221,8 @@ class EdgeTrack:
 
         Raises LabelError if there are none.
         """
-        states, ours = self._sides(np.concatenate([-LINE_DISTANCES[::-1], [0.0, 1.0], 1.0 + LINE_DISTANCES]))
+        line = np.concatenate([-LINE_DISTANCES[::-1], [0.0, 1.0], 1.0 + LINE_DISTANCES])
+        states, ours = self._sides(line, self.time_limit)
         changes = np.flatnonzero(np.diff(ours))
         if not len(changes):
             raise LabelError
@@ -214,8 +237,9 @@ class EdgeTrack:
         runner.begin(start, 0.0)
         runner.carry(self._basis)
         other.begin(self.second, 0.0)
-        growth, place, direction = [], [], []
-        distance, blocks = 0.0, self.model.blocks
+        growth: list[np.ndarray] = []
+        place, direction = [], []
+        distance, blocks, steps = 0.0, self.model.blocks, 0
         while distance < SEPARATED_DISTANCE:
             clock += step
             if clock > self.time_limit:
@@ -223,12 +247,14 @@ class EdgeTrack:
                 raise LabelError
             if any(one.run(clock) != Status.COMPLETED for one in (runner, other)):
                 raise OrbitError(f"a = {self.model.a:.12g}: the run ends at τ = {clock:g} on the boundary")
-            self._basis, triangle = np.linalg.qr(runner.perturbations)
-            runner.carry(self._basis)
-            size = np.abs(np.diag(triangle))
-            growth.append(np.where(size > LEAST_GROWTH, np.log(np.maximum(size, LEAST_GROWTH)), -np.inf))
             self.first, self.second = runner.state(), other.state()
-            distance = self._distance(self.first, self.second)
+            distance, steps = self._distance(self.first, self.second), steps + 1
+            if steps == ORTHONORMALIZED or distance >= SEPARATED_DISTANCE:
+                self._basis, triangle = np.linalg.qr(runner.perturbations)
+                runner.carry(self._basis)
+                size = np.abs(np.diag(triangle))
+                rate = np.where(size > LEAST_GROWTH, np.log(np.maximum(size, LEAST_GROWTH)), -np.inf) / steps
+                growth, steps = [*growth, *([rate] * steps)], 0
             if DIRECTION_DISTANCE < distance < SEPARATED_DISTANCE and (self.first.stuck == self.second.stuck).all():
                 place.append(self.first.vector())
                 direction.append((self.second.vector() - self.first.vector()) / distance)
