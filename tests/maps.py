@@ -102,10 +102,10 @@ class Ensemble:
             left = np.flatnonzero(labels_ < 0)
             if not len(left):
                 break
-            x[left] = self.model.map(x[left], self.model.a)
+            # A trajectory of a map may diverge.
+            x[left] = np.clip(self.model.map(x[left], self.model.a), -1e9, 1e9)
             for index, (tree, radius) in enumerate(clouds.near):
-                # A trajectory of a map may diverge.
-                close = tree.query(np.clip(x[left, None], -1e9, 1e9))[0] <= radius
+                close = tree.query(x[left, None])[0] <= radius
                 counts[index, left] = np.where(close, counts[index, left] + 1, 0)
                 captured = left[counts[index, left] >= close_returns[index]]
                 captured = captured[labels_[captured] < 0]
