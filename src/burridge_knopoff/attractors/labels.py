@@ -86,9 +86,7 @@ def label_arrays(
 
 def advance(model: Model, starts: Sequence[ChainState], time: float) -> list[ChainState]:
     """Return the states after a time."""
-    position, velocity = (np.array([getattr(start, name) for start in starts]) for name in ("position", "velocity"))
-    stuck = np.array([start.stuck for start in starts], dtype=bool)
-    end = new_ensemble(model).run(position, velocity, stuck, [time])
+    end = new_ensemble(model).run(*stack_states(starts), [time])
     return [state_of(state) for state in np.concatenate([end["position"][:, 0], end["velocity"][:, 0]], axis=1)]
 
 

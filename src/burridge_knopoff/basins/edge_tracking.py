@@ -176,28 +176,26 @@ class EdgeTrack:
 
     def _bisect(self) -> None:
         """Bring the two states together. States between them that reach no attractor are ignored."""
-        shares = np.arange(PARTS + 1) / PARTS
-        ends_known = False
-        while (distance := self._distance(self.first, self.second)) > BISECTED_DISTANCE:
-            for limit in (share * self.time_limit for share in PROMPT):
-                states, ours = self._sides(shares[1:-1] if ends_known else shares, limit)
-                if ends_known:
-                    states, ours = [self.first, *states, self.second], np.concatenate([[True], ours, [False]])
-                if not ends_known and (len(ours) < 2 or not ours[0] or ours[-1]):
-                    if limit < self.time_limit:
-                        continue
-                    self._find_change()
-                    break
-                other = _widest_change(ours)
-                if self._distance(*states[other - 1 : other + 1]) <= (1.0 - 0.5 / PARTS) * distance:
-                    self.first, self.second = states[other - 1 : other + 1]
-                    ends_known = True
-                    break
-            else:
+        _, ours = self._sides(np.array([0.0, 1.0]), self.time_limit)
+        if ours.tolist() != [True, False]:
+            self._find_change()
+        while self._distance(self.first, self.second) > BISECTED_DISTANCE:
+            if not any(self._narrow(share * self.time_limit) for share in PROMPT):
                 raise OrbitError(
                     f"time_limit: got {self.time_limit:g}, by which no state between the basins reaches an attractor, "
                     f"expected more (a = {self.model.a:.12g})"
                 )
+
+    def _narrow(self, time_limit: float) -> bool:
+        """Replace the two states by nearer ones between them on different sides; return whether there are any."""
+        states, ours = self._sides(np.arange(1, PARTS) / PARTS, time_limit)
+        states, ours = [self.first, *states, self.second], np.concatenate([[True], ours, [False]])
+        other = _widest_change(ours)
+        first, second = states[other - 1 : other + 1]
+        if self._distance(first, second) > (1.0 - 0.5 / PARTS) * self._distance(self.first, self.second):
+            return False
+        self.first, self.second = first, second
+        return True
 
     def _sides(self, shares: np.ndarray, time_limit: float) -> tuple[list[ChainState], np.ndarray]:
         """Return states on the line through the two that reach an attractor, and whether each is on the first side.
@@ -254,7 +252,8 @@ class EdgeTrack:
                 runner.carry(self._basis)
                 size = np.abs(np.diag(triangle))
                 rate = np.where(size > LEAST_GROWTH, np.log(np.maximum(size, LEAST_GROWTH)), -np.inf) / steps
-                growth, steps = [*growth, *([rate] * steps)], 0
+                growth += [rate] * steps
+                steps = 0
             if DIRECTION_DISTANCE < distance < SEPARATED_DISTANCE and (self.first.stuck == self.second.stuck).all():
                 place.append(self.first.vector())
                 direction.append((self.second.vector() - self.first.vector()) / distance)
