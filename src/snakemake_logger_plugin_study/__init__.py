@@ -135,7 +135,7 @@ class LogHandler(LogHandlerBase):
                 self._begin_display()
             case LogEvent.JOB_INFO if record.output and not is_dry_run:
                 job = self._run.job(record.jobid, record.rule_name)
-                job.begin, job.message = time.monotonic(), record.rule_msg or ""
+                job.begin, job.since, job.message = time.monotonic(), time.time(), record.rule_msg or ""
                 job.output, job.log = record.output, record.log or []
                 job.state = RUNNING
             case LogEvent.JOB_FINISHED if done := self._run.jobs.get(record.job_id):

@@ -16,7 +16,6 @@ from rich.table import Table
 from rich.text import Text
 
 from burridge_knopoff.study.formatting import format_count
-from burridge_knopoff.study.job_log import progress_of
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, Run
 
 #: Least time in seconds between two lines; time after which a line is due in any case; share of the run after which one
@@ -163,8 +162,7 @@ class Picture:
         lines = [(so_far, "bold red" if self._run.jobs_in(FAILED) else "bold")]
         jobs = sorted(self._run.jobs_in(RUNNING), key=lambda job: (job.begin, job.name))[:LONG_JOBS]
         for job in (job for job in jobs if now - job.begin > LONG_JOB):
-            share = progress_of(job.log)
-            done = f", {int(100 * share)} % done" if share else ""
+            done = f", {int(100 * share)} % done" if (share := job.progress) else ""
             lines.append((f"{job.message or job.name}: {format_elapsed(now - job.begin)}{done}", "dim"))
         return Group(table, *(Text(*line, no_wrap=True, overflow="ellipsis") for line in lines))
 

@@ -23,6 +23,7 @@ class Job:
 
     needs : numbers of the jobs on which it depends
     benchmark : the file with its duration, written by Snakemake
+    begin, since : when it began, by a clock that is never set, and by the clock of its files
     seconds : its duration times its threads; None if it has not finished or was not measured
     """
 
@@ -35,10 +36,16 @@ class Job:
     benchmark: str = ""
     state: str = WAITING
     begin: float = 0.0
+    since: float = 0.0
     seconds: float | None = None
     message: str = ""
     output: Sequence[str] = ()
     log: Sequence[str] = ()
+
+    @property
+    def progress(self) -> float:
+        """The share of it that is done by its log, 0 if it logs none."""
+        return progress_of(self.log, self.since)
 
 
 @dataclass
@@ -147,12 +154,16 @@ class Run:
 
     @staticmethod
     def _work(job: Job, expected: float, now: float) -> float:
-        """Return the seconds of a running job, times its threads: as expected, and as its progress shows."""
-        share = progress_of(job.log)
+        """Return the seconds of a running job, times its threads: as expected, or more if its progress shows this.
+
+        What an earlier run has left in the cache is done at once, but what is left takes no less time for that.
+        """
+        share, taken = job.progress, (now - job.begin) * job.threads
         if not share:
             return expected
         weight = min(1.0, CERTAIN * share)
-        return (1.0 - weight) * expected + weight * (now - job.begin) * job.threads / share
+        whole = (1.0 - weight) * expected + weight * max(expected, taken / share)
+        return taken + (1.0 - share) * whole
 
     def expected(self) -> dict[str, float]:
         """Return {rule: expected seconds of a job, times its threads}."""

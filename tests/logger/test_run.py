@@ -90,8 +90,13 @@ def test_a_running_job_that_reports_its_progress_takes_as_long_as_this_shows(tmp
         with log.open("a") as file:
             file.write(f"searched: 10, 5.0 s, the longest 1.0 s\n{share}")
         left.append(made.forecast(8.0))
-    assert left == [2.0, 0.5 * 10.0 + 0.5 * 64.0 - 8.0, 24.0, 8.0]
+    assert left == [2.0, 0.875 * (0.5 * 10.0 + 0.5 * 64.0), 24.0, 8.0]
     assert made.stages(8.0)[-1].share_done == 0.5
+    # Half of it was in the cache: the other half takes half of the time.
+    assert made.forecast(0.1) == 5.0
+    # The log of an earlier run is none.
+    made.jobs[0].since = log.stat().st_mtime + 1.0
+    assert made.forecast(8.0) == 2.0
 
 
 def test_the_time_left_is_counted_down_until_it_is_worked_out_again():

@@ -26,6 +26,7 @@ _LOG = logging.getLogger(__name__)
 #: Least time in seconds between two reports of the progress of a job.
 REPORTED = 5.0
 
+#: Fractions of the time of a job at which some of its calls begin and end.
 Span = tuple[float, float]
 
 _K = TypeVar("_K")

@@ -43,12 +43,16 @@ def logged_error(log: str | Path) -> str:
     return words if len(words) <= _LONGEST else f"{words[: _LONGEST - 3]}..."
 
 
-def progress_of(logs: Iterable[str | Path]) -> float:
-    """Return the share of a running job that is done by its logs, from 0 to 1; 0 if it reports none."""
+def progress_of(logs: Iterable[str | Path], since: float = 0.0) -> float:
+    """Return the share of a running job that is done by its logs, from 0 to 1; 0 if it reports none.
+
+    since : the time at which it began; an older log is that of an earlier run
+    """
     shares = [0.0]
-    for log in logs:
+    for log in map(Path, logs):
         with suppress(OSError):
-            shares += map(float, _PROGRESS.findall(Path(log).read_bytes()[-_TAIL:]))
+            if log.stat().st_mtime >= since:
+                shares += map(float, _PROGRESS.findall(log.read_bytes()[-_TAIL:]))
     return min(max(shares), 1.0)
 
 
