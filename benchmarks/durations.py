@@ -2,8 +2,9 @@
 
     python benchmarks/durations.py config/paper.yaml config/smoke.yaml
 
-For each rule: the mean CPU time and size of a job, at the smallest and at the largest work in these studies. Rules that
-did not run keep their durations.
+For each rule: the mean wall time of a job times its threads, and its size, at the smallest and at the largest work in
+these studies. Durations of rules that did not run are scaled as those of the others have changed. Other programs on
+the machine would count.
 """
 
 import json
@@ -14,8 +15,7 @@ from pathlib import Path
 import numpy as np
 from replay import planned
 
-from burridge_knopoff.report.stages import job_costs
-from snakemake_logger_plugin_study.durations import FILE, SHIPPED, work_of
+from snakemake_logger_plugin_study.durations import FILE, SHIPPED, measured_seconds, work_of
 
 
 def main():
@@ -25,17 +25,20 @@ def main():
         plan = planned(config, "all", "chains")
         work = work_of(plan.jobs)
         for job in plan.workflow.dag.jobs:
-            for wall, cpu, _ in job_costs(Path(job.benchmark)) if job.benchmark else ():
+            seconds = measured_seconds(job.benchmark, int(job.threads)) if job.benchmark else None
+            if seconds is not None:
                 size = sum(path.stat().st_size for path in map(Path, job.output) if path.is_file())
-                # Snakemake measures no CPU time of jobs that are too short.
-                jobs[job.rule.name][work.get(job.rule.name, work["all points"])].append((cpu or wall, size))
-    rules = dict(SHIPPED)
+                jobs[job.rule.name][work.get(job.rule.name, work["all points"])].append((seconds, size))
+    rules = {}
     for rule, by_work in jobs.items():
         rows = [[least, *np.mean(by_work[least], axis=0)] for least in sorted({min(by_work), max(by_work)})]
         # More work never takes less time.
         rows[-1] = list(np.max(rows, axis=0))
         rules[rule] = [[float(f"{value:.4g}") for value in row] for row in rows]
         print(rule, rules[rule])
+    ratio = np.median([rows[0][1] / SHIPPED[rule][0][1] for rule, rows in rules.items() if rule in SHIPPED])
+    for rule in SHIPPED.keys() - rules:
+        rules[rule] = [[work, float(f"{ratio * seconds:.4g}"), size] for work, seconds, size in SHIPPED[rule]]
     lines = ",\n".join(f' "{rule}": {json.dumps(rows)}' for rule, rows in sorted(rules.items()))
     FILE.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
 

@@ -2,9 +2,9 @@
 
     python benchmarks/replay.py config/paper.yaml config/smoke.yaml [--cores 1]
 
-It is replayed from its benchmark files as if it had never run, each job with its CPU time, so that other programs do
-not count. The output is the estimate at the beginning, and the largest ratio between estimated and true time left after
-a minute (or a tenth of a shorter run); both count as at least 10 s, the smallest time that the display shows.
+It is replayed from its benchmark files as if it had never run; other programs on the machine would count. The output is
+the estimate at the beginning, and the largest ratio between estimated and true time left after a minute (or a tenth of
+a shorter run); both count as at least 10 s, the smallest time that the display shows.
 
 Then the time on 1, 2, 4 … 256 cores, and the critical path of jobs. The long jobs of a law divide their parts among
 processes (the number of cores divided by that of the laws); their logs contain the time of each part. The time of
@@ -22,8 +22,7 @@ from pathlib import Path
 
 from snakemake.cli import main as snakemake
 
-from burridge_knopoff.report.stages import job_costs
-from snakemake_logger_plugin_study.durations import Durations, work_of
+from snakemake_logger_plugin_study.durations import Durations, measured_seconds, work_of
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.run import DONE, RUNNING, WAITING, schedule
 
@@ -49,20 +48,18 @@ def planned(config, *targets, cores=2):
 
 
 def recorded(config, cores=2):
-    """Return the run of all jobs of a study and {number: wall and CPU time of the job in the last run, in seconds}."""
+    """Return the run of all jobs of a study and {number: seconds of the job in the last run}."""
     run = planned(config, cores=cores).look_ahead()
     run.cores = cores
-    took = {number: next(job_costs(Path(job.benchmark)), None) for number, job in run.jobs.items()}
-    if missing := [run.jobs[number].name for number, costs in took.items() if costs is None]:
+    took = {number: measured_seconds(job.benchmark, 1) for number, job in run.jobs.items()}
+    if missing := [run.jobs[number].name for number, seconds in took.items() if seconds is None]:
         sys.exit(f"{config}: no benchmark file of {missing[0]} and {len(missing) - 1} more: run the study first")
-    return run, {number: costs[:2] for number, costs in took.items()}
+    return run, took
 
 
-def estimates(run, took):
+def estimates(run, seconds):
     """Return (moment, estimate, truth) of a run, in seconds, from its beginning to its end."""
     run.durations = Durations(work_of(PLAN.jobs))
-    # Snakemake measures no CPU time of jobs that are too short.
-    seconds = {number: (cpu or wall) / run.jobs[number].threads for number, (wall, cpu) in took.items()}
     ends = schedule(run.jobs, seconds, run.cores)
     end = max(ends.values())
     for moment in (end * step / MOMENTS for step in range(MOMENTS)):
@@ -111,8 +108,8 @@ def on(cores, jobs, seconds, parts):
 
 def on_other_cores(config):
     """Print what a study would take on other numbers of cores, and its critical path."""
-    run, took = recorded(config)
-    jobs, seconds = run.jobs, {number: wall for number, (wall, _) in took.items()}
+    run, seconds = recorded(config)
+    jobs = run.jobs
     parts = {number: parts_of(run.results, job) for number, job in jobs.items()}
     alone = sum(on(1, jobs, seconds, parts)[1].values())
     print(f"{run.results}: {len(jobs)} jobs\n\n| cores | seconds | faster |\n|------:|--------:|-------:|")

@@ -1,7 +1,7 @@
 """Durations of jobs: the mean of the finished jobs of a rule in this run or the last one, otherwise the shipped value.
 
-`durations.json`, written by `benchmarks/durations.py`, contains for each rule the CPU seconds and the bytes of a job in
-a small and in a large study.
+`durations.json`, written by `benchmarks/durations.py`, contains for each rule the seconds of a job, times its threads,
+and its bytes in a small and in a large study.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from burridge_knopoff.report.stages import job_costs
 from burridge_knopoff.study.study import all_points
 
 FILE = Path(__file__).with_name("durations.json")
-#: {rule: one or two rows of the work of a job, its CPU time in seconds and its size in bytes, sorted by work}
+#: {rule: one or two rows of the work of a job, its seconds times its threads, and its bytes, sorted by work}
 SHIPPED: dict[str, list[list[float]]] = json.loads(FILE.read_text(encoding="utf-8"))
 #: The rows of a rule that was never measured.
 _OTHERS = [[median(column) for column in zip(*(rows[0] for rows in SHIPPED.values()), strict=True)]]
@@ -29,7 +29,7 @@ def measured_seconds(benchmark: str | Path, threads: int) -> float | None:
 
 
 def shipped_cost(rule: str, work: float) -> tuple[float, float]:
-    """Return the shipped CPU time of a job in seconds and its bytes, interpolated linearly between its two rows."""
+    """Return the shipped seconds of a job, times its threads, and its bytes, interpolated between its two rows."""
     first, *more = SHIPPED.get(rule, _OTHERS)
     last = more[0] if more else first
     share = max(0.0, (work - first[0]) / (last[0] - first[0])) if more else 0.0
@@ -49,7 +49,7 @@ class Durations:
     last: Mapping[str, Sequence[float]] = field(default_factory=dict)
 
     def shipped_cost(self, rule: str) -> tuple[float, float]:
-        """Return the shipped CPU time in seconds, and the bytes, of a job of this study."""
+        """Return the shipped seconds, times the threads, and the bytes of a job of this study."""
         return shipped_cost(rule, self.work.get(rule, self.work.get("all points", 0.0)))
 
     def expected(self, rules: Collection[str], finished: Mapping[str, Sequence[float]]) -> dict[str, float]:

@@ -21,6 +21,8 @@ from burridge_knopoff import (
     limit_cycle,
     synchronized_orbit,
 )
+from burridge_knopoff.basins.edge_state import _leads_back
+from burridge_knopoff.basins.edge_tracking import EdgeTrack
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from tests.scipy_flow import model_events
@@ -155,6 +157,40 @@ def test_a_third_basin_may_lie_between_two():
     assert (found.kind, found.orbit) == (MotionKind.QUASIPERIODIC, None)
     assert found.exponent[0] > 10.0 * np.abs(found.exponent[1:]).max()
     assert found.lifetime == pytest.approx(1.0 / found.exponent[0])
+
+
+@pytest.fixture(scope="module")
+def near_loss():
+    """Return the three attractors at a = 0.0425, in the order of ⟨J⟩, and the model."""
+    model, attractors = coexisting("linearized", 0.0425, 60)
+    order = sorted(range(3), key=lambda k: attractors[k].motion.mean_distance)
+    return model, attractors, order
+
+
+def test_a_torus_on_a_fractal_boundary(near_loss):
+    """Of 10 000 states displaced to either side, 2.0 and 2.6 % reach the attractor of the other side."""
+    model, attractors, order = near_loss
+    first, second = order[:2]
+    found = edge_state(model, *(attractors[k].motion.state() for k in (first, second)), attractors)
+    assert (found.kind, found.symmetry, found.has_crossing) == (MotionKind.QUASIPERIODIC, Symmetry.SYMMETRIC, True)
+    assert found.exponent[0] == pytest.approx(0.0128, abs=4.0 * found.exponent_error[0])
+    beyond = found.reached_count[[0, 1], [second, first]]
+    assert beyond == pytest.approx(500 * np.array([0.0202, 0.0264]), abs=3.0 * np.sqrt(500 * 0.0264))
+
+
+def test_a_crossing_counts_if_the_boundary_there_leads_back(near_loss):
+    model, attractors, order = near_loss
+    states = [attractors[k].motion.state() for k in order]
+    found = edge_state(model, *states[:2], attractors, FEW)
+
+    def leads_back(first):
+        """Return whether the boundary between one state and the next leads to the edge state of the first two."""
+        pair = states[first], states[first + 1]
+        track = EdgeTrack(model, attractors, np.arange(3) == order[first], *pair, 20_000.0, 3)
+        return _leads_back(track, pair, 6000.0, found.mean_distance)
+
+    # The other two are separated by the orbit with (8, 0, 8) stops, with ⟨J⟩ = 0.166.
+    assert [leads_back(first) for first in (0, 1)] == [True, False]
 
 
 @pytest.fixture(scope="module")

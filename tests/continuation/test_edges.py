@@ -18,11 +18,12 @@ from burridge_knopoff import (
     law_of,
 )
 from burridge_knopoff.attractors.stored_returns import KnownAttractors
-from burridge_knopoff.continuation.edges import approach, continue_edges, edges_at
+from burridge_knopoff.continuation.edges import approach, basin_pairs, continue_edges, distinct_edges, edge_between
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.summaries import bifurcations, edges
+from burridge_knopoff.summaries.edges_in_words import edges_in_words
 
 SETTINGS = EdgeSettings(duration=6000, samples=40)
 #: Where synchrony is lost, linearized.
@@ -40,6 +41,11 @@ def known_at(a, branches, samples=40):
     return KnownAttractors(model, attractors, np.array(branches), np.array(side))
 
 
+def edges_at(known):
+    """Return the edge states between all pairs of attractors."""
+    return distinct_edges(edge_between(known, pair, SETTINGS, 20_000) for pair in basin_pairs(known))
+
+
 @pytest.fixture(scope="module")
 def known():
     return known_at(0.1, [3, 3, 1, 2])
@@ -47,7 +53,7 @@ def known():
 
 @pytest.fixture(scope="module")
 def found(known):
-    return edges_at(known, SETTINGS, 20_000)
+    return edges_at(known)
 
 
 def test_every_two_branches_have_an_edge_state_between_them(found):
@@ -65,7 +71,7 @@ def test_every_two_branches_have_an_edge_state_between_them(found):
 def test_transient_chaos_is_not_an_attractor(known):
     ending = replace(known.attractors[3].motion, kind=MotionKind.TRANSIENT_CHAOS)
     fewer = replace(known, attractors=[*known.attractors[:3], replace(known.attractors[3], motion=ending)])
-    assert not any(2 in edge.branch for edge in edges_at(fewer, SETTINGS, 20_000))
+    assert not any(2 in edge.branch for edge in edges_at(fewer))
 
 
 def test_saddle_orbits_are_continued_until_their_stability_changes(known, found):
@@ -87,7 +93,7 @@ def test_saddle_orbits_are_continued_until_their_stability_changes(known, found)
 def merging():
     """Return edge states of branch 3 just before its two chaotic mirror images merge, and one of its states."""
     known = known_at(0.175, [3, 3, 1], samples=20)
-    return known, edges_at(known, SETTINGS, 20_000)
+    return known, edges_at(known)
 
 
 def test_mirror_images_merge_where_both_meet_the_synchronized_orbit(merging):
@@ -114,7 +120,10 @@ def test_the_crisis_names_the_saddle(merging, tmp_path: Path):
     assert whole["segment"].values.tolist() == [numbers[0], *(n + len(segments) if n >= 0 else -1 for n in numbers)]
     write_summary(whole, tmp_path / "edges.nc")
     whole = open_summary(tmp_path / "edges.nc")
-    assert edges.digest(whole).count("\n") == 1 + len(found)
+    words = edges_in_words(whole).splitlines()
+    assert len(words) == 2 + 1 + len(found)
+    assert words[0] == "nonlinear: 1 edge state at 1 value of a: 1 synchronized; none fractal."
+    assert words[1].startswith(f"linearized: {len(found)} edge states at 1 value of a: ")
     met = edges.saddle_at_crisis(whole, "linearized", 0.1773)
     assert met["stops"].tolist() == [1, 1, 1]
     assert met["distance"] == near.distance

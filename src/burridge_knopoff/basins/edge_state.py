@@ -16,18 +16,20 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import islice
 
 import numpy as np
 
 from burridge_knopoff.attractors.attractor import Attractor, attractors_of
-from burridge_knopoff.attractors.labels import UNDETERMINED, label, label_arrays
+from burridge_knopoff.attractors.labels import UNDETERMINED, label
 from burridge_knopoff.attractors.search import find_attractors
 from burridge_knopoff.attractors.settings import SEARCH
+from burridge_knopoff.basins.displaced_states import DisplacedStates
 from burridge_knopoff.basins.edge_tracking import SEPARATED_DISTANCE, EdgeTrack, LabelError
 from burridge_knopoff.basins.settings import EDGES, EdgeSettings
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
-from burridge_knopoff.motion.kind import MotionKind, motion_from_period
+from burridge_knopoff.motion.kind import MotionKind, is_zero_exponent, motion_from_period
 from burridge_knopoff.motion.limit_cycle import orbit_of_events
 from burridge_knopoff.motion.section_returns import Returns, returns_of
 from burridge_knopoff.motion.set_distance import SPACINGS, is_near
@@ -48,17 +50,15 @@ FIRST_PART = 8
 # distance of the two sides, or by this factor closer than its first return.
 CLOSE_FACTOR = 10.0
 
-#: Range of the displacements from an edge state, for v = 0.1 in the chain's own units: much larger than the distance of
-#: the two sides, and small enough for the motion to be linear.
-DISPLACEMENTS = (1e-6, 1e-4)
-
 # Capture radii, as fractions of those of the attractors, that are tried in turn until no label contradicts an earlier
 # one. Trajectories may escape from within a capture radius although no random perturbation did.
 RADIUS_SHARES = (1.0, 0.1, 0.01, 1e-3)
 
-# Fraction of the time limit by which displaced states have to reach an attractor: those that stay longer in transient
-# chaos are not counted.
-DISPLACED_SHARE = 0.1
+# States beyond the boundary from which the boundary is followed, until one leads back to the edge state.
+CROSSINGS = 5
+
+#: Difference of ⟨J⟩, for v = 0.1, up to which two edge states of one kind between the same branches count as one.
+MEAN_TOLERANCE = 1e-3
 
 # Number of batches of the trajectory whose scatter gives the errors of the exponents.
 BATCHES = 20
@@ -79,6 +79,8 @@ class EdgeState:
         with its standard error: for a saddle orbit the period over the logarithm of the multiplier, for a saddle torus
         the reciprocal of the largest exponent, for a chaotic saddle the mean over displaced states
     reached_count : number of displaced states that reach each attractor, a row for each side, shape (2, attractors)
+    has_crossing : whether states displaced to one side reach an attractor of the other, across a part of the boundary
+        that leads back to this set: its unstable manifold crosses its stable one, and the boundary is fractal
     returns : states of the settled trajectory at stops of one block, shape (n, 2 blocks)
     duration : time for which the boundary was followed
 
@@ -103,6 +105,7 @@ class EdgeState:
     lifetime: float
     lifetime_error: float
     reached_count: np.ndarray
+    has_crossing: bool
     returns: np.ndarray
     duration: float
 
@@ -121,15 +124,6 @@ class EdgeState:
         """The indices of the attractors that displaced states reach, for each side."""
         first, second = ({int(k) for k in np.flatnonzero(row)} for row in self.reached_count)
         return first, second
-
-    @property
-    def has_crossing(self) -> bool:
-        """Whether states displaced to one side reach an attractor of the other, so that the boundary is fractal.
-
-        The unstable manifold then crosses the boundary, and a saddle orbit is part of a chaotic saddle.
-        """
-        first, second = self.sides
-        return not first.isdisjoint(second)
 
 
 def edge_state(
@@ -245,9 +239,12 @@ def _measure(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettin
     stops = values[values[:, 1] == 0]
     found = returns_of(model, track.duration, stops[:, 0], lambda chosen: stops[chosen, 2:])
     exponent, error = _exponents(track.growth(since))
-    displaced = _DisplacedStates(track, since, settings)
+    displaced = DisplacedStates(track, since, settings)
     reached = displaced.counts()
-    kind = _kind(orbit, exponent, error, reached)
+    mean = _mean_distance(track, orbit)
+    crossings = islice(displaced.crossings(), CROSSINGS)
+    has_crossing = any(_leads_back(track, pair, settings.duration, mean) for pair in crossings)
+    kind = _kind(orbit, exponent, error, has_crossing)
     if orbit is not None:
         lifetime = orbit.period / math.log(abs(multipliers(orbit).whole[0])), 0.0
     elif kind == MotionKind.CHAOTIC:
@@ -261,12 +258,32 @@ def _measure(track: EdgeTrack, orbit: PeriodicOrbit | None, settings: EdgeSettin
         orbit,
         exponent,
         error,
-        orbit.mean_distance if orbit is not None else track.mean_distance(since),
+        mean,
         *lifetime,
         reached,
+        has_crossing,
         found.returns if found is not None else np.zeros((0, 2 * model.blocks)),
         track.duration,
     )
+
+
+def _leads_back(track: EdgeTrack, pair: tuple[ChainState, ChainState], duration: float, mean: float) -> bool:
+    """Return whether the boundary between two states leads to the set on which a track has settled, by its ⟨J⟩.
+
+    A trajectory on a chaotic saddle may settle on any of its orbits.
+    """
+    first, second = pair
+    again = replace(track, first=first, second=second, pieces=[])
+    try:
+        orbit = _settle(again, duration)
+    except OrbitError:
+        return False
+    return abs(_mean_distance(again, orbit) - mean) <= MEAN_TOLERANCE * track.model.scale
+
+
+def _mean_distance(track: EdgeTrack, orbit: PeriodicOrbit | None) -> float:
+    """Return ⟨J⟩ of the orbit on which a track has settled, or along the second half of the track if there is none."""
+    return orbit.mean_distance if orbit is not None else track.mean_distance(_second_half(track))
 
 
 def _exponents(growth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -280,15 +297,15 @@ def _exponents(growth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return mean[order], error[order]
 
 
-def _kind(orbit: PeriodicOrbit | None, exponent: np.ndarray, error: np.ndarray, reached: np.ndarray) -> MotionKind:
+def _kind(orbit: PeriodicOrbit | None, exponent: np.ndarray, error: np.ndarray, has_crossing: bool) -> MotionKind:
     """Return the kind of motion on a boundary.
 
     One positive exponent is that across the boundary, so the others decide. A trajectory on a fractal boundary that
-    does not settle on an orbit moves on a chaotic saddle, even if no other exponent is positive.
+    settles on neither an orbit nor a torus moves on a chaotic saddle, even if no other exponent is positive.
     """
     if orbit is not None:
         return MotionKind.SYNCHRONIZED if orbit.symmetry == Symmetry.SYNCHRONIZED else MotionKind.PERIODIC
-    if (reached > 0).all(axis=0).any():
+    if has_crossing and not is_zero_exponent(exponent[2:], error[2:], MOTION).all():
         return MotionKind.CHAOTIC
     return motion_from_period(0, math.nan, math.inf, exponent[1:], error[1:], MOTION).kind
 
@@ -298,44 +315,3 @@ def _symmetry(model: Model, found: Returns | None) -> Symmetry:
         return Symmetry.ASYMMETRIC
     reach = max(SEARCH.resolution * model.scale, SPACINGS * found.spacing)
     return Symmetry.SYMMETRIC if is_near(found.mirror_returns, found.returns, reach) else Symmetry.ASYMMETRIC
-
-
-class _DisplacedStates:
-    """States displaced from a set on a boundary to either side, and the attractors that they reach."""
-
-    def __init__(self, track: EdgeTrack, since: int, settings: EdgeSettings) -> None:
-        self.track, self.since, self.samples = track, since, settings.samples
-        self.generator = np.random.default_rng(settings.seed)
-
-    def counts(self) -> np.ndarray:
-        """Return the number of states that reach each attractor, shape (2, attractors).
-
-        The logarithm of the displacements is uniform, so that they cover all of the unstable manifold.
-        """
-        low, high = np.log(DISPLACEMENTS)
-        counts = []
-        for side in (-1.0, 1.0):
-            labels, _ = self._label(side * np.exp(self.generator.uniform(low, high, self.samples)))
-            counts.append(np.bincount(labels[labels != UNDETERMINED], minlength=len(self.track.attractors)))
-        return np.array(counts)
-
-    def lifetime(self) -> tuple[float, float]:
-        """Return the mean time for which uniformly displaced states stay, and its error.
-
-        It is that of the exponential tail of the times at which labels are certain: the last quarter of each side.
-        Beyond the median alone it would be up to a quarter too long.
-        """
-        left = []
-        for side in (-1.0, 1.0):
-            labels, times = self._label(side * DISPLACEMENTS[1] * self.generator.random(self.samples))
-            late = np.sort(times[labels != UNDETERMINED])
-            late = late[3 * len(late) // 4 :]
-            left.append(late[1:] - late[:1])
-        tail = np.concatenate(left)
-        return float(tail.mean()), float(tail.mean()) / math.sqrt(len(tail))
-
-    def _label(self, amount: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        states = self.track.displace(self.since, amount, self.generator)
-        limit = DISPLACED_SHARE * self.track.time_limit
-        labels, times, _ = label_arrays(self.track.model, self.track.attractors, *states, limit)
-        return labels, times

@@ -80,6 +80,27 @@ class _Piece:
     direction: np.ndarray
 
 
+@dataclass(frozen=True, eq=False)
+class Lines:
+    """Lines across a boundary: states on it, and unit vectors to the second side, both of shape (n, 2 blocks)."""
+
+    place: np.ndarray
+    direction: np.ndarray
+
+    def __getitem__(self, chosen: np.ndarray) -> Lines:
+        return Lines(self.place[chosen], self.direction[chosen])
+
+    def displace(self, amount: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return states displaced along the lines, as positions, velocities and stuck blocks, shape (n, blocks).
+
+        amount : displacements, positive towards the second side, for v = 0.1 in the chain's own units, shape (n,)
+        """
+        position, velocity = np.split(self.place + amount[:, None] * self.direction, 2, axis=1)
+        # A displacement does not reverse a slip.
+        slip = np.sign(np.split(self.place, 2, axis=1)[1])
+        return position, np.where(velocity * slip > 0.0, velocity, 0.0), slip == 0.0
+
+
 @dataclass(eq=False)
 class EdgeTrack:
     """A trajectory on the boundary of a basin, as far as it has been followed.
@@ -148,24 +169,10 @@ class EdgeTrack:
         """Return the growth rates of perturbations in each step from piece `since` on, shape (steps, vectors)."""
         return np.concatenate([piece.growth for piece in self.pieces[since:]]) / self.step
 
-    def displace(
-        self, since: int, amount: np.ndarray, generator: np.random.Generator
-    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return states displaced from the boundary, as positions, velocities and stuck blocks, shape (n, blocks).
-
-        amount : displacements, positive towards the second side, for v = 0.1 in the chain's own units, shape (n,)
-
-        They are displaced from random points of the trajectory from piece `since` on, in the direction in which the two
-        sides separate.
-        """
-        place = np.concatenate([piece.place for piece in self.pieces[since:]])
-        direction = np.concatenate([piece.direction for piece in self.pieces[since:]])
-        chosen = generator.integers(len(place), size=len(amount))
-        position, velocity = np.split(place[chosen] + amount[:, None] * direction[chosen], 2, axis=1)
-        stuck = place[chosen, self.model.blocks :] == 0.0
-        # A displacement does not reverse a slip.
-        slip = np.sign(place[chosen, self.model.blocks :])
-        return position, np.where(velocity * slip > 0.0, velocity, 0.0), stuck
+    def lines(self, since: int) -> Lines:
+        """Return lines across the boundary from the states of the trajectory from piece `since` on."""
+        kept = self.pieces[since:]
+        return Lines(*(np.concatenate([getattr(piece, name) for piece in kept]) for name in ("place", "direction")))
 
     @cached_property
     def _scale(self) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, pairwise
 
@@ -10,7 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from burridge_knopoff.attractors.stored_returns import KnownAttractors
-from burridge_knopoff.basins.edge_state import EdgeState, edge_state
+from burridge_knopoff.basins.edge_state import MEAN_TOLERANCE, EdgeState, edge_state
 from burridge_knopoff.basins.settings import EdgeSettings
 from burridge_knopoff.continuation.followed_orbits import FOLLOWING, LEAST_A, SAME_PERIOD
 from burridge_knopoff.model.model import ChainState, Model
@@ -22,9 +22,6 @@ from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.periodic_orbits.return_map import mirror_order
-
-# Difference of ⟨J⟩, for v = 0.1, up to which two edge states of one kind between the same branches count as one.
-MEAN_TOLERANCE = 1e-3
 
 # Time for which chaos near a crisis is followed to measure how close it comes to a saddle.
 APPROACH = 100_000.0
@@ -76,33 +73,54 @@ class Approach:
     size: float = np.nan
 
 
-def edges_at(known: KnownAttractors, settings: EdgeSettings, time_limit: float) -> list[Edge]:
-    """Return the edge states between all pairs of branches, and of mirror images, at one a.
+def basin_pairs(known: KnownAttractors) -> list[tuple[int, int]]:
+    """Return the pairs of attractors at one a, by their indices, between which boundaries are followed.
 
-    Transient chaos is not an attractor. A boundary that is lost is left out, and the reason is printed.
+    These are all pairs of branches, and of mirror images. Transient chaos is not an attractor. Between two mirror pairs
+    one boundary of each kind suffices.
     """
-    lasting = [k for k, one in enumerate(known.attractors) if one.motion.kind != MotionKind.TRANSIENT_CHAOS]
+    branch, side = known.branch, known.side
+    return [
+        (first, second)
+        for first, second in combinations(_lasting(known), 2)
+        if side[first] >= 0 and (side[second] >= 0 or branch[first] == branch[second])
+    ]
+
+
+def _lasting(known: KnownAttractors) -> list[int]:
+    return [k for k, item in enumerate(known.attractors) if item.motion.kind != MotionKind.TRANSIENT_CHAOS]
+
+
+def edge_between(
+    known: KnownAttractors, pair: tuple[int, int], settings: EdgeSettings, time_limit: float
+) -> Edge | None:
+    """Return the edge state between two attractors, given by their indices.
+
+    If the boundary is lost, None is returned and the reason printed.
+    """
+    lasting = _lasting(known)
     places = {index: k for k, index in enumerate(lasting)}
-    attractors = [replace(one, partner=places[one.partner]) for one in (known.attractors[k] for k in lasting)]
-    branch, side = known.branch[lasting], known.side[lasting]
-    found: list[Edge] = []
-    for first, second in combinations(range(len(attractors)), 2):
-        # Between two mirror pairs one boundary of each kind suffices.
-        if side[first] < 0 or (side[second] < 0 and branch[first] != branch[second]):
-            continue
-        one, other = (attractors[k].motion.state() for k in (first, second))
-        try:
-            state = edge_state(known.model, one, other, attractors, settings, time_limit=time_limit)
-        except ValueError as error:
-            print(f"{known.model.law.name}, branches {branch[first]} and {branch[second]}: {error}")
-            continue
-        reached = np.zeros((2, len(known.attractors)), dtype=int)
-        reached[:, lasting] = state.reached_count
-        largest = state.reached_count.argmax(axis=1)
-        edge = Edge(state, reached, branch[largest], side[largest])
-        if not any(edge.is_same(other) for other in found):
-            found.append(edge)
-    return found
+    attractors = [replace(known.attractors[k], partner=places[known.attractors[k].partner]) for k in lasting]
+    one, other = (known.attractors[k].motion.state() for k in pair)
+    try:
+        state = edge_state(known.model, one, other, attractors, settings, time_limit=time_limit)
+    except ValueError as error:
+        first, second = known.branch[list(pair)]
+        print(f"{known.model.law.name}, branches {first} and {second}: {error}")
+        return None
+    reached = np.zeros((2, len(known.attractors)), dtype=int)
+    reached[:, lasting] = state.reached_count
+    largest = np.array(lasting)[state.reached_count.argmax(axis=1)]
+    return Edge(state, reached, known.branch[largest], known.side[largest])
+
+
+def distinct_edges(edges: Iterable[Edge | None]) -> list[Edge]:
+    """Return different edge states at one a, each once."""
+    distinct: list[Edge] = []
+    for edge in edges:
+        if edge is not None and not any(edge.is_same(other) for other in distinct):
+            distinct.append(edge)
+    return distinct
 
 
 def continue_edges(edges: Sequence[Edge], largest: float) -> tuple[list[list[BranchOrbit]], list[int]]:

@@ -20,9 +20,9 @@ INPUTS = ("attractors", "edges")
 CAPTION = """\
 The motion on which trajectories on the boundaries between basins settle, versus a for each law. Top: ⟨J⟩ of the
 attractors (grey) and of the edge states, in the colour of their kind of motion. Diamonds: the unstable manifold crosses
-the boundary, which is therefore fractal; circles: no displaced state shows a crossing. Lines: saddle orbits, continued
-in a for as long as they have one unstable direction. Bottom: the mean time for which trajectories stay near an edge
-state.
+the stable one, and the boundary is therefore fractal; circles: no displaced state shows a crossing. Lines: saddle
+orbits, continued in a for as long as they have one unstable direction. Bottom: the mean time for which trajectories
+stay near an edge state.
 """
 
 SADDLE_COLOR = "#555555"
@@ -94,7 +94,7 @@ def _handles(edges: xarray.Dataset) -> list[Line2D]:
             for kind in shown
         ),
         *(
-            Line2D([], [], marker=MARKS[crossing][0], markersize=4.0, color="white", label=words, **style)
+            Line2D([], [], marker=MARKS[crossing][0], markersize=4.0, color="0.6", label=words, **style)
             for crossing, words in ((0, "no crossing seen"), (1, "crossing: fractal boundary"))
             if crossing in edges["has_crossing"].values
         ),

@@ -13,7 +13,15 @@ import xarray
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.stored_returns import known_attractors
 from burridge_knopoff.basins.settings import EdgeSettings
-from burridge_knopoff.continuation.edges import Approach, Edge, approach, continue_edges, edges_at
+from burridge_knopoff.continuation.edges import (
+    Approach,
+    Edge,
+    approach,
+    basin_pairs,
+    continue_edges,
+    distinct_edges,
+    edge_between,
+)
 from burridge_knopoff.dataset.columns import Column, column_values
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
@@ -27,6 +35,7 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.study.model import model_of
+from burridge_knopoff.summaries.edges_in_words import edges_in_words
 
 TITLE = "Edge states on the boundaries between basins"
 
@@ -64,7 +73,8 @@ EDGES = {
     "has_crossing": Column(
         _EDGE,
         "i1",
-        "whether states displaced to one side reach an attractor of the other side: the boundary is then fractal",
+        "whether states displaced to one side cross the boundary and its part there leads back to this edge state: the "
+        "boundary is then fractal",
         YES_OR_NO,
         value=lambda one: one.edge.state.has_crossing,
     ),
@@ -198,11 +208,15 @@ def make_of_law(
     returns = given.summary("returns")
     known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
     limit = SearchSettings(**attractors).label_limit
-    with parallel_map(given.cores) as each:
-        at = each(
-            "edge states", partial(edges_at, settings=EdgeSettings(**edges), time_limit=limit), known, span=(0.0, 0.95)
-        )
-    states = [edge for one in at for edge in one]
+    pairs = [(at, pair) for at in known for pair in basin_pairs(at)]
+    between = partial(edge_between, settings=EdgeSettings(**edges), time_limit=limit)
+    with parallel_map(given.cores) as apply:
+        made = apply("edge states", between, [at for at, _ in pairs], [pair for _, pair in pairs], span=(0.0, 0.95))
+    states = [
+        edge
+        for at in known
+        for edge in distinct_edges(edge for (other, _), edge in zip(pairs, made, strict=True) if other is at)
+    ]
     segments, numbers = continue_edges(states, float(found["a"].max()))
     crises = [
         (a, branch, _approach(known[0].model.at(near), refined, states, branch))
@@ -215,7 +229,7 @@ def make_of_law(
 def make(given: Given) -> tuple[xarray.Dataset, str]:
     """Return the edge states under all laws, and their description as text."""
     dataset = merge(given.summaries("parts"))
-    return dataset, digest(dataset)
+    return dataset, edges_in_words(dataset)
 
 
 def _crises(bifurcations: xarray.Dataset) -> list[tuple[float, int, float]]:
@@ -296,33 +310,6 @@ def _dataset(names: Sequence[str], values: Mapping[str, np.ndarray], head: Mappi
     }
     about = {"laws": " ".join(names), **head, "history": "snakemake, from attractors.nc and the equations of motion"}
     return summary(TITLE, VARIABLES, values, coordinates, about, module=__name__)
-
-
-def digest(dataset: xarray.Dataset) -> str:
-    """Return a line for each edge state: the branches it separates, its motion, and whether the boundary is crossed."""
-    lines = [f"{described}." for described in map(partial(_edge_text, dataset), range(dataset.sizes["edge"]))]
-    return "\n".join(lines or ["No edge state was found."]) + "\n"
-
-
-def _edge_text(dataset: xarray.Dataset, number: int) -> str:
-    one = {name: dataset[name].values[number] for name in ("law", *EDGES)}
-    branches = " and ".join(_branch_label(*pair) for pair in zip(one["branch"], one["side"], strict=True))
-    motion = f"{Symmetry(one['symmetry']).name.lower()}, {MotionKind(one['kind']).words}"
-    if np.isfinite(one["period"]):
-        stops = " ".join(map(str, one["stops"]))
-        motion += f", period {one['period']:.6g}, stops {stops}, multiplier {one['multiplier']:.4g}"
-    states = int(np.maximum(one["reached_count"], 0).sum())
-    boundary = (
-        "fractal boundary" if one["has_crossing"] else f"no crossing of the boundary by {states} displaced states"
-    )
-    return (
-        f"{one['law']}, a = {one['a']:g}, between branches {branches}: {motion}; lifetime {one['lifetime']:.4g}; "
-        f"{boundary}"
-    )
-
-
-def _branch_label(branch: int, side: int) -> str:
-    return f"{branch}{'+' if side > 0 else '-' if side < 0 else ''}"
 
 
 def saddle_at_crisis(edges: xarray.Dataset, law: str, a: float) -> dict[str, Any]:

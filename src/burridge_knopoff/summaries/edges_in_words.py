@@ -1,0 +1,60 @@
+"""The edge states of a study in words."""
+
+from __future__ import annotations
+
+from collections import Counter
+from functools import partial
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.periodic_orbits.symmetry import Symmetry
+from burridge_knopoff.study.formatting import format_count
+
+
+def edges_in_words(dataset: xarray.Dataset) -> str:
+    """Return the edge states in words: those of each law counted, then a line for each.
+
+    A line tells the branches that an edge state separates, its motion, and whether the boundary is crossed.
+    """
+    laws = [_law_text(law, dataset.isel(edge=dataset["law"].values == law)) for law in dataset.attrs["laws"].split()]
+    return "".join(f"{line}.\n" for line in (*laws, *map(partial(_edge_text, dataset), range(dataset.sizes["edge"]))))
+
+
+def _law_text(law: str, dataset: xarray.Dataset) -> str:
+    """Return the number of edge states under one law by their kinds, and the values of a with a fractal boundary."""
+    if not dataset.sizes["edge"]:
+        return f"{law}: no edge state was found"
+    a, kinds = dataset["a"].values, Counter(dataset["kind"].values.tolist())
+    counted = ", ".join(f"{count} {MotionKind(kind).words}" for kind, count in sorted(kinds.items()))
+    fractal = np.unique(a[dataset["has_crossing"].values == 1])
+    where = (
+        f"fractal boundary at a = {', '.join(f'{value:g}' for value in fractal)}" if len(fractal) else "none fractal"
+    )
+    states, values = format_count(len(a), "edge state"), format_count(len(np.unique(a)), "value")
+    return f"{law}: {states} at {values} of a: {counted}; {where}"
+
+
+def _edge_text(dataset: xarray.Dataset, number: int) -> str:
+    one = {name: item.values[number] for name, item in dataset.variables.items() if item.dims[:1] == ("edge",)}
+    branches = " and ".join(_branch_label(*pair) for pair in zip(one["branch"], one["side"], strict=True))
+    motion = f"{Symmetry(one['symmetry']).name.lower()}, {MotionKind(one['kind']).words}"
+    if np.isfinite(one["period"]):
+        stops = " ".join(map(str, one["stops"]))
+        motion += f", period {one['period']:.6g}, stops {stops}, multiplier {one['multiplier']:.4g}"
+    reached = np.maximum(one["reached_count"], 0)
+    if one["has_crossing"]:
+        boundary = "fractal boundary"
+    elif (reached > 0).all(axis=0).any():
+        boundary = "displaced states cross another part of the boundary"
+    else:
+        boundary = f"no crossing of the boundary by {reached.sum()} displaced states"
+    return (
+        f"{one['law']}, a = {one['a']:g}, between branches {branches}: {motion}; lifetime {one['lifetime']:.4g}; "
+        f"{boundary}"
+    )
+
+
+def _branch_label(branch: int, side: int) -> str:
+    return f"{branch}{'+' if side > 0 else '-' if side < 0 else ''}"
