@@ -18,7 +18,7 @@ from burridge_knopoff import (
     law_of,
 )
 from burridge_knopoff.attractors.stored_returns import KnownAttractors
-from burridge_knopoff.continuation.edges import approach, basin_pairs, continue_edges, distinct_edges, edge_between
+from burridge_knopoff.continuation.edges import approach, attractor_pairs, continue_edges, distinct_edges, edge_between
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
@@ -43,7 +43,7 @@ def known_at(a, branches, samples=40):
 
 def edges_at(known):
     """Return the edge states between all pairs of attractors."""
-    return distinct_edges(edge_between(known, pair, SETTINGS, 20_000) for pair in basin_pairs(known))
+    return distinct_edges(edge_between(known, pair, SETTINGS, 20_000) for pair in attractor_pairs(known))
 
 
 @pytest.fixture(scope="module")

@@ -46,7 +46,7 @@ class DisplacedStates:
         for side in (-1.0, 1.0):
             amount = side * np.exp(self.generator.uniform(low, high, self.samples))
             lines = self._lines()
-            labels, _ = self._label(lines, amount)
+            labels, _ = self._label(lines.displace(amount))
             counts.append(np.bincount(labels[labels != UNDETERMINED], minlength=len(self.track.attractors)))
             is_beyond = (labels != UNDETERMINED) & (self.track.on_first_side[labels] != (side < 0.0))
             self._beyond += [(lines[np.array([k])], amount[k]) for k in np.flatnonzero(is_beyond)]
@@ -59,14 +59,13 @@ class DisplacedStates:
         other side. States without such a neighbour are left out.
         """
         for line, amount in self._beyond:
-            lines = line[np.zeros(len(NEARBY), dtype=int)]
-            labels, _ = self._label(lines, amount * NEARBY)
+            arrays = line[np.zeros(len(NEARBY), dtype=int)].displace(amount * NEARBY)
+            labels, _ = self._label(arrays)
             place = len(NEARBY) // 2
             ours = self.track.on_first_side[labels]
             others = np.flatnonzero((labels != UNDETERMINED) & (ours != ours[place]))
             if len(others):
                 nearest = others[np.argmin(np.abs(others - place))]
-                arrays = lines.displace(amount * NEARBY)
                 one, other = (ChainState(*(array[k] for array in arrays)) for k in (place, nearest))
                 yield (one, other) if ours[place] else (other, one)
 
@@ -79,7 +78,7 @@ class DisplacedStates:
         left = []
         for side in (-1.0, 1.0):
             amount = side * DISPLACEMENTS[1] * self.generator.random(self.samples)
-            labels, times = self._label(self._lines(), amount)
+            labels, times = self._label(self._lines().displace(amount))
             late = np.sort(times[labels != UNDETERMINED])
             late = late[3 * len(late) // 4 :]
             left.append(late[1:] - late[:1])
@@ -91,7 +90,8 @@ class DisplacedStates:
         lines = self.track.lines(self.since)
         return lines[self.generator.integers(len(lines.place), size=self.samples)]
 
-    def _label(self, lines: Lines, amount: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _label(self, states: tuple[np.ndarray, np.ndarray, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+        """Return the labels of states, as `Lines.displace` returns them, and the times at which they are certain."""
         limit = DISPLACED_SHARE * self.track.time_limit
-        labels, times, _ = label_arrays(self.track.model, self.track.attractors, *lines.displace(amount), limit)
+        labels, times, _ = label_arrays(self.track.model, self.track.attractors, *states, limit)
         return labels, times

@@ -2,9 +2,9 @@
 
 Almost every trajectory on a boundary tends to a set that attracts within the boundary and repels across it: a saddle
 orbit, a saddle torus or a chaotic saddle. The boundary is the stable manifold of this set. The unstable manifold leads
-to the attractors on both sides. If a branch of it returns to the boundary, it crosses the stable manifold, which then
-has the structure of a Cantor set (S. Smale), and the boundary is fractal. Otherwise the boundary is smooth near this
-set.
+to the attractors on both sides. If a branch of it returns to the stable manifold, it crosses it, and the stable
+manifold has the structure of a Cantor set (S. Smale): the boundary is fractal. If it crosses another part of the
+boundary only, layers accumulate near this set. Otherwise the boundary is smooth there.
 
 References: J. D. Skufca, J. A. Yorke and B. Eckhardt, Phys. Rev. Lett. 96 (2006) 174101; C. Grebogi, E. Ott and
 J. A. Yorke, Physica D 7 (1983) 181-200; S. W. McDonald, C. Grebogi, E. Ott and J. A. Yorke, Physica D 17 (1985) 125.
@@ -57,7 +57,8 @@ RADIUS_SHARES = (1.0, 0.1, 0.01, 1e-3)
 # States beyond the boundary from which the boundary is followed, until one leads back to the edge state.
 CROSSINGS = 5
 
-#: Difference of ⟨J⟩, for v = 0.1, up to which two edge states of one kind between the same branches count as one.
+#: Difference of ⟨J⟩, for v = 0.1, up to which two edge states of one kind between the same branches count as one, and
+#: up to which a boundary leads back to an edge state.
 MEAN_TOLERANCE = 1e-3
 
 # Number of batches of the trajectory whose scatter gives the errors of the exponents.
@@ -80,7 +81,8 @@ class EdgeState:
         the reciprocal of the largest exponent, for a chaotic saddle the mean over displaced states
     reached_count : number of displaced states that reach each attractor, a row for each side, shape (2, attractors)
     has_crossing : whether states displaced to one side reach an attractor of the other, across a part of the boundary
-        that leads back to this set: its unstable manifold crosses its stable one, and the boundary is fractal
+        that leads back to this set, for one of the first few such states: its unstable manifold crosses its stable one,
+        and the boundary is fractal
     returns : states of the settled trajectory at stops of one block, shape (n, 2 blocks)
     duration : time for which the boundary was followed
 

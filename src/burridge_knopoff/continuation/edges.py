@@ -73,7 +73,7 @@ class Approach:
     size: float = np.nan
 
 
-def basin_pairs(known: KnownAttractors) -> list[tuple[int, int]]:
+def attractor_pairs(known: KnownAttractors) -> list[tuple[int, int]]:
     """Return the pairs of attractors at one a, by their indices, between which boundaries are followed.
 
     These are all pairs of branches, and of mirror images. Transient chaos is not an attractor. Between two mirror pairs

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain, islice
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from burridge_knopoff.continuation.edges import (
     Approach,
     Edge,
     approach,
-    basin_pairs,
+    attractor_pairs,
     continue_edges,
     distinct_edges,
     edge_between,
@@ -208,15 +209,12 @@ def make_of_law(
     returns = given.summary("returns")
     known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
     limit = SearchSettings(**attractors).label_limit
-    pairs = [(at, pair) for at in known for pair in basin_pairs(at)]
+    pairs = [attractor_pairs(at) for at in known]
+    owners = [at for at, of_a in zip(known, pairs, strict=True) for _ in of_a]
     between = partial(edge_between, settings=EdgeSettings(**edges), time_limit=limit)
     with parallel_map(given.cores) as apply:
-        made = apply("edge states", between, [at for at, _ in pairs], [pair for _, pair in pairs], span=(0.0, 0.95))
-    states = [
-        edge
-        for at in known
-        for edge in distinct_edges(edge for (other, _), edge in zip(pairs, made, strict=True) if other is at)
-    ]
+        made = iter(apply("edge states", between, owners, list(chain.from_iterable(pairs)), span=(0.0, 0.95)))
+    states = [edge for of_a in pairs for edge in distinct_edges(islice(made, len(of_a)))]
     segments, numbers = continue_edges(states, float(found["a"].max()))
     crises = [
         (a, branch, _approach(known[0].model.at(near), refined, states, branch))
