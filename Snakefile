@@ -37,3 +37,9 @@ rule all:
 
 onstart:
     prepare_results()
+
+
+onsuccess:
+    write_sums(
+        Path(RESULTS), [*(name for name, *_ in run_files(JOBS)), *JOBS.all_files]
+    )

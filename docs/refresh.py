@@ -125,7 +125,7 @@ def copy_figure(source: Path) -> None:
 def published_ledger(results: Path) -> dict[str, Any]:
     """Return the ledger of a study without the fingerprint of the sources, which change more often than verdicts do."""
     ledger: dict[str, Any] = json.loads((results / "summary/claims.json").read_text(encoding="utf-8"))
-    del ledger["source_fingerprint"]
+    del ledger["source_fingerprint"], ledger["origin"]
     return ledger
 
 

@@ -17,7 +17,8 @@ SETTINGS = {
     "g++-aarch64-linux-gnu, qemu-user)",
     "BK_CHROMIUM": "path of a Chromium (Debian: chromium)",
     "BK_CLANG": "path of clang++, or of several, with a colon between them (Debian: clang)",
-    "BK_NCDUMP": "path of ncdump (Debian: netcdf-bin)",
+    "BK_H5REPACK": "path of h5repack (Debian: hdf5-tools)",
+    "BK_NCDUMP": "path of ncdump, with nccopy in its folder (Debian: netcdf-bin)",
     "BK_SLURM": "folders of the programs of Slurm and munge, for example /usr/bin:/usr/sbin (Debian: slurm-wlm, munge)",
 }
 

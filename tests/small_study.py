@@ -11,11 +11,14 @@ from typing import Any
 import pytest
 import xarray
 
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.jobs.run import do_job
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.study import Study
@@ -115,13 +118,19 @@ class SmallStudy:
         """Do the jobs of some stages or rules, after those that they wait for."""
         jobs = self.jobs
         for rule in jobs.existing.values():
+            asked = rule.name in names or (rule.stage in names and rule.requested)
             # The points of chunks are run one by one here.
-            for job in rule.each if {rule.stage, rule.name} & {*names} and rule.name != "chunk" else ():
+            for job in rule.each if asked and rule.name != "chunk" else ():
                 if rule.make:
                     inputs = {
-                        name: [self.folder / file for file in files] for name, files in jobs.inputs(rule, job).items()
+                        name: [self.folder / file for file in files]
+                        for name, files in jobs.inputs(rule, job).items()
+                        if not name.endswith("points")
                     }
-                    do_job(jobs.abouts(rule, job), self.folder, inputs, job)
+                    given = Given(self.folder, inputs, job, rule.sources[-1], figures=rule.figures)
+                    outputs = [self.folder / form.format(**job) for form in rule.files]
+                    fingerprint = source_fingerprint(*rule.sources)
+                    do_job(rule.make, rule.name, fingerprint, jobs.config(rule, job), given, outputs)
                 else:
                     path = self.folder / rule.files[0].format(**job)
                     write_point(run(*self.study.run_of(**job)), path)
@@ -137,5 +146,6 @@ SUMMARIES = (
 def run_study(folder: Path, config: Mapping[str, Any], names: Collection[str] = ("points",)) -> SmallStudy:
     """Run some stages or rules of a study, by default the points, into a folder."""
     small = SmallStudy(load_study(config, f"{config['study']}.yaml"), folder)
+    write_study_record(folder, small.study.config, small.study.parameters, "small.yaml", dict(config), "")
     small.do(names)
     return small

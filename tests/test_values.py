@@ -10,9 +10,10 @@ from hypothesis import strategies as st
 
 from burridge_knopoff import FormulaLaw
 from burridge_knopoff.laws import LAWS
+from burridge_knopoff.messages import LONGEST, cut, format_value, full_key, refusal, suggestion
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
-from burridge_knopoff.values import LONGEST, cut, format_value, full_key, number_in, refusal, suggestion
+from burridge_knopoff.values import number_in
 from tests.fuzzing import examples
 from tests.refused import refused
 

@@ -11,7 +11,7 @@ from .catalogue.slope import fit_slope as fit_slope
 from .catalogue.stability import EventExponents as EventExponents
 from .catalogue.stability import event_exponents as event_exponents
 from .catalogue.stability import event_multipliers as event_multipliers
-from .dataset.variables import decode_flags as decode_flags
+from .dataset.decoding import decode_flags as decode_flags
 from .laws import FormulaLaw as FormulaLaw
 from .laws import Law as Law
 from .laws import law_of as law_of

@@ -14,14 +14,19 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
+from burridge_knopoff.messages import format_value
 from burridge_knopoff.provenance.files import check_folder, display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
-from burridge_knopoff.values import format_value
 from snakemake_logger_plugin_study.targets import rule_with_wildcards, unknown_target
 
 #: The names of keys that Snakemake accepts.
 _NAME = re.compile(r"[a-zA-Z_][\w-]*\w")
 
+#: Options with which Snakemake runs no jobs of the study.
+_RUNS_NONE = re.compile(
+    "--(touch|summary|detailed-summary|report(=|$)|list|rulegraph|filegraph|d3dag|dag$|lint|unlock|archive|cleanup|delete|"
+    "print-compilation|containerize|export|generate|draft|edit)|-n?tn?$|-[SDl]$"
+)
 #: Messages of Snakemake without an event or a field that identifies them, and the text that replaces them.
 _REPLACEMENTS = (
     # Written with every few jobs.
@@ -92,6 +97,11 @@ def is_nothing_to_do(message: str) -> bool:
 def is_touch(arguments: Sequence[str]) -> bool:
     """Return whether a command line has --touch, which Snakemake forgets in a dry run."""
     return any(re.fullmatch("--touch|-n?tn?", argument) for argument in arguments)
+
+
+def runs_jobs(arguments: Sequence[str]) -> bool:
+    """Return whether a command line, except for a dry run, runs jobs, rather than printing or marking something."""
+    return not any(_RUNS_NONE.match(argument) for argument in arguments)
 
 
 def _several_files_error(paths: Sequence[str | Path]) -> str:

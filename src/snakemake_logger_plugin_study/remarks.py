@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
+from burridge_knopoff.jobs.changes import changes
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.stages import STAGES
 from burridge_knopoff.study.study import all_points
+
+#: Most rules that a line names.
+MOST_RULES = 3
 
 
 def replaced_results(jobs: Jobs, results: str, config_file: str, overrides: Mapping[str, Any]) -> list[str]:
@@ -58,4 +63,13 @@ def kept_stages(jobs: Jobs) -> list[str]:
     return [
         f"without {', '.join(study.omitted_stages)}: the study still contains {', '.join(kept)} (only the figures of "
         "the paper: snakemake curves)"
+    ]
+
+
+def changed_params(jobs: Jobs, results: str) -> list[str]:
+    """Return a line for each change of the config, or of the sources, since the files of some rules were made."""
+    return [
+        f"changed: {change} ({', '.join(rules[:MOST_RULES])}{f' and {len(rules) - MOST_RULES} more' * more})"
+        for change, rules in changes(jobs, Path(results)).items()
+        for more in [len(rules) > MOST_RULES]
     ]

@@ -11,10 +11,10 @@ from pathlib import Path, PurePosixPath
 
 from burridge_knopoff.jobs.jobs import Jobs, files_of
 from burridge_knopoff.jobs.rule import Rule
+from burridge_knopoff.messages import suggestion
 from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
-from burridge_knopoff.values import suggestion
 from snakemake_logger_plugin_study.plan import PLAN
 
 #: Largest number of values that a message lists.

@@ -10,7 +10,7 @@ import pytest
 from burridge_knopoff import Chain, InitialState, Model, edge_state, find_attractors, label_states, law_of
 from burridge_knopoff.attractors.attractor import attractors_of
 from burridge_knopoff.continuation.law_homotopy import follow_law
-from burridge_knopoff.values import format_value
+from burridge_knopoff.messages import format_value
 from tests.motion.stand_in import stand_in
 from tests.refused import refused
 

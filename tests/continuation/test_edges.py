@@ -143,6 +143,6 @@ def test_the_crisis_names_the_saddle(merging, tmp_path: Path):
     part = bifurcations._dataset(["linearized"], values, block, {"v": 0.1, "contact": "one_sided"})
     write_summary(part, tmp_path / "linearized.nc")
     given = Given(tmp_path, {"parts": [tmp_path / "linearized.nc"], "edges": [tmp_path / "edges.nc"]})
-    dataset, text = bifurcations.make(given)
+    dataset, text = bifurcations.make(given, {})
     assert dataset["saddle_stops"].values.tolist() == [[1, 1, 1]]
     assert "the attractor meets the saddle orbit of period 5.85325, stops 1 1 1 on its basin boundary" in text

@@ -2,15 +2,18 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import netCDF4
 import numpy as np
 import pytest
 import xarray
 
+from burridge_knopoff.dataset import summary as summary_module
 from burridge_knopoff.dataset.summary import axes, open_summary, summary, write_summary
 from burridge_knopoff.dataset.variables import KEYWORDS, SIMULATED, Variable, flag
-from burridge_knopoff.provenance.seal import BadFile
+from burridge_knopoff.provenance.bad_file import BadFile
+from burridge_knopoff.provenance.checksum import add_checksum
 
 VARIABLES = {
     "value": Variable(("law", "a"), "f8", "a value"),
@@ -86,16 +89,10 @@ def test_a_file_is_opened_again_while_it_is_open(tmp_path):
     assert (run.returncode, run.stdout) == (0, "linearized nonlinear\n"), run.stderr
 
 
-def test_files_that_are_not_present_summaries_are_refused(tmp_path):
-    other, bare = make_summary(source_module="other"), make_summary()
-    other.attrs["source_fingerprint"] = "0" * 16
-    write_summary(other, tmp_path / "other.nc")
-    with pytest.raises(
-        BadFile, match=r"other.nc: was made by other sources \(fingerprint of burridge_knopoff.*lyapunov: 0{16}, now"
-    ):
-        open_summary(tmp_path / "other.nc")
+def test_files_that_are_no_summaries_are_refused(tmp_path):
+    bare = make_summary()
     bare.to_netcdf(tmp_path / "bare.nc")
-    for name, reason in (("bare.nc", "is truncated, or was not written by this program"), ("missing.nc", "is missing")):
+    for name, reason in (("bare.nc", "has no checksum"), ("missing.nc", "is missing")):
         with pytest.raises(BadFile, match=reason):
             open_summary(tmp_path / name)
     write_summary(make_summary(), tmp_path / "cut.nc")
@@ -103,3 +100,20 @@ def test_files_that_are_not_present_summaries_are_refused(tmp_path):
     with pytest.raises(BadFile, match=r"cut\.nc"):
         open_summary(tmp_path / "cut.nc")
     assert xarray.load_dataset(tmp_path / "bare.nc").sizes == {"law": 2, "a": 64}
+
+
+def test_a_summary_whose_temporary_file_is_removed_is_written_again(tmp_path, monkeypatch):
+    """As by another process that writes the same summary."""
+    removed = []
+
+    def remove_once(file):
+        if not removed:
+            removed.append(file.filepath())
+            Path(file.filepath()).unlink()
+        add_checksum(file)
+
+    monkeypatch.setattr(summary_module, "add_checksum", remove_once)
+    write_summary(make_summary(), tmp_path / "one.nc")
+    assert removed
+    assert open_summary(tmp_path / "one.nc").equals(make_summary())
+    assert [path.name for path in tmp_path.iterdir()] == ["one.nc"]

@@ -1,5 +1,7 @@
 """Which jobs are out of date after an edit of the sources or of a key of the config."""
 
+import json
+
 import pytest
 import yaml
 
@@ -29,10 +31,25 @@ def jobs_of(changes):
     return Jobs(load_study(changed_config(changes), "tiny.yaml"))
 
 
+def dependencies(jobs, rule, job, known):
+    """Return all on which the files of a job depend: params and sources, its own and those of what it reads."""
+    place = rule.name, *job.values()
+    if place not in known:
+        made_by = jobs.all_files
+        read = [made_by[file] for files in jobs.inputs(rule, job).values() for file in files if file in made_by]
+        runs = [jobs.command(name) for name in jobs.point_files(rule, job)]
+        runs += [jobs.command(name) for names in jobs.inputs(rule, job).values() for name in names]
+        own = jobs.config(rule, job) if rule.make else jobs.command(rule.files[0].format(**job))
+        inputs = [dependencies(jobs, *other, known) for other in read]
+        known[place] = json.dumps([own, rule.figures, rule.sources, runs, inputs])
+    return known[place]
+
+
 def origins(jobs):
-    """Return {(rule, files of a job): what these files depend on}."""
+    """Return {(rule, files of a job): all on which these files depend}."""
+    known = {}
     return {
-        (rule.name, tuple(form.format(**job) for form in rule.files)): jobs.expected(rule.files[0].format(**job))
+        (rule.name, tuple(form.format(**job) for form in rule.files)): dependencies(jobs, rule, job, known)
         for rule in jobs.existing.values()
         for job in rule.each
         if rule.requested
@@ -109,7 +126,7 @@ RESHAPED = [
         {"simulate": 4, "attractors_of_law": 2, "orbits": 1, "equilibrium": 1},
         ("two_blocks",),
     ),
-    ("chains.blocks", [2, 3], {"watch_chain": 2, "claims": 1, "report": 1}, ("two_blocks", "simulate")),
+    ("chains.blocks", [2, 3], {"watch_chain": 2, "report": 1}, ("two_blocks", "simulate", "claims")),
     ("solvers.a", [0.08], {"simulate_solver": 6, "solvers": 1}, ("simulate", "mean_distance", "attractors_of_law")),
     ("solvers.step", 0.02, {"simulate_solver": 4, "solvers": 1}, ("simulate", "mean_distance", "attractors_of_law")),
     ("basins.tiles", 3, {"basin_tile": 9, "basins": 1}, ("basin_pairs", "attractors_of_law", "simulate")),

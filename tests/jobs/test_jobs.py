@@ -95,7 +95,7 @@ def test_every_function_accepts_the_arguments_of_its_rule():
     for rule in made:
         room, _, function = rule.make.partition(":")
         make = getattr(import_module(f"burridge_knopoff.{room}"), function)
-        inspect.signature(make).bind("given", **rule.params(rule.each[0]))
+        inspect.signature(make).bind("given", {})
         for module in rule.modules:
             import_module(f"burridge_knopoff.{module}")
 
@@ -114,24 +114,14 @@ def test_files_have_one_rule_and_jobs_wait_only_for_their_inputs():
     assert points == [f"points/{law}/{state}/a0.0800.nc" for law in ("linearized", "nonlinear") for state in STATES]
 
 
-@pytest.mark.parametrize("name", sorted(name for name, (rule, _) in ALL.all_files.items() if rule.stage != "figures"))
-def test_a_file_is_recognized_by_its_name(name):
-    rule, job = ALL.all_files[name]
-    about = ALL.expected(name)
-    assert about == ALL.abouts(rule, job)[name]
-    assert (about["file"], about["make"]) == (name, rule.make)
-
-
 def test_points_are_identified_by_their_commands():
-    about = ALL.expected("points/linearized/minus/a0.0500.nc")
-    assert about["command"] == ALL.study.command("linearized", "minus", "0.0500")
-    again = ALL.expected("solvers/map/linearized/minus/a0.0800.nc")
-    assert "--solver map" in again["command"]
+    assert ALL.command("points/linearized/minus/a0.0500.nc") == ALL.study.command("linearized", "minus", "0.0500")
+    assert "--solver map" in ALL.command("solvers/map/linearized/minus/a0.0800.nc")
     for name in ("points/linearized/minus/a0.0600.nc", "points/other/minus/a0.0500.nc", "summary/mine.nc"):
-        assert ALL.expected(name) is None
+        assert not ALL.command(name)
 
 
-#: {change of a config: rules whose files it changes}; all after them change too.
+#: {change of a config: rules whose params it changes}
 CHANGES = [
     ({"basins": {"pixels": 8}}, {"basin_tile", "basins"}),
     ({"basins": {"pairs": 8}}, {"basin_pairs", "basins"}),
@@ -142,19 +132,16 @@ CHANGES = [
     ({"catalogue": {"window": 100.0}}, {"catalogue_of_run"}),
     ({"chains": {"blocks": [2, 3], "time_limit": 500}}, {"watch_chain"}),
     ({"solvers": {"step": 0.002}}, {"solvers"}),
+    ({"edges": {"samples": 50}}, {"edges_of_law"}),
 ]
 
 
 @pytest.mark.parametrize(("change", "rules"), CHANGES)
-def test_a_key_changes_what_depends_on_it_and_nothing_else(change, rules):
+def test_a_key_is_a_param_of_what_uses_it_and_of_nothing_else(change, rules):
     other = jobs_of(**{"catalogue": {}, "edges": {}, "chains": {"blocks": [2, 3]}, **change})
-    changed = {rule.name for name, (rule, _) in ALL.all_files.items() if ALL.expected(name) != other.expected(name)}
-    after, more = set(), set(rules)
-    while more:
-        after |= more
-        files = {file for name in after for file in ALL.rules[name].files}
-        more = {rule.name for rule in ALL.existing.values() for read in rule.inputs.values() if files & {*read}} - after
-    assert changed == (after | {"report"})
+    made = ALL.all_files.values()
+    changed = {rule.name for rule, job in made if ALL.config(rule, job) != other.config(other.rules[rule.name], job)}
+    assert changed == rules | {"report"}
 
 
 def test_a_rule_whose_input_no_rule_makes_is_refused(monkeypatch):

@@ -12,7 +12,7 @@ import xarray
 from burridge_knopoff import open_study
 from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.show.result import open_result
-from tests.seals import resealed
+from tests.forged import forge
 from tests.small_study import run_study
 
 CONFIG = {"study": "few", "a": [0.05, 0.08, 0.22], "initial": {"minus": {}, "plus": {}}}
@@ -127,14 +127,22 @@ def test_numbers_over_the_grid(results):
     ("name", "damage", "reason"),
     [
         (POINT, lambda path: path.write_bytes(b""), "is empty"),
-        (POINT, lambda path: path.write_bytes(b"no netCDF"), "is truncated, or was not written by this program"),
-        (POINT, lambda path: shutil.copy(path.with_name("a0.0800.nc"), path), "is another run: --a 0.08 instead of"),
+        (POINT, lambda path: path.write_bytes(b"no netCDF"), "is damaged, or not a netCDF file"),
+        (
+            POINT,
+            lambda path: shutil.copy(path.with_name("a0.0800.nc"), path),
+            "is another run: a: got 0.08, expected 0.05",
+        ),
         (SUMMARY, lambda path: path.write_bytes(b""), "is empty"),
-        (SUMMARY, lambda path: resealed(path, file=None), f"is another file: got nothing, expected {SUMMARY}"),
         (
             SUMMARY,
-            lambda path: resealed(path, config={"synchronization_threshold": 0.3}),
-            "was made with config.synchronization_threshold: got 0.3, expected 1e-06",
+            lambda path: forge(path, file="summary/x.nc"),
+            f"is another file: got summary/x.nc, expected {SUMMARY}",
+        ),
+        (
+            SUMMARY,
+            lambda path: forge(path, params='{"synchronization_threshold": 0.3}'),
+            "was made with synchronization_threshold: got 0.3, expected 1e-06",
         ),
     ],
 )

@@ -116,7 +116,9 @@ def test_jobs_that_ctrl_c_has_ended(log):
 
 
 def test_a_run_that_failed():
-    error = "Traceback (most recent call last):\n  raise\nburridge_knopoff.provenance.seal.BadFile: x.nc: is empty\n\n"
+    error = (
+        "Traceback (most recent call last):\n  raise\nburridge_knopoff.provenance.bad_file.BadFile: x.nc: is empty\n\n"
+    )
     Path("mean.log").write_text(error)
     failed = [("mean", FAILED, [], ["mean.log"]), *((f"simulate a={n}", FAILED, [], [f"{n}.log"]) for n in range(10))]
     assert lines(*failed, *[("", WAITING, [], [])] * 6, *done("x.nc"), seconds=5.0) == [
@@ -144,7 +146,7 @@ def test_bad_files_are_remade_by_one_command_and_by_no_other():
     head = "snakemake -c2 --configfile study.yaml -R"
     for n in range(7):
         file = f"results/paper/points/{n % 2}.nc"
-        error = f"burridge_knopoff.provenance.seal.BadFile: {file}: is empty; remake it: {head} {file}"
+        error = f"burridge_knopoff.provenance.bad_file.BadFile: {file}: is empty; remake it: {head} {file}"
         Path(f"{n}.log").write_text(f"Traceback (most recent call last):\n  raise\n{error}\n")
     assert lines(*((f"job {n}", FAILED, [], [f"{n}.log"]) for n in range(7))) == [
         "study paper: stopped after 1 s: 7 jobs failed",

@@ -7,7 +7,8 @@ import pytest
 
 from burridge_knopoff import Symmetry
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
-from burridge_knopoff.periodic_orbits.floquet import Multipliers, critical_values
+from burridge_knopoff.periodic_orbits.critical_values import critical_values
+from burridge_knopoff.periodic_orbits.floquet import Multipliers
 
 NONE = np.array([])
 

@@ -3,9 +3,9 @@
 import numpy as np
 
 from burridge_knopoff import Chain, ChainState, Model, law_of
+from burridge_knopoff.model.own_units import a_unit
 from burridge_knopoff.periodic_orbits.flow import rate
 from burridge_knopoff.periodic_orbits.grazing_distances import _derivatives
-from burridge_knopoff.periodic_orbits.synchronized_bifurcations import a_unit
 
 LIGHT = Model(Chain(3, coupling=2.0, threshold=(1.0, 1.5, 0.7)), law_of("nonlinear", 0.3), 0.2)
 HEAVY = Model(Chain(3, coupling=2.0, threshold=(1.0, 1.5, 0.7), mass=(1.0, 4.0, 0.5)), LIGHT.law, 0.2)

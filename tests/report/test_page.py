@@ -101,13 +101,14 @@ def test_a_study_that_judges_nothing_does_not_open_with_the_paper(poor):
     assert "arXiv" not in page.whole_text
 
 
-def test_a_summary_of_other_sources_is_refused(poor):
+def test_a_summary_of_other_sources_is_shown(poor):
+    """With its fingerprint."""
     found = xarray.load_dataset(poor.sources.summaries["orbits"]).assign_attrs(source_fingerprint="another")
-    path = poor.folder / "old" / "phases.nc"
+    path = poor.folder / "old" / "orbits.nc"
     path.parent.mkdir(exist_ok=True)
     write_summary(found, path)
-    with pytest.raises(ValueError, match=r"phases\.nc: was made by other sources"):
-        render(poor.study, replace(poor.sources, summaries={**poor.sources.summaries, "phases": path}))
+    page = render(poor.study, replace(poor.sources, summaries={**poor.sources.summaries, "orbits": path}))
+    assert "<td><code>another</code></td>" in page
 
 
 def test_a_failed_run_has_its_file_and_command(page):

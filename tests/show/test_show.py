@@ -1,5 +1,6 @@
 """`bk show`: points and summaries in words and as pictures; other files are refused in a line."""
 
+import json
 import shlex
 import shutil
 import subprocess
@@ -14,9 +15,8 @@ from matplotlib.image import imread
 from burridge_knopoff import simulate
 from burridge_knopoff.cli import READER_GONE, main
 from burridge_knopoff.dataset.point import write_point
-from burridge_knopoff.dataset.summary import write_summary
+from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.provenance.seal import digest_of
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.show.summary import digest, summary_lines
 from burridge_knopoff.study.formatting import to_ascii, with_error
@@ -164,12 +164,11 @@ def test_a_part_of_a_summary_is_described_and_not_drawn(small_studies, tmp_path,
 
 def test_summaries_of_two_studies_are_not_drawn_together(small_studies, tmp_path, capsys):
     found = small_studies("paper").found
-    attractors = {"file": "summary/attractors.nc", "seed": 1, "inputs": {}}
-    write_summary(found["attractors"], tmp_path / "attractors.nc", attractors)
-    for about, code in ((attractors, 0), ({**attractors, "seed": 2}, 2)):
-        made_from = {"summary/attractors.nc": digest_of(about)}
-        basins = {"file": "summary/basins.nc", "inputs": made_from}
-        write_summary(found["basins"], tmp_path / "basins.nc", basins)
+    write_summary(found["attractors"], tmp_path / "attractors.nc")
+    checksum = open_summary(tmp_path / "attractors.nc").attrs["checksum"]
+    for other, code in ((checksum, 0), ("0" * 64, 2)):
+        inputs = json.dumps({"summary/attractors.nc": other})
+        write_summary(found["basins"].assign_attrs(inputs=inputs), tmp_path / "basins.nc")
         said = shown(capsys, tmp_path / "basins.nc", "--plot", tmp_path / "basins.png", code=code)
         assert (f"but {tmp_path / 'attractors.nc'} is of another study" in said) == (code == 2)
 
@@ -177,17 +176,19 @@ def test_summaries_of_two_studies_are_not_drawn_together(small_studies, tmp_path
 def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path, capsys):
     whole, inside = point.read_bytes(), study / "summary/cut.nc"
     (tmp_path / "cut.nc").write_bytes(whole[:-100])
-    (tmp_path / "changed.nc").write_bytes(whole.replace(b"1.0", b"1.1", 1))
+    (tmp_path / "changed.nc").write_bytes(whole)
+    with netCDF4.Dataset(tmp_path / "changed.nc", "a") as dataset:
+        dataset["distance"][0] = 0.5
     (tmp_path / "text.nc").write_text("text\n")
     with netCDF4.Dataset(tmp_path / "foreign.nc", "w") as dataset:
         dataset.title = "of another program"
     inside.write_bytes(whole[:-100])
     root = study.parents[1]
     for path, words in (
-        (tmp_path / "cut.nc", "is truncated, or was not written by this program"),
+        (tmp_path / "cut.nc", "is damaged, or not a netCDF file"),
         (tmp_path / "changed.nc", "was changed after it was written"),
-        (tmp_path / "text.nc", "not written by this program"),
-        (tmp_path / "foreign.nc", "not written by this program"),
+        (tmp_path / "text.nc", "not a netCDF file"),
+        (tmp_path / "foreign.nc", "has no checksum"),
         (tmp_path / "none.nc", "is missing"),
         (study, "got a folder, expected a netCDF file (.nc); of the results of a study, read summary/claims.md, "),
         (study / "study.json", "got a .json file, expected a netCDF file (.nc); "),

@@ -11,7 +11,6 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from burridge_knopoff.model.chain import Chain
-from burridge_knopoff.provenance.difference import difference
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.study import all_points
 from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
@@ -154,24 +153,6 @@ def test_a_command_leaves_defaults_out():
     command = load(chain=chain, v=0.2).command("nonlinear", "plus", "0.0800")
     options = "--coupling 1.0,2.0,3.0 --pulling 0.5 --threshold 1.0,2.0,1.0 --ends ring --v 0.2"
     assert f"--a 0.08 {options} --initial plus" in command
-
-
-def test_where_commands_differ():
-    study = load(laws={**FOUR_LAWS, "other": {"formula": "1/(1 + a*u)**n", "n": 2}}, a=[0.05, 0.08])
-    commands = {law: study.command(law, "plus", "0.0800") for law in study.laws}
-    assert difference(commands["cl"], commands["cl"].replace("=0.01", "=0.02")) == (
-        "--number sigma 0.01 instead of --number sigma 0.02"
-    )
-    assert difference(commands["other"], commands["cl"]) == (
-        "--formula 1/(1 + a*u)**n instead of --formula (1 - sigma)/(1 + a*u/(1 - sigma))"
-    )
-    assert difference(commands["soft"], commands["soft"].replace(" --law-name soft", "")) == (
-        "--law-name soft instead of no --law-name"
-    )
-    assert difference(commands["nonlinear"], study.command("nonlinear", "plus", "0.0500")) == (
-        "--a 0.08 instead of --a 0.05"
-    )
-    assert difference("snakemake", "bk simulate") == "`snakemake` instead of `bk simulate`"
 
 
 def test_command_of_another_solver():

@@ -82,13 +82,6 @@ def test_fractions_count_outcomes(files):
     assert "blocks" not in point.attrs
 
 
-def test_files_of_different_settings_are_not_merged(files):
-    path = files[0].with_name("other.nc")
-    write_summary(chain_file(3, 200.0), path)
-    with pytest.raises(ValueError, match=r"other\.nc: made with settings that differ"):
-        chains.merge([open_summary(name) for name in (*files, path)])
-
-
 def test_two_blocks_agree_where_both_synchronize(compared):
     """Each other law is compared with the first one."""
     assert compared["other_law"].values.tolist() == ["nonlinear", "exponential"]

@@ -7,7 +7,7 @@ from burridge_knopoff import Settings, simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.figures import solvers as figure
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.provenance.seal import BadFile
+from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.summaries.points import Grid
 from burridge_knopoff.summaries.solvers import summarize
 from tests.grids import PAPER_MODELS
@@ -37,7 +37,7 @@ def files(tmp_path, runs):
     grid = Grid(tmp_path / "points", {"plus": PAPER_STATES["plus"]}, {"a": A}, own, PAPER_MODELS)
     others = {}
     for solver in ("series", "rk4"):
-        known = {law: settings(solver) for law, solvers in SOLVERS.items() if solver in solvers[1:]}
+        known = {law: Settings(**settings(solver)) for law, solvers in SOLVERS.items() if solver in solvers[1:]}
         others[solver] = grid.copy_with(tmp_path / "solvers" / solver, known)
     return grid, others
 
@@ -78,7 +78,7 @@ def test_a_file_of_another_solver_is_refused(files):
     grid, others = files
     series, rk4 = (others[solver].path("linearized", "plus", "0.0800") for solver in ("series", "rk4"))
     series.write_bytes(rk4.read_bytes())
-    reason = r"series/linearized/plus/a0\.0800\.nc: is another run: --solver rk4 instead of no --solver"
+    reason = r"series/linearized/plus/a0\.0800\.nc: is another run: solver: got rk4, expected nothing"
     with pytest.raises(BadFile, match=reason):
         summarize(grid, others, 0.01)
 

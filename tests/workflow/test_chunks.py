@@ -88,7 +88,7 @@ def test_no_point_is_computed_twice(copy):
 def test_only_a_missing_or_damaged_point_is_recomputed(copy, damage):
     before, content = times(copy), (copy.folder / POINT).read_bytes()
     damage(copy.folder / POINT)
-    assert f"{MARK}: a point of this chunk is missing or was changed: it is recreated" in copy.ok()
+    assert f"{MARK}: a point of this chunk is missing or was changed: it is made again" in copy.ok()
     after = times(copy)
     assert {name for name in before if after[name] != before[name]} == {POINT}
     assert (copy.folder / POINT).read_bytes() == content

@@ -1,12 +1,13 @@
 """Damaged and foreign files: the job that reads one stops with its name, the reason and the command to recreate it."""
 
-import hashlib
+import json
 import os
 import re
 import shlex
 import shutil
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import pytest
 import yaml
@@ -15,12 +16,12 @@ from burridge_knopoff import open_study, simulate
 from burridge_knopoff.check.study import check_study
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary
-from burridge_knopoff.provenance.seal import BadFile, read_sealed
+from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.summaries import agreement, bifurcation_diagram, lyapunov, mean_distance, solvers, stick_slip
 from burridge_knopoff.summaries.points import Grid, open_point
-from tests.seals import resealed
+from tests.forged import forge
 from tests.workflow.conftest import TINY, copied
 from tests.workflow.faults import check_end, failures, remedies
 from tests.workflow.snakemake import run_snakemake
@@ -46,20 +47,15 @@ def noise_inside(content: bytes) -> bytes:
     return content[:middle] + noise(64) + content[middle + 64 :]
 
 
-def other_version(content: bytes) -> bytes:
-    """Return the content with a seal as an earlier version wrote it."""
-    sealed = remove_seal(content) + b"\n#seal 0123456789abcdef completed "
-    return sealed + hashlib.sha256(sealed).hexdigest().encode() + b"\n"
-
-
-def remove_seal(content: bytes) -> bytes:
-    """Return the bare netCDF file, as a version without seals, or another program, writes it."""
-    return content[: content.rindex(b"\n#seal ")]
-
-
 def rewrite(path: Path, change) -> None:
     """Replace the bytes of a file by the result of `change`."""
     path.write_bytes(change(path.read_bytes()))
+
+
+def edit(path: Path, change) -> None:
+    """Change an open netCDF file."""
+    with netCDF4.Dataset(path, "a") as file:
+        change(file)
 
 
 def other_run(path: Path, a: float = 0.2, initial: str = "minus", **settings) -> None:
@@ -71,20 +67,19 @@ def other_run(path: Path, a: float = 0.2, initial: str = "minus", **settings) ->
 DAMAGES = {
     "missing": (Path.unlink, "is missing"),
     "emptied": (lambda path: path.write_bytes(b""), "is empty"),
-    "truncated": (lambda path: rewrite(path, cut), "truncated"),
-    "last byte lost": (lambda path: rewrite(path, lambda content: content[:-1]), "truncated"),
-    "noise": (lambda path: path.write_bytes(noise(5000)), "not written by this program"),
-    "noise inside": (lambda path: rewrite(path, noise_inside), "was changed"),
-    "appended": (lambda path: rewrite(path, lambda content: content + b"\0"), "not written by this program"),
-    "unsealed": (lambda path: rewrite(path, remove_seal), "not written by this program"),
-    "a text": (lambda path: path.write_text("no netCDF file\n"), "not written by this program"),
+    "truncated": (lambda path: rewrite(path, cut), "is damaged"),
+    "last byte lost": (lambda path: rewrite(path, lambda content: content[:-1]), "is damaged"),
+    "noise": (lambda path: path.write_bytes(noise(5000)), "not a netCDF file"),
+    "noise inside": (lambda path: rewrite(path, noise_inside), "is damaged"),
+    "no checksum": (lambda path: edit(path, lambda file: file.delncattr("checksum")), "has no checksum"),
+    "an edited number": (lambda path: edit(path, lambda file: file["distance"].__setitem__(0, 0.5)), "was changed"),
+    "an edited attribute": (lambda path: edit(path, lambda file: file.setncattr("solver", "rk4")), "was changed"),
+    "a text": (lambda path: path.write_text("no netCDF file\n"), "not a netCDF file"),
     "another a": (lambda path: shutil.copy(path.with_name("a0.2200.nc"), path), "another run"),
     "another initial state": (lambda path: shutil.copy(path.parents[1] / "plus" / path.name, path), "another run"),
     "another law": (lambda path: shutil.copy(path.parents[2] / "nonlinear/minus" / path.name, path), "another run"),
     "another study": (lambda path: other_run(path, transient=90), "another run"),
     "another a by a hair": (lambda path: other_run(path, a=float(np.nextafter(0.2, 1))), "another run"),
-    "another version": (lambda path: rewrite(path, other_version), "another version"),
-    "other sources": (lambda path: resealed(path, sources="0123456789abcdef"), "other sources"),
 }
 
 
@@ -194,10 +189,7 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
 )
 def test_a_bad_file_with_its_old_modification_time(copy, path, rule):
     """Snakemake does not notice the change; the next job that reads the file does."""
-    target = copy.folder / "results" / "tiny" / path
-    times = target.stat()
-    rewrite(target, noise_inside)
-    os.utime(target, ns=(times.st_atime_ns, times.st_mtime_ns))
+    as_old_as(copy.folder / "results" / "tiny" / path, lambda path: edit(path, lambda file: file.delncattr("title")))
     run = copy.run("-R", rule, "--until", rule)
     assert run.returncode == 1
     reasons = failures(run.stderr).values()
@@ -231,18 +223,21 @@ def as_old_as(path: Path, change) -> None:
 def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
     """The files are of another tile, another law, a study with another v, and one of another shape, all in one run."""
     results = copy.folder / "results" / "tiny"
-    points = read_sealed(results / "summary/mean_distance.nc")[1]["points"]
+    params = json.loads(open_summary(results / "summary/mean_distance.nc").attrs["params"])
     foreign = {
         "basins/linearized/a0.0800/tile1.nc": lambda path: shutil.copy(path.with_name("tile0.nc"), path),
         "bifurcations/nonlinear.nc": lambda path: shutil.copy(path.with_name("linearized.nc"), path),
-        "summary/mean_distance.nc": lambda path: resealed(path, points={**points, "v": 0.3}),
+        "summary/mean_distance.nc": lambda path: forge(path, params=json.dumps({**params, "v": 0.3})),
         "summary/stick_slip.nc": lambda path: shutil.copy(
             limited.folder / "results/limits/summary/stick_slip.nc", path
         ),
     }
     for name, change in foreign.items():
         as_old_as(results / name, change)
-    assert {str(finding.path.relative_to(results)) for finding in check_study(results).findings} == foreign.keys()
+    reasons = {str(finding.path.relative_to(results)): finding.reason for finding in check_study(results).findings}
+    assert foreign.keys() <= reasons.keys()
+    # The others were made from the right ones.
+    assert all(reason.startswith("was made from ") for name, reason in reasons.items() if name not in foreign)
     rules = ("basins", "bifurcations", "figure_mean_distance", "figure_stick_slip")
     run = copy.run("-R", *rules, "--until", *rules)
     assert run.returncode == 1
@@ -251,7 +246,7 @@ def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
     tiles = "got basins/linearized/a0.0800/tile0.nc, expected basins/linearized/a0.0800/tile1.nc"
     assert f"tile1.nc: is another file: {tiles}" in output
     assert "nonlinear.nc: is another file: got bifurcations/linearized.nc, expected bifurcations/nonlinear.nc" in output
-    assert "mean_distance.nc: was made with points.v: got 0.3, expected 0.1" in output
+    assert "mean_distance.nc: was made with v: got 0.3, expected 0.1" in output
     assert re.search(r"stick_slip\.nc: was made with \S+: got .*, expected .*", output)
     remade(copy, run.stderr)
     assert not check_study(results).findings
@@ -259,33 +254,38 @@ def test_another_file_of_the_same_kind_is_refused(copy, finished, limited):
 
 
 @pytest.mark.slow
-def test_damaged_texts_and_pictures_are_recreated(copy, finished):
-    """No job needs to read them; the next run checks them itself."""
+def test_damaged_and_lost_texts_and_pictures_are_made_again(copy, finished):
+    """No job needs to read them; the next run checks them itself, and keeps what it replaces."""
     results = copy.folder / "results" / "tiny"
     for name in ("summary/claims.json", "figures/orbits.png"):
         as_old_as(results / name, lambda path: rewrite(path, cut))
     as_old_as(results / "summary/agreement.txt", lambda path: path.write_bytes(b""))
+    (results / "figures/orbits.pdf").unlink()
     output = copy.ok("-n")
-    assert "results/tiny/summary/agreement.txt: is empty: it would be recreated" in output
+    assert "results/tiny/summary/agreement.txt: is empty: it would be made again" in output
     # These do not run the study either.
     for flag in ("--rulegraph", "--summary"):
         copy.ok(flag)
     found = {finding.path.name: finding.kind for finding in check_study(results).findings}
-    assert found == dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt")
+    kinds = {**dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt"), "orbits.pdf": "missing"}
+    assert kinds.items() <= found.items()
     output = copy.ok()
-    assert "results/tiny/figures/orbits.png: was changed after it was written: it is recreated" in output
+    assert "results/tiny/figures/orbits.png: was changed after it was written: it is made again" in output
+    assert (results / "figures/orbits.png.damaged").read_bytes() == cut((results / "figures/orbits.png").read_bytes())
+    for path in results.rglob("*.damaged"):
+        path.unlink()
     assert not check_study(results).findings
     check_end(copy, finished)
 
 
-def test_touching_files_does_not_hide_changes(copy):
-    """A file records what it was made from, even if Snakemake's own records call it up to date."""
+def test_touching_files_does_not_hide_other_params(copy):
+    """A file records with what it was made, even if Snakemake's own records call it up to date."""
     results = copy.folder / "results" / "tiny"
     copy.config.write_text(f"{TINY}synchronization_threshold: 0.2\n")
     copy.ok("--touch")
     assert "Nothing to be done" in copy.ok("-n")
     reasons = {finding.path.name: finding.reason for finding in check_study(results).findings}
-    words = "was made with config.synchronization_threshold: got 1e-06, expected 0.2"
+    words = "was made with synchronization_threshold: got 1e-06, expected 0.2"
     assert reasons["mean_distance.nc"] == reasons["lyapunov.nc"] == words
     # The files that need the key and their descendants, and no others.
     assert reasons.keys() >= {"linearized.nc", "tile0.nc", "two_blocks.nc", "claims.json", "report.html", "basins.png"}
@@ -294,6 +294,29 @@ def test_touching_files_does_not_hide_changes(copy):
         open_result(results / "summary/mean_distance.nc")
     with pytest.raises(BadFile):
         open_study(results)["summary/mean_distance"]
+    # Nor does a job read one.
+    run = copy.run("-R", "figure_mean_distance", "--until", "figure_mean_distance")
+    assert list(failures(run.stderr).values()) == [f"results/tiny/summary/mean_distance.nc: {words}"]
     copy.config.write_text(TINY)
+    copy.ok("figure_mean_distance", "--touch")
     copy.ok("--touch")
-    assert not check_study(results).findings
+    # The job that failed has removed its figure, from which the report was made.
+    reasons = [
+        str(finding)
+        for finding in check_study(results).findings
+        if finding.kind == "stale" and "was made with" in finding.reason
+    ]
+    assert not reasons
+
+
+def test_files_of_other_sources_are_read_after_touching(copy):
+    """Only `bk check` reports them: whoever touches them has decided that the edit changes no number."""
+    results = copy.folder / "results" / "tiny"
+    forge(results / "summary/orbits.nc", rule_fingerprint="0" * 16)
+    forge(results / POINT, source_fingerprint="0" * 16)
+    copy.ok("--touch")
+    reasons = {finding.path.name: finding.reason for finding in check_study(results).findings}
+    assert reasons["orbits.nc"].startswith("was made by other sources (fingerprint 0000000000000000, now ")
+    assert reasons["a0.2000.nc"].startswith("was made by other sources")
+    assert open_result(results / POINT)
+    copy.ok("-R", "mean_distance", "figure_equilibrium", "--until", "mean_distance", "figure_equilibrium")

@@ -2,6 +2,7 @@
 
 import csv
 import re
+import subprocess
 
 import numpy as np
 import pytest
@@ -38,9 +39,16 @@ def test_exactly_the_points_of_the_config_exist(results):
         for initial in ("minus", "plus")
         for a in NAMES
     )
-    hidden = {path.name for path in results.rglob(".*")}
-    sealed = {path.name for folder in ("summary", "figures", ".") for path in (results / folder).glob("*.*")}
-    assert hidden <= {f".{name}.seal" for name in sealed}
+    assert not list(results.rglob(".*"))
+
+
+def test_sha256sum_checks_a_finished_study(results):
+    """Without this program."""
+    subprocess.run(["sha256sum", "--check", "--strict", "--quiet", "SHA256SUMS"], cwd=results, check=True)
+    listed = {line.split("  ")[1] for line in (results / "SHA256SUMS").read_text().splitlines()}
+    others = {"SHA256SUMS", "study.json"}
+    files = {path.relative_to(results).as_posix() for path in results.rglob("*") if path.is_file()} - others
+    assert listed == {name for name in files if not name.startswith(("logs/", "benchmarks/"))}
 
 
 def test_every_file_has_its_metadata(results):

@@ -188,7 +188,7 @@ def test_touch_makes_no_file_and_says_so(tmp_path, limited):
     files = {path for path in results.rglob("*") if path.is_file() and path.suffix != ".log"}
     output = study.ok("--touch")
     assert {path for path in results.rglob("*") if path.is_file() and path.suffix != ".log"} == files
-    assert re.search(r"figures/equilibrium\.png: .*: it would be recreated$", output, re.MULTILINE)
+    assert re.search(r"figures/equilibrium\.png: .*: it would be made again$", output, re.MULTILINE)
     assert not re.search(r"^files made|^study limits: done|cannot be read|not touched because", output, re.MULTILINE)
     assert re.search(r"^study limits: \d+ files marked as up to date, whatever their content; bk check", output, re.M)
     left = "not made yet, and left so: summary 1, figures 2, report.html; run the command without --touch"

@@ -134,11 +134,36 @@ def change_config(edited, changes):
     return edited
 
 
-@pytest.mark.parametrize("changes", [{"v": 0.11}, {"basins.pixels": 9}, {"a": [0.05, 0.06, 0.08, 0.2, 0.22]}])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"v": 0.11},
+        {"basins.pixels": 9},
+        {"a": [0.05, 0.06, 0.08, 0.2, 0.22]},
+        # Snakemake compares the values of params without their names: two values are swapped, and one set to the other.
+        {"transient": 200, "window": 100},
+        {"transient": 200},
+        {"motion.zero_exponent": 1e-3, "motion.chaotic_exponent": 5e-4},
+        {"motion.zero_exponent": 1e-3},
+    ],
+)
 def test_a_key_invalidates_only_what_uses_it(edited, changes):
     found = jobs(change_config(edited, changes).ok("-n", "-p"))
     del found["all"]
     assert found == counts(jobs_of(changes))
+
+
+def test_the_reason_of_a_rerun_is_a_line(edited):
+    """One for each change, and Snakemake's own reason is short enough to be read."""
+    study = change_config(edited, {"basins.pixels": 9, "laws.nonlinear.law": "nonlinear"})
+    lines = study.run("-n").stderr.splitlines()
+    assert "changed: basins.pixels: 8 → 9 (basin_tile, basins)" in lines
+    (line,) = (line for line in lines if line.startswith("changed: laws.nonlinear.law: nothing → nonlinear ("))
+    assert line.endswith(" more)")
+    run = study.run("-n", "-p", "--quiet", "host")
+    reasons = [line for line in (run.stdout + run.stderr).splitlines() if "Params have changed" in line]
+    assert reasons
+    assert max(map(len, reasons)) < 3000
 
 
 def test_maps_of_basins_do_not_invalidate_the_verdicts(edited):

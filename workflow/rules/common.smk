@@ -11,15 +11,15 @@ def points_of(rule):
     return lambda wildcards: paths(JOBS.point_files(rule, dict(wildcards)))
 
 
-def abouts(rule):
-    """Return a params function: what the files of a job must be made from, which their seals record."""
+def config_of(rule):
+    """Return a params function: the keys of the config on which the files of a job depend, with their values."""
 
     def of_job(wildcards):
         if rule.name not in JOBS.existing:
             names = [rule.name, *paths(form.format(**wildcards) for form in rule.files)]
             asked = [name for name in names if name in workflow.dag_settings.targets]
             raise ConfigError(f"{[*asked, rule.name][0]}: not made: {rule.refusal}")
-        return JOBS.abouts(rule, dict(wildcards))
+        return JOBS.config(rule, dict(wildcards))
 
     return of_job
 
@@ -50,9 +50,19 @@ def resources_of(rule):
 
 
 def further_params(rule):
-    """Return the params that do not affect the content of the files of a rule."""
+    """Return what a job uses besides the keys of the config."""
     words = "".join(shown.words for shown in rule.shown.values())
-    params = {"caption": lambda wildcards: words.format(**wildcards)} if words else {}
-    return (
-        {**params, "arguments": CONFIG_ARGUMENTS} if rule.name == "report" else params
-    )
+    params = {
+        "rule": rule.name,
+        "make": rule.make,
+        "module": rule.sources[-1],
+        "results": lambda wildcards: RESULTS,
+        "sources": source_fingerprint(*rule.sources),
+    }
+    if words:
+        params["caption"] = lambda wildcards: words.format(**wildcards)
+    if rule.figures:
+        params["figures"] = rule.figures
+    if rule.name == "report":
+        params["arguments"] = CONFIG_ARGUMENTS
+    return params

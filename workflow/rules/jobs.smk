@@ -35,7 +35,7 @@ for declared in JOBS.defined.values():
             **resources_of(declared),
         params:
             **further_params(declared),
-            abouts=abouts(declared),
+            config=config_of(declared),
         message:
             snakemake_message(declared.message)
         script:

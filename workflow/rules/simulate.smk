@@ -75,8 +75,7 @@ if "chunk" in JOBS.existing:
             mem_mb=250,
             runtime=120,
         params:
-            folder=lambda wildcards: RESULTS,
-            points=identity(canonical_json(STUDY.points)),
+            config=JOBS.config(CHUNKS, {}),
             sources=source_fingerprint(ROOT / "workflow/scripts/chunk.py"),
         message:
             snakemake_message(CHUNKS.message)

@@ -1,6 +1,5 @@
 # The study that the config describes, and its results folder.
 import copy
-import json
 import os
 import re
 import shlex
@@ -17,6 +16,8 @@ try:
 except KernelError as error:
     sys.exit(f"{error}")
 
+from burridge_knopoff.check.leftovers import run_files
+from burridge_knopoff.check.study import is_locked
 from burridge_knopoff.claims.claim import read_claims
 from burridge_knopoff.figures.description import picture_names
 from burridge_knopoff.jobs.checked import damaged_files
@@ -28,8 +29,9 @@ from burridge_knopoff.provenance.files import (
     nearest_folder,
 )
 from burridge_knopoff.provenance.record import check_owner, write_study_record
-from burridge_knopoff.provenance.seal import canonical_json, identity
+from burridge_knopoff.provenance.keys import digest_of
 from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.sums import CHANGED, write_sums
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
 from burridge_knopoff.study.load import load_study
@@ -37,8 +39,13 @@ from burridge_knopoff.study.paths import VALUE
 from burridge_knopoff.study.remarks import remarks
 from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from snakemake_logger_plugin_study.plan import PLAN
-from snakemake_logger_plugin_study.refusal import call_error, cluster_error
+from snakemake_logger_plugin_study.refusal import (
+    call_error,
+    cluster_error,
+    runs_jobs,
+)
 from snakemake_logger_plugin_study.remarks import (
+    changed_params,
     kept_stages,
     points_of_grid,
     replaced_results,
@@ -74,8 +81,8 @@ try:
     update_config(GIVEN, OVERRIDES)
     STUDY = load_study(GIVEN, display_path(CONFIG_FILE), WRITTEN)
     RESULTS = f"results/{STUDY.name}"
-    JOBS = Jobs(STUDY)
     read_claims(picture_names({*PAPER_STATES, *STUDY.initial}))
+    JOBS = Jobs(STUDY)
     # Snakemake would report these errors with a traceback. Results may be read-only as long as no job runs.
     check_folder(os.path.abspath(".snakemake"))
     nearest_folder(RESULTS)
@@ -139,6 +146,7 @@ def print_remarks():
         *remarks(STUDY, GIVEN),
         *points_of_grid(JOBS),
         *kept_stages(JOBS),
+        *changed_params(JOBS, RESULTS),
         *replaced_results(JOBS, RESULTS, display_path(CONFIG_FILE), OVERRIDES),
     ):
         write_line(remark)
@@ -150,7 +158,7 @@ def prepare_results():
         sys.exit(error)
     # Identifies the results of the jobs to the programs that submit them.
     made_from = [source_fingerprint(*rule.sources) for rule in JOBS.existing.values()]
-    decides = identity(json.dumps([STUDY.config, made_from]))
+    decides = digest_of(STUDY.config, made_from)
     os.environ.update(BK_STUDY=f"{RESULTS} {decides}")
     print_remarks()
     try:
@@ -165,34 +173,30 @@ def prepare_results():
     PLAN.announce()
 
 
-def remove_damaged(recreates):
-    """Remove damaged files that no job reads, such as pictures, if the run recreates them."""
+def set_damaged_aside(makes_files):
+    """Set damaged texts and pictures aside, so that Snakemake finds them missing; say so if this run makes no files."""
     for path, reason in damaged_files(JOBS, Path(RESULTS)):
-        write_line(
-            f"{path}: {reason}: it {'is' if recreates else 'would be'} recreated"
-        )
-        if recreates:
+        words = "would be made again"
+        # Someone may have edited it on purpose. Otherwise it is empty, or its job was killed.
+        if makes_files and reason == CHANGED:
+            path.replace(f"{path}.damaged")
+            words = f"is made again; kept as {path.name}.damaged"
+        elif makes_files:
             path.unlink()
+            words = "is made again"
+        write_line(f"{path}: {reason}: it {words}")
 
 
-def prepared(execute):
-    """Return a function that removes damaged files before Snakemake decides which jobs to run."""
-
-    def execute_prepared(executor_plugin, *args, **kwargs):
-        # The executors that run no job.
-        remove_damaged(recreates=executor_plugin.name not in ("dryrun", "touch"))
-        # A dry run calls no hook.
-        if workflow.output_settings.dryrun:
-            print_remarks()
-        return execute(executor_plugin, *args, **kwargs)
-
-    return execute_prepared
-
-
-# Snakemake has no hook before it decides, and does not execute for --rulegraph, --summary or --report. Only in the main
-# process, not in jobs.
+# Snakemake has no hook before it decides which jobs to run. Only in the main process, not in jobs, and not while another
+# run writes these files.
 if workflow.is_main_process:
-    workflow.execute = prepared(workflow.execute)
+    if not is_locked(Path(RESULTS)):
+        set_damaged_aside(
+            runs_jobs(sys.argv[1:]) and not workflow.output_settings.dryrun
+        )
+    # A dry run calls no hook.
+    if workflow.output_settings.dryrun:
+        print_remarks()
 
 
 def paths(names):

@@ -10,15 +10,10 @@ reserve_room(sys.stderr)
 
 from pathlib import Path
 
-from burridge_knopoff.provenance.record import read_study_record
-from burridge_knopoff.provenance.seal import canonical_json, identity
+from burridge_knopoff.provenance.keys import nested
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.points import make_points
 from burridge_knopoff.study.study import Study
 
-folder = Path(snakemake.params.folder)
-record = read_study_record(folder)
-study = Study(record["config"], record["grid"])
-if identity(canonical_json(study.points)) != snakemake.params.points:
-    raise ValueError(f"{folder}: now belongs to another config, as another run has changed it; run snakemake again")
-make_points(study, chunks(study)[snakemake.wildcards.chunk], folder / "points")
+study = Study.of_keys(nested(snakemake.params.config))
+make_points(study, chunks(study)[snakemake.wildcards.chunk], Path(snakemake.output[0]).parents[1] / "points")

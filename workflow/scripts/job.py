@@ -12,14 +12,22 @@ from burridge_knopoff.provenance.files import reserve_room
 reserve_room(sys.stderr)
 logging.basicConfig(format="%(message)s")
 logging.getLogger("burridge_knopoff").setLevel(logging.INFO)
-abouts = snakemake.params.abouts
+params = snakemake.params
 # A figure is drawn quickly, and garbage collection would take a tenth of the time.
-if next(iter(abouts.values()))["make"].startswith("figures."):
+if params.make.startswith("figures."):
     gc.disable()
 
+from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.jobs.run import do_job
 
-results = Path(str(snakemake.output[0]).removesuffix(next(iter(abouts))))
-inputs = {name: list(map(Path, files)) for name, files in snakemake.input.items() if name != "points"}
-cores = snakemake.resources.get("cpus_per_task", snakemake.threads)
-do_job(abouts, results, inputs, dict(snakemake.wildcards), cores, snakemake.params.get("arguments", ()))
+given = Given(
+    results=Path(params.results),
+    # Points are checked when they are read.
+    inputs={name: list(map(Path, files)) for name, files in snakemake.input.items() if not name.endswith("points")},
+    wildcards=dict(snakemake.wildcards),
+    module=params.module,
+    cores=snakemake.resources.get("cpus_per_task", snakemake.threads),
+    arguments=params.get("arguments", ()),
+    figures=params.get("figures", ()),
+)
+do_job(params.make, params.rule, params.sources, params.config, given, snakemake.output)

@@ -16,6 +16,7 @@ from burridge_knopoff.attractors.convergence import Convergence
 from burridge_knopoff.attractors.labels import UNDETERMINED, label, label_arrays, stack_states
 from burridge_knopoff.attractors.settings import SEARCH, SearchSettings
 from burridge_knopoff.attractors.slow_set import SLOW_TIME, sample_slow_set
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.sampling import sample_initial_states
@@ -28,7 +29,7 @@ from burridge_knopoff.motion.synchronized_orbit import synchronized_orbit
 from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
-from burridge_knopoff.values import instance_of, refusal
+from burridge_knopoff.values import instance_of
 
 
 def find_attractors(

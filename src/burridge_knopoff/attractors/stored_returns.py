@@ -17,11 +17,11 @@ from burridge_knopoff.attractors.labels import UNDETERMINED
 from burridge_knopoff.attractors.table import Row, slot_coordinates
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.messages import format_value, refusal
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.motion.observables import SteadyMotion
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
-from burridge_knopoff.values import format_value, refusal
 
 _RETURN = ("section_return", "block")
 VARIABLES = {

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from burridge_knopoff.values import real_number, refusal
+from burridge_knopoff.messages import refusal
+from burridge_knopoff.values import real_number
 
 #: Width and edges of the bins of magnitudes and of logarithms of intervals.
 WIDTH = 0.5

@@ -8,12 +8,13 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from burridge_knopoff.kernel._core import Catalogue
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number, OneOf, TrueOrFalse
 from burridge_knopoff.running.runner import FIXED_STEP_SOLVERS, Runner, new_observer
 from burridge_knopoff.running.settings import SOLVERS, TIME, check_step
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
+from burridge_knopoff.values import MOST_NUMBERS, instance_of
 
 #: Largest number of events, and of slips in profiles, that a run stores.
 MOST_EVENTS = MOST_NUMBERS / 10

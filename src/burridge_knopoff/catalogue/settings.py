@@ -5,11 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.model import LOADINGS
 from burridge_knopoff.model.ranges import HUGE, Number, OneOf, TrueOrFalse
 from burridge_knopoff.running.settings import DURATION, TIME
-from burridge_knopoff.values import refusal
 
 MAGNITUDE = Number(-HUGE, HUGE)
 

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.values import real_array, real_number, refusal
+from burridge_knopoff.messages import refusal
+from burridge_knopoff.values import real_array, real_number
 
 #: Smallest number of events to which a slope is fitted.
 MIN_EVENTS = 10

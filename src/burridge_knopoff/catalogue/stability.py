@@ -9,11 +9,12 @@ import numpy as np
 
 from burridge_knopoff.catalogue.events import MOST_EVENTS, TIMES
 from burridge_knopoff.kernel._core import Catalogue, Exponents
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Whole
 from burridge_knopoff.running.runner import Runner, check_state
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.values import instance_of, refusal
+from burridge_knopoff.values import instance_of
 
 # A block at its threshold, at the start of an event, counts as stuck: relative rounding error of forces.
 THRESHOLD_TOLERANCE = 1e-9

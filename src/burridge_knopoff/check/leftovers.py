@@ -8,7 +8,6 @@ from pathlib import Path
 
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.jobs.rule import Rule, Wildcards
-from burridge_knopoff.provenance.seal import seal_path
 
 
 def leftovers(results: Path, jobs: Jobs) -> list[Path]:
@@ -60,7 +59,6 @@ def delete(results: Path, paths: list[Path]) -> None:
     """Delete files of a study and the folders that become empty; raises OSError if a file cannot be deleted."""
     for path in paths:
         path.unlink(missing_ok=True)
-        seal_path(path).unlink(missing_ok=True)
         for folder in path.parents:
             if folder == results or any(folder.iterdir()):
                 break

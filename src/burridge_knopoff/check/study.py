@@ -5,25 +5,30 @@ from __future__ import annotations
 import os
 import shlex
 from collections import Counter
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import netCDF4
+
 from burridge_knopoff.check.leftovers import leftovers, missing_files, run_files
-from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.jobs.checked import check_file
 from burridge_knopoff.jobs.jobs import Jobs
+from burridge_knopoff.provenance.bad_file import BadFile
+from burridge_knopoff.provenance.origin import Origin
 from burridge_knopoff.provenance.record import NAME, remake_command
-from burridge_knopoff.provenance.seal import BadFile
+from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.job_log import logged_error
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
-from burridge_knopoff.summaries.points import check_run
 
 KINDS = ("missing", "corrupt", "stale", "failed")
+#: Modules that make a point file.
+POINT_SOURCES = ("burridge_knopoff.dataset.point",)
 #: Suffixes of logs and benchmarks, which are not results.
 LOGS = (".log", ".tsv")
 #: Maximum number of files in a printed command; for more, the command calls `bk check --paths`.
@@ -103,37 +108,35 @@ def is_locked(results: Path) -> bool:
 
 
 def check_study(results: str | Path) -> Check:
-    """Check every file of a study against its seal, its config and the current sources.
+    """Check every file of a study: that it is whole, made with the params of the last run, and by the current sources.
 
-    A summary, figure or report that does not exist counts as missing only if its job has started, see `missing_files`.
+    Snakemake need not be there, and the results may have been moved. A summary, figure or report that does not exist
+    counts as missing only if its job has started, see `missing_files`.
+
     Raises ValueError, one line, if the folder holds no study.
     """
     results = Path(results)
     record, study = recorded_study(results)
     jobs = Jobs(study)
-    points = _points(results, jobs)
+    runs = _runs(results, jobs)
     left = leftovers(results, jobs)
     notes = []
     if study.name != results.resolve().name:
         notes.append(f"this is study {study.name} under another name: Snakemake expects it in a folder {study.name}")
-    solver_runs = {path: run for path, run in points.items() if path.is_relative_to(results / "solvers")}
-    points = {path: run for path, run in points.items() if path not in solver_runs}
+    solver_runs = {name: log for name, log in runs.items() if name.startswith("solvers/")}
+    points = {name: log for name, log in runs.items() if name not in solver_runs}
     # A user who requested only points does not expect runs of other solvers.
     if not ((results / "solvers").is_dir() or (results / "logs/simulate_solver").is_dir()):
-        runs = format_count(len(solver_runs), "run")
-        notes += [f"not counted: {runs} of other solvers, none of which was requested yet"] if solver_runs else []
+        absent = format_count(len(solver_runs), "run")
+        notes += [f"not counted: {absent} of other solvers, none of which was requested yet"] if solver_runs else []
         solver_runs = {}
     if left:
         files = format_count(len(left), "file")
         notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
-    others = {path for path in results.rglob("*.nc") if not path.name.startswith(".")} - {*points, *solver_runs, *left}
-    named = {results / name for name in jobs.all_files}
     missing = missing_files(results, jobs)
-    rest = [*(path.relative_to(results).as_posix() for path in named if path.is_file()), *missing]
-    found = [
-        *(_point_finding(path, *run) for path, run in {**points, **solver_runs}.items()),
-        *(_file_finding(jobs, results, name, missing.get(name, Path())) for name in rest),
-    ]
+    rest = {name: missing.get(name, Path()) for name in jobs.all_files if name in missing or (results / name).is_file()}
+    unknown = {path.relative_to(results).as_posix() for path in results.rglob("*.nc") if not path.name.startswith(".")}
+    unknown -= {*runs, *jobs.all_files, *(path.relative_to(results).as_posix() for path in left)}
     return Check(
         results,
         ", ".join(
@@ -143,10 +146,13 @@ def check_study(results: str | Path) -> Check:
                 format_count(len(rest), "other file"),
             ]
         ),
-        sorted(filter(None, found), key=lambda finding: (KINDS.index(finding.kind), finding.path)),
+        sorted(
+            _findings(jobs, results, record, {**points, **solver_runs, **rest}),
+            key=lambda finding: (KINDS.index(finding.kind), finding.path),
+        ),
         [
             *(Finding("leftover", path, "not part of this study") for path in left if path.suffix not in LOGS),
-            *(Finding("unknown", path, "no file of a study has that name") for path in sorted(others - named)),
+            *(Finding("unknown", results / name, "no file of a study has that name") for name in sorted(unknown)),
             *filter(None, [config_change(results, record)]),
         ],
         notes,
@@ -154,47 +160,60 @@ def check_study(results: str | Path) -> Check:
     )
 
 
-def _points(results: Path, jobs: Jobs) -> dict[Path, tuple[str, Path]]:
-    """Return {point file: (command, log)} of all runs of a study."""
-    study = jobs.study
-    points = {results / name: (study.command(**run), results / log) for name, run, log in run_files(jobs)}
-    for chunk, runs in chunks(study).items():
-        for run in runs:
-            path = results / "points" / study.point_file.format(**run)
-            command, log = points[path]
-            points[path] = command, log if log.exists() else results / f"logs/chunk/{chunk}.log"
-    return points
+def _runs(results: Path, jobs: Jobs) -> dict[str, Path]:
+    """Return {point file: log} of all runs of a study."""
+    logs = {name: results / log for name, _, log in run_files(jobs)}
+    for chunk, of_chunk in chunks(jobs.study).items():
+        for run in of_chunk:
+            name = f"points/{jobs.study.point_file.format(**run)}"
+            if not logs[name].exists():
+                logs[name] = results / f"logs/chunk/{chunk}.log"
+    return logs
 
 
-def _point_finding(path: Path, command: str, log: Path) -> Finding | None:
-    """Return the problem with the point file of a run, or None."""
-    try:
-        status = check_run(path, command)
-    except BadFile as error:
-        return _error_finding(path, error, log)
-    return None if status == "completed" else Finding("failed", path, f"ended with status {status}")
+def _findings(jobs: Jobs, results: Path, record: Mapping[str, Any], logs: Mapping[str, Path]) -> Iterator[Finding]:
+    """Yield the problems with files, given by their names in the results, and the logs of their jobs."""
+    bad: dict[str, Finding] = {}
+    origins: dict[str, Origin] = {}
+    checksums: dict[str, str] = {}
+    for name, log in logs.items():
+        path = results / name
+        try:
+            origin, checksums[name] = check_file(jobs, results, name, record)
+            if origin:
+                origins[name] = origin
+            if finding := _own_finding(jobs, path, name, origin):
+                bad[name] = finding
+        except BadFile as error:
+            words = logged_error(log) if error.kind == "missing" else ""
+            reason = f"its job failed: {words} (log {log})" if words else "not made yet"
+            bad[name] = Finding(error.kind, path, reason if error.kind == "missing" else error.reason)
+    for name, origin in origins.items():
+        for other, checksum in origin.inputs.items():
+            if name in bad or other not in logs:
+                continue
+            if other not in checksums:
+                bad[name] = Finding(
+                    "stale", results / name, f"was made from {results / other}, which is {bad[other].kind}"
+                )
+            elif checksums[other] != checksum:
+                bad[name] = Finding("stale", results / name, f"was made from another {other}")
+    yield from bad.values()
 
 
-def _file_finding(jobs: Jobs, results: Path, name: str, log: Path) -> Finding | None:
-    """Return the problem with another file, by its name in the results, or None."""
-    path = results / name
-    try:
-        check_file(jobs, results, name)
-        ended = open_summary(path).get("status") if path.suffix == ".nc" else None
-    except BadFile as error:
-        return _error_finding(path, error, log)
-    # A catalogue is the result of a single run, which has a status.
-    if ended is None or ended.dims or STATUS_WORDS[ended.item()] == "completed":
-        return None
-    return Finding("failed", path, f"ended with status {STATUS_WORDS[ended.item()]}")
-
-
-def _error_finding(path: Path, error: BadFile, log: Path) -> Finding:
-    reason = error.reason if error.path == path else f"was made from {error.path}, which is {error.kind}"
-    if error.kind == "missing":
-        words = logged_error(log)
-        reason = f"its job failed: {words} (log {log})" if words else "not made yet"
-    return Finding(error.kind, path, reason)
+def _own_finding(jobs: Jobs, path: Path, name: str, origin: Origin | None) -> Finding | None:
+    """Return the problem with an intact file: other sources, or a run that did not complete; or None."""
+    made_by, status = origin.rule_fingerprint if origin else "", None
+    sources = jobs.all_files[name][0].sources if name in jobs.all_files else POINT_SOURCES
+    if path.suffix == ".nc":
+        with netCDF4.Dataset(path) as dataset:
+            made_by = made_by or dataset.source_fingerprint
+            # A catalogue is the result of a single run as well.
+            if "status" in dataset.variables and not dataset["status"].dimensions:
+                status = STATUS_WORDS[int(dataset["status"][...])]
+    if made_by and made_by != (now := source_fingerprint(*sources)):
+        return Finding("stale", path, f"was made by other sources (fingerprint {made_by}, now {now})")
+    return Finding("failed", path, f"ended with status {status}") if status not in (None, "completed") else None
 
 
 def config_change(results: Path, record: dict[str, Any]) -> Finding | None:
@@ -219,23 +238,23 @@ def check_record(results: Path) -> None:
     """Refuse a folder whose record is not that of its files, since by it all of them could be left over.
 
     Raises ValueError, one line, if the config file has changed, if the record is of a study of another name, if a file
-    was made from another config or other sources, or if a point is missing.
+    was made with other params, or if a point is missing.
     """
     record, study = recorded_study(results)
     change = config_change(results, record)
-    reason = ""
     if change and change.kind == "stale":
-        reason = f"{change.path} {change.reason.partition(';')[0]}"
-    elif study.name != results.resolve().name:
-        reason = f"{NAME} is the record of study {study.name}"
-    else:
-        for finding in check_study(results).findings:
-            is_point = finding.path.is_relative_to(results / "points")
-            if finding.kind == "missing" and is_point:
-                reason = f"incomplete ({finding.path}: {finding.reason}), so that its record cannot be verified"
-                break
-            if finding.kind == "stale":
-                reason = f"its files are not those of {NAME} ({finding.path}: {finding.reason})"
-                break
-    if reason:
-        raise ValueError(f"{results}: {reason}: run snakemake first")
+        raise ValueError(f"{results}: {change.path} {change.reason.partition(';')[0]}: run snakemake first")
+    if study.name != results.resolve().name:
+        raise ValueError(f"{results}: {NAME} is the record of study {study.name}: run snakemake first")
+    jobs = Jobs(study)
+    for name in (*(name for name, *_ in run_files(jobs)), *jobs.all_files):
+        try:
+            check_file(jobs, results, name, record)
+        except BadFile as error:
+            if error.kind == "missing" and name.startswith("points/"):
+                reason = f"incomplete ({error.path}: not made yet), so that its record cannot be verified"
+            elif error.kind == "stale":
+                reason = f"its files are not those of {NAME} ({error.path}: {error.reason})"
+            else:
+                continue
+            raise ValueError(f"{results}: {reason}: run snakemake first") from None

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from burridge_knopoff.claims.claim import FILE, claims_of
@@ -13,12 +13,9 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.study.yaml_file import read_yaml
 
 
-def make(given: Given, study: str, figures: Sequence[str], config: Mapping[str, Any]) -> tuple[str, str, str]:
-    """Return the verdicts in the three formats.
-
-    study, figures : names of the study and of its pictures; config : its keys that judges read
-    """
+def make(given: Given, config: Mapping[str, Any]) -> tuple[str, str, str]:
+    """Return the verdicts in the three formats; config : the keys that judges read, and the name of the study."""
     paths = given.paths("summaries")
     summaries = dict(zip((path.stem for path in paths), given.summaries("summaries"), strict=True))
-    content = ledger(study, claims_of(read_yaml(FILE)), Evidence(summaries, config), figures)
+    content = ledger(config["study"], claims_of(read_yaml(FILE)), Evidence(summaries, config), given.figures)
     return as_json(content), as_csv(content), as_markdown(content, "../figures")

@@ -112,7 +112,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _write_no_more()
         return READER_GONE
     except (ValueError, OSError, ImportError) as error:
-        from burridge_knopoff.values import escape_unprintable
+        from burridge_knopoff.messages import escape_unprintable
 
         words = escape_unprintable(f"{error}")
         # Other errors name the file.

@@ -18,9 +18,9 @@ from burridge_knopoff.cli.options import (
     settings_of,
     state_of,
 )
+from burridge_knopoff.messages import format_value
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.motion.settings import MotionSettings
-from burridge_knopoff.values import format_value
 
 DESCRIPTION = """Map the attractor reached from each state in a plane of initial states, over U_1(0) and U_N(0).
 The initial state gives all other positions and velocities. Attractors are searched for first, as by `bk attractors`."""

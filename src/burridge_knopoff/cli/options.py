@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 from burridge_knopoff.laws import LAWS, Law, law_of, unknown_law
 from burridge_knopoff.library.coercion import OWN
+from burridge_knopoff.messages import format_value
 from burridge_knopoff.model.chain import NEIGHBOURS, Chain
 from burridge_knopoff.model.fields import FOLLOWS, REQUIRED, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, initial_state
@@ -20,7 +21,7 @@ from burridge_knopoff.model.model import LAW_NAME, Model
 from burridge_knopoff.model.ranges import Either, Interval, Number, OneOf, Several, TrueOrFalse, Whole
 from burridge_knopoff.provenance.files import check_target
 from burridge_knopoff.running.command import CHAIN_OPTIONS
-from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER, format_value
+from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER
 
 _T = TypeVar("_T")
 

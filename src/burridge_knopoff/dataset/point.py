@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.dataset.variables import (
     DIRECTION,
     KIND,
@@ -24,7 +23,7 @@ from burridge_knopoff.dataset.variables import (
     xarray_variables,
 )
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.seal import write_sealed
+from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.sources import SOFTWARE
 from burridge_knopoff.running.command import CHAIN_OPTIONS, simulate_command
 from burridge_knopoff.running.status import STATUS_WORDS, Status
@@ -161,13 +160,14 @@ def write_point(trajectory: Trajectory, path: str | Path) -> None:
     """
     import netCDF4
 
-    attributes = point_attributes(trajectory)
+    from burridge_knopoff.provenance.checksum import add_checksum
 
     def write(name: str) -> None:
         with netCDF4.Dataset(name, "w", format="NETCDF4") as dataset:
-            write_variables(dataset, POINT_VARIABLES, point_values(trajectory), attributes)
+            write_variables(dataset, POINT_VARIABLES, point_values(trajectory), point_attributes(trajectory))
+            add_checksum(dataset)
 
-    write_sealed(path, write, point_identity(attributes["history"]), trajectory.status)
+    write_whole(path, write)
 
 
 def to_dataset(trajectory: Trajectory) -> xarray.Dataset:

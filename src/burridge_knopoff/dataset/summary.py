@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import numpy as np
 import xarray
 
@@ -18,8 +19,9 @@ from burridge_knopoff.dataset.variables import (
     xarray_variables,
 )
 from burridge_knopoff.model.parameters import plain_name
-from burridge_knopoff.provenance.seal import BadFile, check_seal, write_sealed
-from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.checksum import add_checksum
+from burridge_knopoff.provenance.files import write_whole
+from burridge_knopoff.provenance.opening import open_whole
 
 AXES: dict[str, Variable] = {
     "law": Variable(("law",), "O", "friction law", coordinate=True),
@@ -60,11 +62,8 @@ def summary(
     return xarray.Dataset(xarray_variables(variables, values), dict(coordinates), head)
 
 
-def write_summary(dataset: xarray.Dataset, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
-    """Write a summary as netCDF; the same Dataset gives the same bytes.
-
-    about : the identity of the file, for its seal; if None, it consists of the sources only
-    """
+def write_summary(dataset: xarray.Dataset, path: str | Path) -> None:
+    """Write a summary as netCDF, completely or not at all; the same Dataset gives the same bytes."""
     encoding: dict[str, dict[str, Any]] = {}
     for name, variable in dataset.variables.items():
         encoding[str(name)] = {"_FillValue": None}
@@ -73,20 +72,17 @@ def write_summary(dataset: xarray.Dataset, path: str | Path, about: Mapping[str,
             encoding[str(name)]["dtype"] = "S1"
         elif variable.size >= COMPRESSED_FROM:
             encoding[str(name)].update(zlib=True, complevel=COMPRESSION_LEVEL, shuffle=True)
-    about = {"sources": dataset.attrs["source_fingerprint"]} if about is None else about
-    write_sealed(path, lambda name: dataset.to_netcdf(name, engine="netcdf4", encoding=encoding), about)
+
+    def write(name: str) -> None:
+        # Opened once: another process that writes the same summary may remove the file meanwhile.
+        with netCDF4.Dataset(name, "w") as file:
+            dataset.dump_to_store(xarray.backends.NetCDF4DataStore(file), encoding=encoding)
+            add_checksum(file)
+
+    write_whole(path, write)
 
 
 def open_summary(path: str | Path) -> xarray.Dataset:
-    """Return a summary, loaded into memory.
-
-    Raises BadFile if the file is missing or damaged, does not belong to its study, or was made by other sources than
-    those of this package.
-    """
-    check_seal(path)
-    dataset = xarray.load_dataset(path, engine="netcdf4")
-    module, fingerprint = dataset.attrs["source_module"], dataset.attrs["source_fingerprint"]
-    current = source_fingerprint(module)
-    if fingerprint != current:
-        raise BadFile(path, f"was made by other sources (fingerprint of {module}: {fingerprint}, now {current})")
-    return dataset
+    """Return an intact summary, loaded into memory. Raises BadFile if the file is missing or damaged."""
+    with open_whole(path):
+        return xarray.load_dataset(path, engine="netcdf4")

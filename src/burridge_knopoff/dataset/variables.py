@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from burridge_knopoff.provenance.sources import provenance
-from burridge_knopoff.values import refusal
+from burridge_knopoff.provenance.sources import provenance, versions
 
 if TYPE_CHECKING:
     import netCDF4
-    import xarray
 
 CONVENTIONS = "CF-1.11, ACDD-1.3"
 KEYWORDS = "stick-slip, friction, Burridge-Knopoff model, spring-block chain, synchronization"
@@ -71,7 +69,8 @@ def global_attributes(title: str, attributes: Mapping[str, Any], *, module: str,
         "summary": f"{contents or f'{title}.'} {SIMULATED}",
         "keywords": KEYWORDS,
     }
-    return {**own, **{key: value for key, value in attributes.items() if key not in own}, **provenance(module)}
+    others = {key: value for key, value in attributes.items() if key not in own}
+    return {**own, **others, **provenance(module), "versions": versions()}
 
 
 def flag(dtype: str, meanings: Iterable[IntEnum] | Mapping[int, str]) -> dict[str, Any]:
@@ -79,29 +78,6 @@ def flag(dtype: str, meanings: Iterable[IntEnum] | Mapping[int, str]) -> dict[st
     if not isinstance(meanings, Mapping):
         meanings = {int(item): item.name.lower() for item in meanings}
     return {"flag_values": np.array(list(meanings), dtype=dtype), "flag_meanings": " ".join(meanings.values())}
-
-
-def decode_flags(flags: xarray.DataArray) -> xarray.DataArray:
-    """Return a flag variable with each value replaced by its meaning, a string; NaN becomes "".
-
-    flags : a variable with the CF attributes `flag_values` and `flag_meanings`, as in every file of a study
-
-    Raises ValueError if it has no such attributes.
-
-    >>> import xarray
-    >>> from burridge_knopoff import decode_flags
-    >>> kind = xarray.DataArray([0, 1], attrs={"flag_values": [0, 1], "flag_meanings": "stop start"})
-    >>> decode_flags(kind).values.tolist()
-    ['stop', 'start']
-    """
-    if "flag_meanings" not in getattr(flags, "attrs", ()):
-        raise refusal("flags", flags, "a flag variable: an xarray.DataArray with flag_values and flag_meanings")
-    words = np.full(flags.shape, "", dtype=object)
-    values, meanings = np.atleast_1d(flags.attrs["flag_values"]), flags.attrs["flag_meanings"].split()
-    for value, meaning in zip(values, meanings, strict=True):
-        words[flags.values == value] = meaning
-    attributes = {name: text for name, text in flags.attrs.items() if not name.startswith("flag_")}
-    return flags.copy(data=words).drop_attrs().assign_attrs(attributes)
 
 
 class Answer(IntEnum):

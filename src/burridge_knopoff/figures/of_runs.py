@@ -12,7 +12,8 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.summaries.points import Grid, open_point
 
 
-def make(given: Given, figure: str, from_study: Mapping[str, Any]) -> Figure:
-    """Return a figure of runs, by initial state; from_study : properties of the study that it shows."""
-    module, grid = import_module(f"burridge_knopoff.figures.{figure}"), Grid.from_job(given)
-    return module.draw({initial: open_point(grid, law, initial, a) for _, (law, initial, a) in grid}, **from_study)
+def make(given: Given, config: Mapping[str, Any]) -> Figure:
+    """Return a figure of runs, by initial state."""
+    grid = Grid.from_job(given, {**config, "a": [config["figures"]["a"]]})
+    runs = {initial: open_point(grid, law, initial, a) for _, (law, initial, a) in grid}
+    return import_module(given.module).draw(runs)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import partial, wraps
@@ -20,7 +21,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from burridge_knopoff.provenance.files import write_whole
-from burridge_knopoff.provenance.seal import write_sealed
 
 Arguments = ParamSpec("Arguments")
 
@@ -317,20 +317,23 @@ def say_nothing(panel: Axes, reason: str) -> None:
     panel.set_axis_off()
 
 
-def write_figure(figure: Figure, *paths: str | Path, seals: Mapping[str, Mapping[str, Any]] | None = None) -> None:
+def write_figure(figure: Figure, *paths: str | Path, origins: Mapping[Path, Mapping[str, Any]] | None = None) -> None:
     """Write a figure in the format of each path (.pdf, .png or .svg); the same figure gives the same bytes.
 
-    seals : {path: description of the file}, if it belongs to a study
+    origins : {path: origin of the file, as a mapping}, if it belongs to a study; PNG files contain it
     """
     for path in map(Path, paths):
         # `savefig` would draw twice, first for the layout alone, which any drawing starts with.
         canvas = get_registered_canvas_class(path.suffix[1:])
-        # Without this, PDF files record the time.
-        metadata = {"CreationDate": None} if path.suffix == ".pdf" else None
+        metadata: dict[str, str | None] = {}
+        if path.suffix == ".pdf":
+            # Without this, PDF files record the time.
+            metadata = {"CreationDate": None}
+        elif path.suffix == ".png" and origins:
+            metadata = {"origin": json.dumps(origins[path])}
         with mpl.rc_context(STYLE):
             figure.dpi = STYLE["savefig.dpi"]
             draw = getattr(canvas(figure), f"print_{path.suffix[1:]}")
-            write = partial(draw, metadata=metadata)
-            write_sealed(path, write, seals[str(path)]) if seals else write_whole(path, write)
+            write_whole(path, partial(draw, metadata=metadata))
         # Keep the layout found for the first file: finding it takes as long as drawing.
         figure.set_layout_engine("none")

@@ -1,4 +1,4 @@
-"""The jobs of a study: its rules, their files, and the descriptions with which these are sealed."""
+"""The jobs of a study: its rules, their files, and the keys of the config on which these depend."""
 
 from __future__ import annotations
 
@@ -9,11 +9,9 @@ from functools import cached_property
 from itertools import chain, product
 from typing import Any
 
-from burridge_knopoff.dataset.point_identity import point_identity
 from burridge_knopoff.jobs import shown, stages
 from burridge_knopoff.jobs.rule import Rule, Wildcards
-from burridge_knopoff.provenance.seal import digest_of
-from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.keys import select
 from burridge_knopoff.study.paths import VALUE
 from burridge_knopoff.study.stages import STAGES
 from burridge_knopoff.study.study import Study
@@ -52,7 +50,6 @@ class Jobs:
         self.defined: dict[str, Rule] = {}
         self.absence: dict[str, str] = {}
         self._made_by: dict[str, Rule] = {}
-        self._abouts: dict[str, dict[str, Any]] = {}
         for declared in (*stages.STAGES, shown.summaries, shown.figures):
             self._add(declared(study))
         pictures = [name.removeprefix("figures/").removesuffix(".png") for name in self.files("figures/", ".png")]
@@ -164,45 +161,22 @@ class Jobs:
         found = product(points["laws"], points["initial"], *points["parameters"].values())
         return [self.rules["simulate"].files[0].format(**dict(zip(names, one, strict=True))) for one in found]
 
-    def abouts(self, rule: Rule, job: Wildcards) -> dict[str, dict[str, Any]]:
-        """Return {file: its description} of a job, for seals.
+    def config(self, rule: Rule, job: Wildcards) -> dict[str, Any]:
+        """Return {key: value} of exactly those keys of the config on which the files of a job depend.
 
-        A description contains the name of the file, the function that makes it, the parts of the config on which it
-        depends, the fingerprint of the sources, and a digest of the description of each file that the job reads. Points
-        are described by the config and their sources.
+        Raises ConfigError, one line, for a value of a that is not on the grid.
         """
-        return {form.format(**job): self._about(rule, job, form.format(**job)) for form in rule.files}
+        if "a" in job:
+            self.study.value(job["a"])
+        return select(self.study.config, self.study.parameters, rule.keys(job))
 
-    def _about(self, rule: Rule, job: Wildcards, name: str) -> dict[str, Any]:
-        if name not in self._abouts:
-            runs = self.rules["simulate"]
-            points = {"points": rule.points(job), "of_points": source_fingerprint(*runs.sources)} if rule.points else {}
-            read = [
-                (form.format(**other), maker, other)
-                for forms in rule.inputs.values()
-                for form in forms
-                for maker, other in self._sources_of(form, job)
-                if maker.make
-            ]
-            self._abouts[name] = {
-                "file": name,
-                "make": rule.make,
-                **points,
-                **rule.params(job),
-                "sources": source_fingerprint(*rule.sources),
-                "inputs": {file: digest_of(self._about(maker, other, file)) for file, maker, other in read},
-            }
-        return self._abouts[name]
-
-    def expected(self, name: str) -> dict[str, Any] | None:
-        """Return the description of a file, by its name in the results; None if the study has no such file."""
-        if name in self.all_files:
-            return self._about(*self.all_files[name], name)
+    def command(self, name: str) -> str:
+        """Return the `bk simulate` command of the run in a point file, by its name; empty for any other file."""
         for rule in self.runs():
             found = re.fullmatch(self.pattern(rule.files[0]), name)
             if found and (job := found.groupdict()) in list(rule.each):
-                return point_identity(self.study.command(**job))
-        return None
+                return self.study.command(**job)
+        return ""
 
     def pattern(self, form: str) -> str:
         """Return a regular expression for the names of files, with a group for each wildcard."""

@@ -1,10 +1,9 @@
-"""The parts of a config on which the files of jobs depend."""
+"""The keys of a config on which the files of jobs depend, see `provenance.keys`."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from typing import Any
-
+from burridge_knopoff.model.fields import fields_of
+from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.study import Study
 
@@ -14,46 +13,54 @@ _CONDITIONS = {
     "has_synchronized_orbit": "a mirror-symmetric chain of 3 blocks",
     "has_one_chain": "the same chain at all points",
 }
+#: Criteria by which kinds of motion are distinguished.
+MOTION = ("motion", "synchronization_threshold", "section")
 
 
-def keys(study: Study, *names: str) -> dict[str, Any]:
-    """Return these keys of the config."""
-    return {name: study.config[name] for name in names}
+def parts(study: Study, section: str, *without: str) -> list[str]:
+    """Return the keys of a section, except some."""
+    return [f"{section}.{name}" for name in study.config[section] if name not in without]
 
 
-def basin_keys(study: Study, *unused: str) -> dict[str, Any]:
-    """Return the keys of `basins` that a job uses, except those that are passed by other names or change no map."""
-    others = {"a", "initial", "threads", *unused}
-    return {key: value for key, value in study.config["basins"].items() if key not in others}
+def model_keys(*laws: str) -> list[str]:
+    """Return the keys that define the models under some laws; under all laws if none is given."""
+    return [*([f"laws.{law}" for law in laws] or ["laws"]), *MODEL_KEYS[1:]]
 
 
-def catalogue_keys(study: Study) -> dict[str, Any]:
-    """Return the keys of `catalogue` on which a run depends; those of the fit affect only the statistics."""
-    others = {"a", "initial", "low", "high"}
-    return {key: value for key, value in study.config["catalogue"].items() if key not in others}
+def other_length_keys(study: Study, *laws: str) -> list[str]:
+    """Return the keys of `model_keys` for chains of other lengths."""
+    return [key for key in model_keys(*laws) if key != "chain"] + parts(study, "chain", "blocks")
 
 
-def catalogue_run_config(study: Study, law: str) -> dict[str, Any]:
-    """Return start, solver and step of the points, with which catalogues are recorded."""
-    settings = study.settings(law)
-    return {"start": settings.start, "solver": settings.solver, "step": settings.step}
+def run_keys(study: Study, *laws: str) -> list[str]:
+    """Return the keys that define the runs of points under some laws, by default all, without the grid."""
+    names = [name for name in fields_of(Settings) if name in study.config]
+    # Only rk4 has a step.
+    if "rk4" not in (study.config["solver"][law] for law in laws or study.laws):
+        names.remove("step")
+    of_laws = [f"solver.{law}" for law in laws] or ["solver"]
+    return [*model_keys(*laws), *of_laws, *(name for name in names if name != "solver"), "a_digits"]
 
 
-def motion_config(study: Study) -> dict[str, Any]:
-    """Return the criteria by which kinds of motion are distinguished."""
-    return {**study.config["motion"], **keys(study, "synchronization_threshold", "section")}
+def grid_keys(study: Study) -> list[str]:
+    """Return the key with the values of a, or of all parameters."""
+    return ["grid" if study.is_plane else "a"]
 
 
-def model_config(study: Study, laws: Collection[str] | None = None) -> dict[str, Any]:
-    """Return the keys that define the models of a study under some of its laws, by default all: see `model_of`."""
-    chosen = study.laws if laws is None else laws
-    return {**keys(study, *MODEL_KEYS), "laws": {law: study.config["laws"][law] for law in chosen}}
+def point_keys(study: Study) -> list[str]:
+    """Return the keys that define all points."""
+    return [*run_keys(study), "initial", *grid_keys(study)]
 
 
-def other_length_config(study: Study, laws: Collection[str] | None = None) -> dict[str, Any]:
-    """Return the keys of `model_config` for chains of other lengths."""
-    config = model_config(study, laws)
-    return {**config, "chain": {name: value for name, value in config["chain"].items() if name != "blocks"}}
+def study_keys(study: Study, name: str) -> list[str]:
+    """Return the keys that decide a property of `Study` in a figure."""
+    return {
+        "marked_states": [*model_keys(), "initial", "basins.initial", "basins.a"],
+        "chain_description": [*model_keys(), "grid", "a_digits"] if study.is_plane else ["chain"],
+        "law_descriptions": ["laws"],
+        "shown_a": ["figures.a"],
+        "shown_law": ["figures.law"],
+    }[name]
 
 
 def length_refusal(study: Study) -> str:

@@ -40,7 +40,8 @@ class Rule:
     reads : {name: files of other rules}; a wildcard that the job does not have stands for all its values
     optional_reads : whether files of `reads` that the study does not have are left out
     points : returns the part of `Study.points` with the points that a job reads; None if it reads none
-    params : returns exactly those parts of the config on which the files of a job depend
+    keys : returns exactly those keys of the config on which the files of a job depend, see `provenance.keys`
+    figures : names of pictures to which its files refer
     each : the wildcards of all jobs
     stage : the part of the study to which the rule belongs; a config can leave out some
     over : the studies that can have the rule: over a alone, over `several` parameters, or over `any`
@@ -65,7 +66,8 @@ class Rule:
     reads: Mapping[str, str | Sequence[str]] = field(default_factory=dict)
     optional_reads: bool = False
     points: Callable[[Wildcards], Mapping[str, Any]] | None = None
-    params: Callable[[Wildcards], Mapping[str, Any]] = lambda wildcards: {}
+    keys: Callable[[Wildcards], Sequence[str]] = lambda wildcards: ()
+    figures: Sequence[str] = ()
     each: Sequence[Wildcards] = ({},)
     stage: str = "summary"
     over: str = "a"

@@ -1,4 +1,4 @@
-"""Does a job: its function makes the content of the files, which are written and sealed."""
+"""Does a job: its function makes the content of the files, which are written with their origin."""
 
 from __future__ import annotations
 
@@ -11,57 +11,51 @@ import xarray
 
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import write_summary
-from burridge_knopoff.provenance.seal import BadFile, digest_of, read_seal, write_sealed_text
-
-#: Keys of a description that are not params of the function that makes the file.
-_ABOUT = ("file", "make", "points", "of_points", "sources", "inputs")
+from burridge_knopoff.provenance.files import write_text
+from burridge_knopoff.provenance.keys import difference, nested, value_of
+from burridge_knopoff.provenance.origin import Origin, check_origin, read_origin, with_origin
+from burridge_knopoff.provenance.record import NAME, read_study_record
+from burridge_knopoff.provenance.sums import add_sums
 
 
 def do_job(
-    abouts: Mapping[str, Mapping[str, Any]],
-    results: Path,
-    inputs: Mapping[str, Sequence[str | Path]],
-    wildcards: Mapping[str, str],
-    cores: int = 1,
-    arguments: Sequence[str] = (),
+    make: str, rule: str, fingerprint: str, config: Mapping[str, Any], given: Given, outputs: Sequence[str | Path]
 ) -> None:
     """Make the files of a job.
 
-    abouts : {file: its description}, see `Jobs.abouts`
-    results : folder of the study; inputs, wildcards, cores, arguments : see `Given`
+    make : "package.module:function", called with `given` and the config
+    rule, fingerprint : name of the rule, and fingerprint of its sources
+    config : {key: value} on which the files depend, see `provenance.keys`
 
-    Raises BadFile if an input is damaged or not the expected one, OSError if a file cannot be written, and the errors
-    of the function.
+    Raises BadFile if an input is damaged or not the expected one, ValueError if the results belong to another config,
+    OSError if a file cannot be written, and the errors of the function.
     """
-    about = next(iter(abouts.values()))
-    room, _, function = about["make"].partition(":")
-    files = {name: [Path(path) for path in paths] for name, paths in inputs.items()}
-    for path in (path for paths in files.values() for path in paths):
-        _check(path, results, about["inputs"].get(path.relative_to(results).as_posix()))
-    given = Given(results, files, about.get("points", {}), wildcards, cores, arguments)
-    params = {name: value for name, value in about.items() if name not in _ABOUT}
-    made = getattr(import_module(f"burridge_knopoff.{room}"), function)(given, **params)
-    contents = made if isinstance(made, tuple) else (made,) * len(abouts)
+    record = read_study_record(given.results)
+    for key, value in config.items():
+        if words := difference(value_of(record["config"], record["grid"], key), value, key):
+            raise ValueError(f"{given.results / NAME}: {words}, as another run has changed it; run snakemake again")
+    params: dict[str, Any] = {}
+    inputs: dict[str, str] = {}
+    for path in (path for paths in given.inputs.values() for path in paths):
+        origin, checksum = read_origin(path, given.results)
+        check_origin(path, given.results, origin, record)
+        params |= origin.params if origin else {}
+        inputs[path.relative_to(given.results).as_posix()] = checksum
+    room, _, function = make.partition(":")
+    made = getattr(import_module(f"burridge_knopoff.{room}"), function)(given, nested(config))
+    contents = made if isinstance(made, tuple) else (made,) * len(outputs)
+    names = [Path(path).relative_to(given.results).as_posix() for path in outputs]
     pictures = {}
-    for (name, each), content in zip(abouts.items(), contents, strict=True):
-        path = results / name
+    for name, content in zip(names, contents, strict=True):
+        path, origin = given.results / name, Origin(name, rule, {**params, **config}, inputs, fingerprint)
         if isinstance(content, xarray.Dataset):
-            write_summary(content, path, each)
+            write_summary(content.assign_attrs(origin.attributes()), path)
         elif isinstance(content, str):
-            write_sealed_text(path, content, each)
+            write_text(path, with_origin(content, name, origin))
         else:
-            pictures[str(path)] = each
+            pictures[path] = origin
     if pictures:
         from burridge_knopoff.figures.style import write_figure
 
-        write_figure(made, *pictures, seals=pictures)
-
-
-def _check(path: Path, results: Path, digest: str | None) -> None:
-    """Raise BadFile if an input is damaged or has another digest; points have none and are checked when read."""
-    if digest is not None and digest_of(read_seal(path)[0]) != digest:
-        # A job needs the study only to give the reason.
-        from burridge_knopoff.jobs.checked import check_result
-
-        check_result(path, any_sources=False)
-        raise BadFile(path, "was not made from the config and by the sources of this run")
+        write_figure(made, *pictures, origins={path: vars(origin) for path, origin in pictures.items()})
+    add_sums(given.results, [name for name in names if not name.endswith(".nc")])

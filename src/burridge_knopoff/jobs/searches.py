@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from math import prod
-from typing import Any
 
-from burridge_knopoff.jobs.params import basin_keys, keys, law_jobs, model_config, motion_config
+from burridge_knopoff.jobs.params import MOTION, law_jobs, model_keys, parts
 from burridge_knopoff.jobs.rule import Rule, Shown, Wildcards
 from burridge_knopoff.study.study import Study
 
 
 def attractors(study: Study) -> list[Rule]:
     """Attractors of each law along the grid of a and between its values, and all laws together."""
-    config, grid = study.config["attractors"], list(study.grid.values())
-    settings = {**keys(study, "initial", "start", "attractors", "refine"), "motion": motion_config(study)}
+    config = study.config["attractors"]
     return [
         Rule(
             "attractors_of_law",
@@ -22,7 +19,7 @@ def attractors(study: Study) -> list[Rule]:
             "attractors of the {law} law along a",
             ("attractors/{law}.nc", "refined/{law}.nc", "returns/{law}.nc"),
             "summaries.attractors_of_law:make",
-            params=lambda job: {**settings, "grid": grid, "model": model_config(study, [job["law"]])},
+            keys=lambda job: [*model_keys(job["law"]), "a", "initial", "start", "attractors", "refine", *MOTION],
             each=law_jobs(study),
             stage="attractors",
             cores=0,
@@ -30,7 +27,7 @@ def attractors(study: Study) -> list[Rule]:
             minutes=240,
             # The longest jobs of a study start right after the points and the figures of the paper.
             priority=2,
-            work=study.blocks * config["samples"] * (config["transient"] + config["window"]) * len(grid),
+            work=study.blocks * config["samples"] * (config["transient"] + config["window"]) * len(study.grid),
         ),
         Rule(
             "attractors",
@@ -39,11 +36,7 @@ def attractors(study: Study) -> list[Rule]:
             ("summary/attractors.nc", "summary/attractors.txt", "summary/refined.nc", "summary/rotation.nc"),
             "summaries.all_laws:make",
             reads={"grid": "attractors/{law}.nc", "refined": "refined/{law}.nc"},
-            params=lambda job: {
-                **keys(study, "attractors"),
-                "model": model_config(study),
-                "a": grid[0],
-            },
+            keys=lambda job: [*model_keys(), "a", "attractors"],
             stage="attractors",
             shown={"summary/attractors.txt": Shown("attractors in words", "Attractors", "attractors_txt")},
             cores=0,
@@ -57,17 +50,12 @@ def basins(study: Study) -> list[Rule]:
     """Basins of attraction: maps over a plane of initial states, computed in tiles and merged."""
     config = study.config["basins"]
     maps = [{"law": law, "a": a} for law, a in study.basin_maps]
-    state = {"name": config["initial"], **study.config["initial"][config["initial"]]}
-    settings = {"state": state, **keys(study, "start", "attractors")}
     known = {"attractors": "summary/attractors.nc", "returns": "returns/{law}.nc"}
 
-    def part(*unused: str) -> Callable[[Wildcards], dict[str, Any]]:
-        return lambda job: {
-            **settings,
-            "a": study.value(job["a"]),
-            "model": model_config(study, [job["law"]]),
-            "basins": basin_keys(study, *unused),
-        }
+    def keys(job: Wildcards, *unused: str) -> list[str]:
+        of_map = [*model_keys(job["law"]), f"a={job['a']}"] if job else [*model_keys(), "basins.a"]
+        others = parts(study, "basins", "a", "threads", *unused)
+        return [*of_map, *others, f"initial.{config['initial']}", "start", "attractors"]
 
     return [
         Rule(
@@ -77,7 +65,7 @@ def basins(study: Study) -> list[Rule]:
             ("basins/{law}/a{a}/tile{tile}.nc",),
             "summaries.basins:make_tile",
             reads=known,
-            params=part("pairs"),
+            keys=lambda job: keys(job, "pairs"),
             each=[{**one, "tile": str(tile)} for one in maps for tile in range(config["tiles"])],
             stage="basins",
             cores=config["threads"],
@@ -91,7 +79,7 @@ def basins(study: Study) -> list[Rule]:
             ("basins/{law}/a{a}/pairs.nc",),
             "summaries.basins:make_pairs",
             reads=known,
-            params=part("pixels", "tiles"),
+            keys=lambda job: keys(job, "pixels", "tiles"),
             each=maps,
             stage="basins",
             cores=config["threads"],
@@ -109,12 +97,7 @@ def basins(study: Study) -> list[Rule]:
                 "tiles": "basins/{law}/a{a}/tile{tile}.nc",
                 "pairs": "basins/{law}/a{a}/pairs.nc",
             },
-            params=lambda job: {
-                **settings,
-                "maps": [(law, study.value(a)) for law, a in study.basin_maps],
-                "model": model_config(study),
-                "basins": basin_keys(study),
-            },
+            keys=keys,
             stage="basins",
             exists=bool(maps),
             refusal=f"study {study.name}: no maps of basins: `basins.a` names no value of a",
@@ -137,10 +120,7 @@ def bifurcations(study: Study) -> list[Rule]:
             ("bifurcations/{law}.nc",),
             "summaries.bifurcations:make_of_law",
             reads={"attractors": "summary/attractors.nc", "refined": "summary/refined.nc"},
-            params=lambda job: {
-                "model": model_config(study, [job["law"]]),
-                "a": min(study.grid.values()),
-            },
+            keys=lambda job: [*model_keys(job["law"]), "a"],
             each=law_jobs(study),
             stage="bifurcations",
             cores=0,
@@ -162,12 +142,7 @@ def bifurcations(study: Study) -> list[Rule]:
             },
             # Without bifurcations there are no crises.
             optional_reads=True,
-            params=lambda job: {
-                **keys(study, "attractors"),
-                "grid": config["a"],
-                "edges": {key: value for key, value in config.items() if key != "a"},
-                "model": model_config(study, [job["law"]]),
-            },
+            keys=lambda job: [*model_keys(job["law"]), "edges", "attractors"],
             each=law_jobs(study),
             stage="edges",
             exists=bool(config["a"]),
@@ -206,7 +181,6 @@ def bifurcations(study: Study) -> list[Rule]:
 def phases(study: Study) -> list[Rule]:
     """Initial states defined by the phases of their end blocks, and the attractors that they reach under each law."""
     config = study.config["phases"]
-    of_phases = {key: value for key, value in config.items() if key != "a"}
     return [
         Rule(
             "phases_of_law",
@@ -215,12 +189,7 @@ def phases(study: Study) -> list[Rule]:
             ("phases/{law}.nc",),
             "summaries.phases:make_of_law",
             reads={"attractors": "summary/attractors.nc", "returns": "returns/{law}.nc"},
-            params=lambda job: {
-                **keys(study, "attractors"),
-                "grid": config["a"],
-                "phases": of_phases,
-                "model": model_config(study, [job["law"]]),
-            },
+            keys=lambda job: [*model_keys(job["law"]), "phases", "attractors"],
             each=law_jobs(study),
             stage="phases",
             exists=bool(config["a"]),

@@ -4,11 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from burridge_knopoff.claims.claim import FILE, claims_of
 from burridge_knopoff.claims.ledger import READS
 from burridge_knopoff.figures.description import Description, figure_descriptions
-from burridge_knopoff.jobs.params import condition_refusal, keys, model_config
-from burridge_knopoff.jobs.rule import Rule, Shown
+from burridge_knopoff.jobs.params import (
+    condition_refusal,
+    model_keys,
+    point_keys,
+    run_keys,
+    study_keys,
+)
+from burridge_knopoff.jobs.rule import Rule, Shown, Wildcards
 from burridge_knopoff.study.study import Study
+from burridge_knopoff.study.yaml_file import read_yaml
 
 #: Priority of the figures of the paper, which are made first, and of the summaries that they show.
 FIRST = 4
@@ -42,7 +50,7 @@ def summaries(study: Study) -> list[Rule]:
             reads={"summaries": [f"summary/{other}.nc" for other in read]},
             optional_reads=True,
             points=lambda job: study.points,
-            params=lambda job: {"summary": name, "config": keys(study, *used)},
+            keys=lambda job: [*point_keys(study), *used],
             over=over,
             shown=shown,
             memory=memory,
@@ -59,11 +67,7 @@ def summaries(study: Study) -> list[Rule]:
             (f"summary/{name}.nc",),
             "summaries.of_models:make",
             (f"summaries.{name}",),
-            params=lambda job: {
-                "summary": name,
-                "model": model_config(study),
-                "grid": list(study.grid.values()),
-            },
+            keys=lambda job: [*model_keys(), "a"],
             memory=400,
             minutes=30,
             priority=FIRST * (name in of_paper),
@@ -125,6 +129,14 @@ def _figure(study: Study, figure: Description) -> Rule:
     # The name of a figure of runs from one initial state contains the name of the state.
     of_states = "{initial}" in figure.file
     words = figure.caption_of({"initial": "{initial}"})
+    properties = [key for name in figure.from_study for key in study_keys(study, name)]
+
+    def keys(job: Wildcards) -> list[str]:
+        if not figure.of_runs:
+            return properties
+        state = f"initial.{job['initial']}" if job else "initial"
+        return [*run_keys(study, study.shown_law), state, "figures.a", "figures.law"]
+
     return Rule(
         f"figure_{figure.name}",
         f"Draw {figure.subject}",
@@ -134,10 +146,7 @@ def _figure(study: Study, figure: Description) -> Rule:
         (f"figures.{figure.name}",),
         reads={} if figure.of_runs else {"summaries": [f"summary/{name}.nc" for name in figure.inputs]},
         points=study.shown_runs if figure.of_runs else None,
-        params=lambda job: {
-            "figure": figure.name,
-            "from_study": {name: getattr(study, name) for name in figure.from_study},
-        },
+        keys=keys,
         each=[{"initial": initial} for initial in study.initial] if of_states else ({},),
         stage="figures",
         over="a" if figure.of_runs else "any",
@@ -160,14 +169,12 @@ def claims(study: Study, pictures: Sequence[str]) -> list[Rule]:
             "claims.making:make",
             reads={"summaries": [f"summary/{name}.nc" for name in READS]},
             optional_reads=True,
-            params=lambda job: {
-                "study": study.name,
-                "figures": pictures,
-                "config": keys(
-                    study,
-                    *("v", "contact", "start", "transient", "window", "initial", "motion", "laws", "chain"),
-                ),
-            },
+            keys=lambda job: [
+                *model_keys(),
+                *("study", "start", "transient", "window", "initial", "motion"),
+            ],
+            # Another figure leaves the verdicts as they are.
+            figures=sorted({claim.figure for claim in claims_of(read_yaml(FILE))} & {*pictures}),
             stage="claims",
             shown={"summary/claims.csv": Shown("claims of the paper", "Claims", "claims_csv", "all")},
             memory=1000,
@@ -193,7 +200,7 @@ def report(study: Study, files: Sequence[str]) -> list[Rule]:
             },
             optional_reads=True,
             # The report shows the whole config.
-            params=lambda job: {"config": study.config, "parameters": study.points["parameters"]},
+            keys=lambda job: list(study.config),
             # The page draws the moving blocks of single runs.
             points=None if study.is_plane else lambda job: study.points,
             stage="report",

@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
-
 from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS
 from burridge_knopoff.jobs import searches
 from burridge_knopoff.jobs.params import (
-    catalogue_keys,
-    catalogue_run_config,
+    MOTION,
     condition_refusal,
-    keys,
     length_refusal,
-    model_config,
-    motion_config,
-    other_length_config,
+    model_keys,
+    other_length_keys,
+    parts,
+    point_keys,
+    run_keys,
 )
 from burridge_knopoff.jobs.rule import Rule, Shown
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
-from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.paths import CHUNK
 from burridge_knopoff.study.study import Study, all_points, solver_points
@@ -49,6 +46,7 @@ def runs(study: Study) -> list[Rule]:
             "Simulate the points of a chunk that are missing, damaged or out of date.",
             "simulate the points of chunk {chunk}",
             (CHUNK,),
+            keys=lambda job: point_keys(study),
             each=[{"chunk": chunk} for chunk in parts],
             stage="points",
             over="several",
@@ -70,7 +68,6 @@ def runs(study: Study) -> list[Rule]:
 
 def solvers(study: Study) -> list[Rule]:
     """The comparison of the solvers: points at a few values of a, repeated with every other solver of each law."""
-    of_laws = {solver: [law for law in study.laws if solver in study.other_solvers(law)] for solver in SOLVERS}
     return [
         Rule(
             "solvers",
@@ -78,15 +75,9 @@ def solvers(study: Study) -> list[Rule]:
             "independent solvers of the same equations",
             ("summary/solvers.nc",),
             "summaries.solvers:make",
-            reads={"others": f"solvers/{{solver}}/{study.point_file}"},
+            reads={"other_points": f"solvers/{{solver}}/{study.point_file}"},
             points=lambda job: {**study.points, "parameters": {"a": study.compared_values}},
-            params=lambda job: {
-                "others": {
-                    solver: {law: asdict(study.settings(law, solver)) for law in laws}
-                    for solver, laws in of_laws.items()
-                },
-                "step": study.config["solvers"]["step"],
-            },
+            keys=lambda job: [*run_keys(study), "initial", "solvers.a", "solvers.step"],
             stage="solvers",
             group="summaries",
         )
@@ -102,7 +93,7 @@ def proof(study: Study) -> list[Rule]:
             "proof: the loss of synchrony in ball arithmetic",
             ("summary/proof.nc", "summary/proof.txt"),
             "summaries.proof:make",
-            params=lambda job: {"model": model_config(study, study.proved_laws)},
+            keys=lambda job: model_keys(*study.proved_laws),
             stage="proof",
             exists=bool(study.proved_laws),
             refusal=f"study {study.name}: nothing to prove: the proof covers the paper's chain of 3 blocks and its two "
@@ -119,7 +110,7 @@ def catalogue(study: Study) -> list[Rule]:
     config = study.config.get("catalogue")
     if config is None:
         config = {"initial": next(iter(study.initial)), "a": []}
-    state = {"name": config["initial"], **study.config["initial"][config["initial"]]}
+    initial = config["initial"]
     return [
         Rule(
             "catalogue_of_run",
@@ -127,13 +118,15 @@ def catalogue(study: Study) -> list[Rule]:
             "slip events, {law} law, a = {a}",
             ("catalogues/{law}/a{a}.nc",),
             "summaries.catalogue_of_run:make",
-            params=lambda job: {
-                "model": model_config(study, [job["law"]]),
-                "a": study.value(job["a"]),
-                "state": state,
-                "run": catalogue_run_config(study, job["law"]),
-                "catalogue": catalogue_keys(study),
-            },
+            keys=lambda job: [
+                *model_keys(job["law"]),
+                f"a={job['a']}",
+                *("start", f"solver.{job['law']}"),
+                *(["step"] if study.config["solver"][job["law"]] == "rk4" else []),
+                f"initial.{initial}",
+                # The ends of the range of the fit affect only the statistics.
+                *parts(study, "catalogue", "a", "low", "high"),
+            ],
             each=[{"law": law, "a": a} for law in study.laws for a in study.catalogue_a],
             stage="catalogue",
             refusal=f"study {study.name}: no catalogues of slip events: add `catalogue: {{}}` to its config",
@@ -149,11 +142,10 @@ def catalogue(study: Study) -> list[Rule]:
             ("summary/catalogue.nc",),
             "summaries.catalogue:make",
             reads={"runs": "catalogues/{law}/a{a}.nc"},
-            params=lambda job: {
-                "laws": list(study.laws),
-                "grid": config["a"],
-                "fit": {key: config[key] for key in ("low", "high") if key in config},
-            },
+            keys=lambda job: [
+                "laws",
+                *(f"catalogue.{name}" for name in ("a", "low", "high") if name in config),
+            ],
             stage="catalogue",
             exists=bool(study.catalogue_a),
             memory=1000,
@@ -164,8 +156,7 @@ def catalogue(study: Study) -> list[Rule]:
 
 def two_blocks(study: Study) -> list[Rule]:
     """Two blocks under each law, about which the paper makes a claim."""
-    config, search = study.config["chains"], study.config["attractors"]
-    pair = config["two_blocks"]
+    pair = study.config["chains"]["two_blocks"]
     return [
         Rule(
             "two_blocks",
@@ -173,16 +164,14 @@ def two_blocks(study: Study) -> list[Rule]:
             "two blocks: each law against the first one",
             ("summary/two_blocks.nc",),
             "summaries.two_blocks:make",
-            params=lambda job: {
-                **keys(study, "agreement"),
-                "model": other_length_config(study),
-                "sample": {key: config[key] for key in ("seed", "position", "velocity")},
-                "two_blocks": pair,
-                "settings": keys(study, "start", "transient", "window"),
-                "search": {key: search[key] for key in GIVEN_STATE_KEYS},
+            keys=lambda job: [
+                *other_length_keys(study),
+                *(f"chains.{name}" for name in ("seed", "position", "velocity", "two_blocks")),
+                *("start", "transient", "window", "agreement"),
+                *(f"attractors.{name}" for name in GIVEN_STATE_KEYS),
                 # Two blocks may lack the block of the study's section; the sum always exists.
-                "motion": {key: value for key, value in motion_config(study).items() if key != "section"},
-            },
+                *(key for key in MOTION if key != "section"),
+            ],
             stage="two_blocks",
             exists=study.has_several_laws and not study.single_length_key,
             refusal=length_refusal(study) or condition_refusal(study, "has_several_laws"),
@@ -199,7 +188,6 @@ def two_blocks(study: Study) -> list[Rule]:
 def chains(study: Study) -> list[Rule]:
     """Chains of other lengths: for the target `chains`, or in every run if the config has `chains.blocks`."""
     config = study.config["chains"]
-    sample = ("samples", "symmetric_samples", "seed", "position", "velocity")
     return [
         Rule(
             "watch_chain",
@@ -207,13 +195,11 @@ def chains(study: Study) -> list[Rule]:
             "mirror synchrony of sampled states, {blocks} blocks",
             ("chains/blocks{blocks}.nc",),
             "summaries.chains:make_of_length",
-            params=lambda job: {
-                "model": other_length_config(study, config["laws"]),
-                "grid": config["a"],
-                "watch": {key: config[key] for key in ("time_limit", "synchronization_distance")},
-                "sample": {**keys(study, "start"), **{key: config[key] for key in sample}},
-                "motion": keys(study, "synchronization_threshold"),
-            },
+            keys=lambda job: [
+                *other_length_keys(study, *config["laws"]),
+                *parts(study, "chains", "blocks", "two_blocks"),
+                *("start", "synchronization_threshold"),
+            ],
             # Long chains take longest and start first.
             each=[{"blocks": str(number)} for number in sorted(study.chain_lengths, reverse=True)],
             stage="chains",

@@ -12,7 +12,7 @@ from burridge_knopoff.laws.law import FormulaLaw, Law
 from burridge_knopoff.laws.linearized import Linearized
 from burridge_knopoff.laws.nonlinear import Nonlinear
 from burridge_knopoff.laws.stribeck import Stribeck
-from burridge_knopoff.values import cut, refusal, suggestion
+from burridge_knopoff.messages import cut, refusal, suggestion
 
 __all__ = ["LAWS", "FormulaLaw", "Law", "law_of"]
 

@@ -9,7 +9,8 @@ from collections.abc import Mapping
 from functools import lru_cache
 
 from burridge_knopoff.laws.tape import SPEED, Builder, Tape, Term, number
-from burridge_knopoff.values import cut, number_in
+from burridge_knopoff.messages import cut
+from burridge_knopoff.values import number_in
 
 FUNCTIONS = ("sqrt", "exp", "log", "tanh")
 SYNTAX = "decimal numbers, names, + - * / **, parentheses, " + ", ".join(f"{name}()" for name in FUNCTIONS)

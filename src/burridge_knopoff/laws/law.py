@@ -17,7 +17,8 @@ from numpy.typing import ArrayLike
 
 from burridge_knopoff.laws.formula import FormulaError, compile_formula, formula_names
 from burridge_knopoff.laws.tape import Tape
-from burridge_knopoff.values import Unchanging, format_value, full_key, instance_of, real_number, refusal
+from burridge_knopoff.messages import format_value, full_key, refusal
+from burridge_knopoff.values import Unchanging, instance_of, real_number
 
 #: A law must be analytic up to this speed. Blocks stay slower if springs and thresholds are about 1.
 MAX_SPEED = 10.0

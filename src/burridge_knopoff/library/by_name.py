@@ -7,9 +7,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, TypedDict, TypeVar
 
+from burridge_knopoff.messages import full_key, suggestion
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.running.section import Section
-from burridge_knopoff.values import full_key, instance_of, suggestion
+from burridge_knopoff.values import instance_of
 
 _F = TypeVar("_F", bound=Callable[..., Any])
 _T = TypeVar("_T")

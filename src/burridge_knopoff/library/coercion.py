@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 
 from burridge_knopoff.laws import Law, law_of
+from burridge_knopoff.messages import format_value, refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import Field, Keys, fields_of
 from burridge_knopoff.model.initial import PAPER_STATES, STATE_NAME, InitialState, has_paper_numbers, initial_state
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.cost import cost_note, is_stiff
 from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.values import format_value, refusal
 
 #: An initial state: minus or plus, an `InitialState`, {"position": …, "velocity": …}, or (position, velocity).
 Initial = str | InitialState | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray

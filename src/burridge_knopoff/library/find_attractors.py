@@ -12,11 +12,12 @@ from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.library.by_name import AttractorOptions, settings_of, show_settings
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import STARTS, Model
 from burridge_knopoff.model.ranges import OneOf
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.values import instance_of, refusal
+from burridge_knopoff.values import instance_of
 
 
 @show_settings(SearchSettings)

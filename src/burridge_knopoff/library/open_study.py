@@ -14,14 +14,13 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES
-from burridge_knopoff.dataset.point_identity import point_identity
+from burridge_knopoff.dataset.run import open_run
 from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.jobs.checked import check_file
 from burridge_knopoff.jobs.jobs import Jobs
-from burridge_knopoff.provenance.seal import check_seal
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import all_points
-from burridge_knopoff.values import refusal
 
 # HDF5 is not thread-safe, and xarray's own lock does not cover everything that is read when a file is opened.
 _LOCK = RLock()
@@ -69,7 +68,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
     """The results of a study by their paths in its folder, without suffix; see `open_study`."""
 
     def __init__(self, results: Path) -> None:
-        record, self._study = recorded_study(results)
+        self._record, self._study = recorded_study(results)
         self._results = results
         self._jobs = Jobs(self._study)
         self._points = {
@@ -78,7 +77,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
         files = (name.removesuffix(".nc") for name in self._jobs.all_files if name.endswith(".nc"))
         self._summaries = sorted(name for name in files if name.startswith("summary/"))
         self._grid: xarray.Dataset | None = None
-        self.config: dict[str, Any] = record["config"]
+        self.config = dict(self._study.config)
 
     def __iter__(self) -> Iterator[str]:
         points = [name for name in self._points if self._has(name)]
@@ -136,20 +135,9 @@ class StudyResults(Mapping[str, xarray.DataTree]):
             if self._grid is None:
                 self._grid = self._read_grid()
             return self._grid
-        self._check(name)
-        path = self._results / f"{name}.nc"
-        try:
-            return xarray.open_dataset(path)
-        except (OSError, RuntimeError, ValueError) as error:
-            raise ValueError(f"{path}: cannot be read ({error})") from error
-
-    def _check(self, name: str) -> None:
-        """Raise ValueError, one line, if a file is damaged or not the expected one of the study."""
-        if name in self._points:
-            command = self._study.command(**self._points[name])
-            check_seal(self._results / f"{name}.nc", point_identity(command), any_sources=True)
-        else:
-            check_file(self._jobs, self._results, f"{name}.nc", any_sources=True)
+        # Raises ValueError, one line, if the file is damaged or not the expected one of the study.
+        check_file(self._jobs, self._results, f"{name}.nc", self._record)
+        return xarray.open_dataset(self._results / f"{name}.nc")
 
     def _read_grid(self) -> xarray.Dataset:
         study = self._study
@@ -157,9 +145,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
         scalars = {name: np.full(shape, _missing_value(name)) for name in SCALARS}
         for index, name in zip(np.ndindex(shape), self._points, strict=True):
             if self._has(name):
-                self._check(name)
-                with netCDF4.Dataset(self._results / f"{name}.nc") as point:
-                    point.set_auto_mask(False)
+                with open_run(self._results / f"{name}.nc", study.command(**self._points[name])) as point:
                     for scalar, everywhere in scalars.items():
                         everywhere[index] = point[scalar][...]
         dimensions = ("law", "initial", *study.wildcards)

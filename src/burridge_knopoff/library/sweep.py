@@ -16,6 +16,7 @@ from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.laws import Law
 from burridge_knopoff.library.by_name import settings_of, show_settings
 from burridge_knopoff.library.coercion import GivenLaw, Initial, given_model, given_state, warn_of_cost
+from burridge_knopoff.messages import format_value, full_key, refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import fields_of
 from burridge_knopoff.model.model import Model
@@ -32,7 +33,6 @@ from burridge_knopoff.running.runner import LOCKSTEP_RUNS, run_together
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import prepare
 from burridge_knopoff.running.threads import map_in_threads
-from burridge_knopoff.values import format_value, full_key, refusal
 
 if TYPE_CHECKING:
     import xarray

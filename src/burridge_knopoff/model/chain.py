@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.laplacian import Laplacian
 from burridge_knopoff.model.own_units import OwnUnits, own_units_of
@@ -28,7 +29,7 @@ from burridge_knopoff.model.springs import (
     read_edges,
     row_neighbours,
 )
-from burridge_knopoff.values import Unchanging, read_only_copy, real_array, refusal
+from burridge_knopoff.values import Unchanging, read_only_copy, real_array
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike

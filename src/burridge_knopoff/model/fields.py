@@ -11,12 +11,12 @@ tables of config/README.md. The decorator `settings` makes `help` show the plain
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, TypeVar, get_args, get_origin, get_type_hints
 
+from burridge_knopoff.messages import full_key, unknown_key_error
 from burridge_knopoff.model.ranges import Range
-from burridge_knopoff.values import full_key, suggestion
 
 #: Default of a required field, and of an optional field whose value follows from other fields.
 REQUIRED, FOLLOWS = object(), object()
@@ -56,17 +56,6 @@ class Keys(Range):
 
     def __str__(self) -> str:
         return f"{{{', '.join(self.fields)}}}{self.words}"
-
-
-#: Keys of earlier configs, and their present names.
-RENAMED = {"fraction_samples": "fraction_width", "pushes": "perturbations"}
-
-
-def unknown_key_error(place: str, name: Any, allowed: Sequence[str]) -> ValueError:
-    """Return the error for an unknown key, with its present name or the closest known key, otherwise all known keys."""
-    renamed = f" (renamed to {RENAMED[name]})" if RENAMED.get(name) in allowed else ""
-    hint = renamed or suggestion(name, allowed) or f", expected one of: {', '.join(allowed)}"
-    return ValueError(f"{full_key(place, name)}: unknown key{hint}")
 
 
 _T = TypeVar("_T")

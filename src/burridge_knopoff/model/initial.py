@@ -7,11 +7,12 @@ from typing import Annotated
 
 import numpy as np
 
+from burridge_knopoff.messages import format_value, suggestion
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.random_numbers import Numbers, RandomNumbers, block_values
 from burridge_knopoff.model.ranges import Either, Number, Several, Text, Whole
 from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
-from burridge_knopoff.values import format_value, instance_of, suggestion
+from burridge_knopoff.values import instance_of
 
 STATE_NAME = Text("letters, digits and _, at most 32, a letter first", "[A-Za-z][A-Za-z0-9_]{0,31}")
 COORDINATE = Number(-1e6, 1e6)

@@ -10,12 +10,13 @@ import numpy as np
 
 from burridge_knopoff.laws import Law
 from burridge_knopoff.laws.law import MAX_SPEED
+from burridge_knopoff.messages import format_value, refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.initial import PAPER_V, InitialState, PaperState
 from burridge_knopoff.model.parameters import set_parameters
 from burridge_knopoff.model.ranges import Number, OneOf, Text
-from burridge_knopoff.values import Unchanging, format_value, instance_of, read_only_copy, refusal
+from burridge_knopoff.values import Unchanging, instance_of, read_only_copy
 
 LAW_NAME = Text("small letters, digits and _, at most 32, a letter first", "[a-z][a-z0-9_]{0,31}")
 

@@ -71,3 +71,13 @@ def own_units_of(chain: Chain) -> OwnUnits:
 def _nearest_power_of_two(size: float) -> float:
     """Return the power of 2 nearest to a number on a logarithmic scale."""
     return math.ldexp(1.0, math.frexp(_SIZE_FACTOR * size)[1] - 1)
+
+
+def a_unit(chain: Chain) -> float:
+    """Return the a at which friction changes a slip as much as a = 1 does in the paper's chain, for which it is 1.
+
+    Springs that are stiffer by a factor make all motion faster by its square root; a mode grows at a rate proportional
+    to a times the threshold.
+    """
+    pulled = chain.driving > 0.0
+    return math.sqrt(float((chain.driving * chain.masses)[pulled].min())) / float(chain.thresholds.max())

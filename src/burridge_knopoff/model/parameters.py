@@ -12,9 +12,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from burridge_knopoff.messages import full_key, refusal
 from burridge_knopoff.model.chain import BLOCK_PARAMETERS, NEIGHBOURS, SPRING_PARAMETERS
 from burridge_knopoff.model.initial import InitialState, PaperState
-from burridge_knopoff.values import full_key, real_number, refusal
+from burridge_knopoff.values import real_number
 
 if TYPE_CHECKING:
     from burridge_knopoff.model.chain import Chain

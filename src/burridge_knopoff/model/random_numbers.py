@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.ranges import Number, OneOf, Range, Whole
-from burridge_knopoff.values import number_in, refusal
+from burridge_knopoff.values import number_in
 
 #: One number for all blocks, a list with one number per block, or random numbers by their keys or as text.
 Numbers = float | Sequence[float] | Mapping[str, Any] | str

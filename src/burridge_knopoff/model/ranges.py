@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.values import full_key, real_number, refusal, scalar, suggestion
+from burridge_knopoff.messages import full_key, refusal, suggestion
+from burridge_knopoff.values import real_number, scalar
 
 #: Means no limit, except that numbers must be finite.
 HUGE = 1e300

@@ -18,13 +18,14 @@ from scipy.fft import next_fast_len, rfft
 from scipy.signal import find_peaks
 from scipy.signal.windows import hann
 
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.runner import Runner, check_state
 from burridge_knopoff.running.settings import LONGEST
-from burridge_knopoff.values import MOST_NUMBERS, instance_of, read_only_copy, refusal
+from burridge_knopoff.values import MOST_NUMBERS, instance_of, read_only_copy
 
 # The spectrum is sampled more finely than its resolution by this factor, so that a parabola fits the top of a peak.
 PADDING = 8

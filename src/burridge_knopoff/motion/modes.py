@@ -20,11 +20,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import eigh
 
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.ranges import Number
 from burridge_knopoff.motion.frequency import SampledMotion, sampled_motion, smooth_weight
-from burridge_knopoff.values import MOST_NUMBERS, instance_of, refusal
+from burridge_knopoff.values import MOST_NUMBERS, instance_of
 
 # A block with a smaller share of the largest displacement in a mode does not decide the sign of the mode.
 AT_REST = 1e-6

@@ -11,13 +11,13 @@ from itertools import pairwise
 import numpy as np
 
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.model.own_units import a_unit
 from burridge_knopoff.motion.limit_cycle import orbit_of_motion
 from burridge_knopoff.motion.section_returns import state_of
 from burridge_knopoff.periodic_orbits.flow import OrbitError, model_at
 from burridge_knopoff.periodic_orbits.known_orbits import KnownOrbits
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit, find_periodic_orbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
-from burridge_knopoff.periodic_orbits.synchronized_bifurcations import a_unit
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.values import instance_of

@@ -15,6 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.model.parameters import parameter_value
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
@@ -26,7 +27,7 @@ from burridge_knopoff.periodic_orbits.following import STEP_GROWTH, Continuation
 from burridge_knopoff.periodic_orbits.parameter_line import model_at
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import tangent_of
-from burridge_knopoff.values import instance_of, refusal
+from burridge_knopoff.values import instance_of
 
 #: Steps along a curve, in the units of `follow`.
 STEPS = ContinuationSettings(first_step=1e-3, largest_step=2e-2, smallest_step=1e-7)

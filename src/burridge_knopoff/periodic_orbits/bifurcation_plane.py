@@ -11,12 +11,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.model.parameters import parameter_value
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import BRACKETS, ROUNDING, Bifurcation, kind_at
 from burridge_knopoff.periodic_orbits.border_collision import CORNER_DISTANCE, LARGEST_SHARE, STEP_REDUCTION
-from burridge_knopoff.periodic_orbits.floquet import critical_values
+from burridge_knopoff.periodic_orbits.critical_values import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError, flow
 from burridge_knopoff.periodic_orbits.following import STEP_GROWTH
 from burridge_knopoff.periodic_orbits.grazing_distances import grazing_distances
@@ -30,7 +31,6 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import (
     tangent_of,
     weights,
 )
-from burridge_knopoff.values import refusal
 
 # First step of the search for a root along a branch, the change at which it ends, and the maximum number of iterations.
 PROBE = 1e-6

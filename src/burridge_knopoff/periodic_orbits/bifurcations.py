@@ -16,8 +16,8 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
-from burridge_knopoff.periodic_orbits.bifurcation_kind import MULTIPLIER_TESTS, BifurcationKind
-from burridge_knopoff.periodic_orbits.floquet import critical_values
+from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
+from burridge_knopoff.periodic_orbits.critical_values import MULTIPLIER_TESTS, critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.following import follow
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form

@@ -20,7 +20,7 @@ import numpy as np
 
 from burridge_knopoff.model.model import ChainState
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
-from burridge_knopoff.periodic_orbits.floquet import critical_values
+from burridge_knopoff.periodic_orbits.critical_values import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.grazing_distances import has_friction_drop
 from burridge_knopoff.periodic_orbits.minimal_orbit import reduced_orbit

@@ -18,7 +18,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from burridge_knopoff.periodic_orbits.bifurcation_kind import MULTIPLIER_TESTS, BifurcationKind
 from burridge_knopoff.periodic_orbits.flow import rate
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.return_map import allowed_directions, symmetry_breaking_directions
@@ -102,22 +101,3 @@ def multipliers(orbit: PeriodicOrbit) -> Multipliers:
 def _sorted(values: np.ndarray) -> np.ndarray:
     values = values.astype(complex)
     return values[np.lexsort((-values.imag, -values.real, -np.abs(values)))]
-
-
-def critical_values(orbit: PeriodicOrbit, found: Multipliers | None = None) -> dict[tuple[BifurcationKind, str], float]:
-    """Return the values of the test functions, {(kind of bifurcation, part of the perturbations): value}.
-
-    Each is a smooth function that changes sign at the bifurcation, such as the product of all μ − 1; see
-    MULTIPLIER_TESTS.
-    """
-    found = multipliers(orbit) if found is None else found
-    return {
-        (test.kind, part): float(test.value(own).real)
-        for part, own in (
-            ("symmetry_preserving", found.symmetry_preserving),
-            ("symmetry_breaking", found.symmetry_breaking),
-        )
-        if len(own)
-        for test in MULTIPLIER_TESTS
-        if test.is_applicable(part, orbit.symmetry)
-    }

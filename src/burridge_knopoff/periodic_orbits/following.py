@@ -7,16 +7,17 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Annotated, Any
 
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.ranges import Number, TrueOrFalse, Whole
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.border_collision import approach_grazing, smooth_step, switch_branch
-from burridge_knopoff.periodic_orbits.floquet import critical_values
+from burridge_knopoff.periodic_orbits.critical_values import critical_values
 from burridge_knopoff.periodic_orbits.flow import OrbitError
 from burridge_knopoff.periodic_orbits.minimal_orbit import minimal_form, reduced_orbit
 from burridge_knopoff.periodic_orbits.periodic import PeriodicOrbit
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit, begin_branch, line_of
-from burridge_knopoff.values import instance_of, real_number, refusal
+from burridge_knopoff.values import instance_of, real_number
 
 # Distance, for v = 0.1 in the chain's own units, within which an orbit must return to its mirror image, or to itself
 # after half its period, to be about to become more symmetric or to halve its period.

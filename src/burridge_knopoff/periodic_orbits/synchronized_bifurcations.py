@@ -12,11 +12,12 @@ from collections.abc import Callable, Iterator
 import numpy as np
 from scipy.optimize import brentq
 
-from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import ChainState
+from burridge_knopoff.model.own_units import a_unit
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation, locate_bifurcations
-from burridge_knopoff.periodic_orbits.floquet import critical_values, multipliers
+from burridge_knopoff.periodic_orbits.critical_values import critical_values
+from burridge_knopoff.periodic_orbits.floquet import multipliers
 from burridge_knopoff.periodic_orbits.flow import OrbitError, state_after
 from burridge_knopoff.periodic_orbits.following import CONTINUATION, ContinuationSettings, follow
 from burridge_knopoff.periodic_orbits.grazing_distances import grazing_distances
@@ -47,16 +48,6 @@ DIFFERENCE = 1e-3
 
 # Step in a, in units of `a_unit`, for the slope of the multiplier.
 SLOPE_STEP = 1e-4
-
-
-def a_unit(chain: Chain) -> float:
-    """Return the a at which friction changes a slip as much as a = 1 does in the paper's chain, for which it is 1.
-
-    Springs that are stiffer by a factor make all motion faster by its square root; a mode grows at a rate proportional
-    to a times the threshold.
-    """
-    pulled = chain.driving > 0.0
-    return math.sqrt(float((chain.driving * chain.masses)[pulled].min())) / float(chain.thresholds.max())
 
 
 def bifurcations_of(orbits: KnownOrbits) -> list[Bifurcation]:

@@ -1,1 +1,1 @@
-"""The origin of a result: fingerprints of its sources, seals, records of studies, and atomic writing of files."""
+"""The origin of a result: fingerprints of its sources, checksums, records of studies, and atomic writing of files."""

@@ -12,9 +12,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from burridge_knopoff.messages import escape_unprintable
 from burridge_knopoff.provenance.files import display_path, write_text
 from burridge_knopoff.provenance.sources import PACKAGE, SOFTWARE
-from burridge_knopoff.values import escape_unprintable
 
 NAME = "study.json"
 

@@ -7,8 +7,10 @@ at the top of a file or inside a function, from the module or script that makes 
 from __future__ import annotations
 
 import hashlib
+import platform
 import re
 from functools import cache
+from importlib.metadata import version
 from pathlib import Path
 
 from burridge_knopoff.version import __version__
@@ -16,10 +18,21 @@ from burridge_knopoff.version import __version__
 SOFTWARE = f"burridge-knopoff {__version__}"
 PACKAGE = Path(__file__).parents[1]
 
-#: Code that moves bytes, reads arguments or names sources. No number depends on it, so its changes invalidate nothing.
-PLUMBING = ("__init__.py", "cli/", "kernel/__init__.py", "provenance/", "running/command.py", "version.py")
-#: Results depend on how the kernel is compiled.
-COMPILATION = PACKAGE / "provenance/compilation.py"
+#: Code that moves bytes, reads arguments, words messages or names sources. No number depends on it, so its changes
+#: invalidate nothing: `benchmarks/left_out.py` tries random ones.
+PLUMBING = (
+    "__init__.py",
+    "cli/",
+    "kernel/__init__.py",
+    "messages.py",
+    "model/fields.py",
+    "model/ranges.py",
+    "provenance/",
+    "running/command.py",
+    "version.py",
+)
+#: Results depend on how the kernel is compiled, and contain their checksums.
+COMPILATION, CHECKSUM = PACKAGE / "provenance/compilation.py", PACKAGE / "provenance/checksum.py"
 
 #: Suffixes of the files that modules read from their folder, in addition to Python.
 ASSETS = (".css", ".jinja", ".js", ".yaml")
@@ -42,6 +55,18 @@ def provenance(module: str) -> dict[str, str]:
     They do not depend on user, host, time or commit: equal inputs give equal bytes.
     """
     return {"software": SOFTWARE, "source_module": module, "source_fingerprint": source_fingerprint(module)}
+
+
+@cache
+def versions() -> str:
+    """Return the versions of Python and of the libraries on which numbers depend."""
+    import netCDF4
+    import numpy
+
+    libraries = {"NumPy": numpy.__version__, "SciPy": version("scipy"), "netCDF4": netCDF4.__version__}
+    return ", ".join(
+        [f"Python {platform.python_version()}", *(f"{name} {number}" for name, number in libraries.items())]
+    )
 
 
 @cache
@@ -132,4 +157,4 @@ def _imported_files(path: Path) -> list[Path]:
         for name in re.findall(r"([\w.]+)(?:\s+as\s+\w+)?", names):
             modules.update({start, f"{start}.{name}"} if start else {name})
     files = [file for name in modules if name.startswith(f"{PACKAGE.name}.") for file in files_of(name)]
-    return [file for file in files if file == COMPILATION or not _name(file).startswith(PLUMBING)]
+    return [file for file in files if file in (COMPILATION, CHECKSUM) or not _name(file).startswith(PLUMBING)]

@@ -25,6 +25,7 @@ from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.report.trajectories import embedded_trajectories
 from burridge_knopoff.report.verdicts import SIGNS, Verdicts, read_verdicts
 from burridge_knopoff.study.formatting import text
+from burridge_knopoff.study.grid import parameters_of
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.agreement import digest
 from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD
@@ -66,17 +67,18 @@ class Sources:
     points: Path | None = None
 
 
-def make(given: Given, config: Mapping[str, Any], parameters: Mapping[str, Any]) -> str:
-    """Return the report of a study: its config and its parameters, as in `Study`."""
+def make(given: Given, config: Mapping[str, Any]) -> str:
+    """Return the report of a study."""
     claims, summaries, figures = (given.paths(name) for name in ("claims", "summaries", "figures"))
+    study = Study(config, parameters_of(config))
     sources = Sources(
         next(iter(claims), None),
         {path.stem: path for path in summaries},
         {path.stem: path for path in figures},
         given.results / "benchmarks",
-        given.results / "points" if given.points else None,
+        None if study.is_plane else given.results / "points",
     )
-    return render(Study(config, parameters), sources, given.arguments)
+    return render(study, sources, given.arguments)
 
 
 def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str:

@@ -10,7 +10,7 @@ from pathlib import Path
 from PIL import Image
 
 from burridge_knopoff.figures.description import title_and_caption
-from burridge_knopoff.provenance.seal import BadFile
+from burridge_knopoff.provenance.bad_file import BadFile
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from typing import Any
 
 from burridge_knopoff.claims.formats import group_by_topic, group_untestable
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING
-from burridge_knopoff.provenance.seal import BadFile
+from burridge_knopoff.provenance.bad_file import BadFile
 
 #: Every verdict with a sign, so that the page does not distinguish them by colour alone.
 SIGNS = {HOLDS: "✓", LOOSELY: "≈", CONVENTION: "⇄", READING: "◇", FAILS: "✗", NOT_TESTABLE: "–"}

@@ -18,11 +18,12 @@ from typing import Any
 import numpy as np
 import scipy
 
-from burridge_knopoff.provenance.seal import read_sealed, write_sealed
+from burridge_knopoff.provenance.files import write_whole
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.running.packing import pack, unpack
 
 _DIGIT = "[0-9a-f]"
+_HEAD = hashlib.sha256().digest_size
 
 
 def cached_call(folder: Path, function: Callable[..., Any], *items: Any) -> tuple[Any, Path, bool]:
@@ -33,16 +34,21 @@ def cached_call(folder: Path, function: Callable[..., Any], *items: Any) -> tupl
     digest = hashlib.sha256(f"{np.__version__} {scipy.__version__}".encode())
     for part in _key_parts([function, *items]):
         digest.update(part)
-    path = folder / digest.hexdigest()[:32]
-    about = {"kept": path.name}
-    with contextlib.suppress(ValueError, LookupError, AttributeError):
-        content, found, _ = read_sealed(path)
-        if found == about:
+    key = digest.hexdigest()[:32]
+    path = folder / key
+    with contextlib.suppress(OSError, ValueError, LookupError, AttributeError):
+        head, content = (data := path.read_bytes())[:_HEAD], data[_HEAD:]
+        if head == _head(key, content):
             return unpack(content), path, True
     result = function(*items)
     content = pack(result)
-    write_sealed(path, lambda name: Path(name).write_bytes(content), about)
+    write_whole(path, lambda name: Path(name).write_bytes(_head(key, content) + content))
     return result, path, False
+
+
+def _head(key: str, content: bytes) -> bytes:
+    """Return the first bytes of a file in the cache: the SHA-256 of its key and its content."""
+    return hashlib.sha256(key.encode() + content).digest()
 
 
 def delete_unused(folder: Path, asked: Collection[Path]) -> None:

@@ -10,13 +10,14 @@ from functools import partial
 import numpy as np
 
 from burridge_knopoff.kernel._core import Catalogue, EventLog, Exponents, Observer, Run, TimeStepping, run_in_lockstep
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.running.kernel_model import kernel_model
 from burridge_knopoff.running.loading import is_quasistatic
 from burridge_knopoff.running.normal_modes import normal_modes
 from burridge_knopoff.running.section import SUM, Section
 from burridge_knopoff.running.status import Status
-from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_array, real_number, refusal
+from burridge_knopoff.values import MOST_NUMBERS, instance_of, real_array, real_number
 
 #: Solvers with a fixed step.
 FIXED_STEP_SOLVERS = ("rk4", "euler")

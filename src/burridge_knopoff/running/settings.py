@@ -5,13 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import check_fields, settings
 from burridge_knopoff.model.model import START, STARTS
 from burridge_knopoff.model.ranges import Number, OneOf, Whole
 from burridge_knopoff.model.springs import MAXIMUM_BLOCKS
 from burridge_knopoff.running.section import SUM, Section, SectionRange
-from burridge_knopoff.values import MOST_NUMBERS, refusal
+from burridge_knopoff.values import MOST_NUMBERS
 
 SOLVERS = ("series", "map", "rk4")
 EVENTS = ("none", "window", "all")

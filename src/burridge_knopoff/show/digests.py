@@ -9,7 +9,7 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.claims.verdict import format_values
-from burridge_knopoff.dataset.variables import decode_flags
+from burridge_knopoff.dataset.decoding import decode_flags
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.formatting import format_count, span

@@ -9,7 +9,7 @@ from textwrap import shorten
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.variables import decode_flags
+from burridge_knopoff.dataset.decoding import decode_flags
 from burridge_knopoff.summaries.text_table import UNLIMITED, wrap_line
 
 #: Maximum length of a list of names, in letters.

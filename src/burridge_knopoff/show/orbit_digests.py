@@ -8,7 +8,8 @@ from collections.abc import Callable
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.variables import Answer, decode_flags
+from burridge_knopoff.dataset.decoding import decode_flags
+from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.show.digests import lines_of, values_where
 from burridge_knopoff.study.formatting import format_count, span

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -15,11 +16,11 @@ from burridge_knopoff.figures.distance import FLOOR, linear_top
 from burridge_knopoff.figures.motion import MOST_NAMED, draw_blocks, draw_section
 from burridge_knopoff.figures.slip_events import draw_run
 from burridge_knopoff.figures.style import PAGE, label_panels, new_figure, styled, write_figure
-from burridge_knopoff.provenance.seal import is_consistent
+from burridge_knopoff.messages import cut, format_value
+from burridge_knopoff.provenance.origin import Origin
 from burridge_knopoff.show.result import Result, open_result
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.catalogue import summarize
-from burridge_knopoff.values import cut, format_value
 
 #: Name of the catalogue file of a run, which is that of the module that makes it.
 CATALOGUE_FILE = "slip_events"
@@ -92,9 +93,24 @@ def _open_neighbour(result: Result, name: str) -> Result:
         known = f"summary/{name}.nc" in result.files
         reason = f": {error}" if path.exists() or known else ", which is not in the same folder"
         raise ValueError(f"{result.path}: its figure also needs {name}.nc{reason}") from None
-    if not is_consistent(result.path, path):
+    if not _fit(result.data.attrs, other.data.attrs):
         raise ValueError(f"{result.path}: its figure also needs {name}.nc, but {path} is of another study")
     return other
+
+
+def _fit(first: Mapping[str, Any], second: Mapping[str, Any]) -> bool:
+    """Return whether two files can be of one study, by their attributes: not if made from different versions of a file.
+
+    Files that were not made in a study fit.
+    """
+    made_from = []
+    for attributes in (first, second):
+        if origin := Origin.from_attributes(attributes):
+            made_from.append({**origin.params, **origin.inputs, origin.file: attributes["checksum"]})
+    if len(made_from) < 2:
+        return True
+    one, other = made_from
+    return all(one[name] == other[name] for name in one.keys() & other.keys())
 
 
 def _study_arguments(result: Result, figure: Description) -> dict[str, Any]:

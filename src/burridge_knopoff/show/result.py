@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -11,11 +12,15 @@ from typing import Any
 import xarray
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES
-from burridge_knopoff.jobs.checked import check_result
+from burridge_knopoff.jobs.checked import check_file
+from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
+from burridge_knopoff.provenance.bad_file import BadFile
+from burridge_knopoff.provenance.opening import open_whole
 from burridge_knopoff.provenance.record import read_study_record, study_folder
-from burridge_knopoff.provenance.seal import BadFile
 from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.study.model import motion_of
+from burridge_knopoff.study.recorded import recorded_study
 
 #: {variable that only one summary has: name of the summary}, for files whose source module makes several summaries.
 _BY_CONTENT = {"rotation_number": "rotation", "in_grid": "refined", "basin_fraction": "attractors"}
@@ -66,10 +71,7 @@ class Result:
     def motion(self) -> MotionSettings:
         """The settings that classify its motion: those of its study, or the defaults."""
         config = self.record.get("config", {})
-        if "motion" not in config:
-            return MOTION
-        others = {key: config[key] for key in ("synchronization_threshold", "section") if key in config}
-        return MotionSettings(**config["motion"], **others)
+        return motion_of(config) if "motion" in config else MOTION
 
     @property
     def origin(self) -> str:
@@ -83,6 +85,24 @@ class Result:
     def of_these_sources(self) -> bool:
         """Whether the current sources made the file."""
         return source_fingerprint(self.data.attrs["source_module"]) == self.data.attrs["source_fingerprint"]
+
+
+def _check(path: Path, study: Path | None) -> Collection[str]:
+    """Check that a file is intact and, in a study, the expected one; return the names of all its files except runs.
+
+    Without a study, or in one of another version, there is none to compare with, and no name.
+    """
+    jobs = None
+    if study is not None:
+        with contextlib.suppress(ValueError, KeyError):
+            record, known = recorded_study(study)
+            jobs = Jobs(known)
+    if study is None or jobs is None:
+        with open_whole(path):
+            return ()
+    results = study if path.is_absolute() else Path(os.path.relpath(study))
+    check_file(jobs, results, path.absolute().relative_to(study).as_posix(), record)
+    return jobs.all_files
 
 
 def open_result(path: str | Path) -> Result:
@@ -100,7 +120,7 @@ def open_result(path: str | Path) -> Result:
         )
     study = study_folder(path)
     try:
-        files = check_result(path)
+        files = _check(path, study)
     except BadFile as error:
         # Only the file of a study has a command that recreates it.
         if study and path.suffix == ".nc":

@@ -16,6 +16,7 @@ from burridge_knopoff.basins.settings import BasinSettings, EdgeSettings, PhaseS
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.laws import LAWS, unknown_law
+from burridge_knopoff.messages import full_key
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import FOLLOWS, Field, Keys, fields_of
 from burridge_knopoff.model.initial import STATE_NAME, InitialState
@@ -28,7 +29,6 @@ from burridge_knopoff.running.section import SECTION_KEYS
 from burridge_knopoff.running.settings import SOLVERS, TIME, Settings
 from burridge_knopoff.study.paper import PAPER_A, PAPER_BASINS, PAPER_COMPARED, PAPER_LAWS, PAPER_PHASES
 from burridge_knopoff.study.stages import CHAIN_LENGTHS, STAGES
-from burridge_knopoff.values import full_key
 
 NUMBER = Number(-HUGE, HUGE)
 A = Number(0.0, 100.0)

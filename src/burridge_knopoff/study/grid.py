@@ -7,8 +7,8 @@ from decimal import Decimal
 from itertools import pairwise
 from typing import Any
 
+from burridge_knopoff.messages import format_value, refusal
 from burridge_knopoff.model.parameters import plain_name
-from burridge_knopoff.values import format_value, refusal
 
 #: Limit on the values of a list and on the points of a study. Snakemake plans so many jobs in minutes, or in seconds if
 #: each job makes a chunk of points.

@@ -8,8 +8,8 @@ from collections.abc import Iterable, Sequence
 from contextlib import suppress
 from pathlib import Path
 
+from burridge_knopoff.provenance.bad_file import REMEDY
 from burridge_knopoff.provenance.files import nearest_folder
-from burridge_knopoff.provenance.seal import REMEDY
 
 #: Only the end of a log is read.
 _TAIL = 20_000

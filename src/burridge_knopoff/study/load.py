@@ -10,6 +10,7 @@ from typing import Any
 
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.catalogue.settings import CatalogueSettings
+from burridge_knopoff.messages import refusal
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.springs import has_digest
 from burridge_knopoff.motion.chain_settings import Sample
@@ -20,7 +21,6 @@ from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.grid import parameters_of, resolve_grid
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.study.yaml_file import ConfigError
-from burridge_knopoff.values import refusal
 
 
 def load_study(config: Mapping[str, Any], file: str, written: Mapping[str, Any] | None = None) -> Study:
@@ -58,8 +58,8 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     config = resolve_grid(config)
     # Use the types of YAML: lists instead of tuples.
     filled = json.loads(json.dumps(CONFIG.form(config, "")))
-    # Ranges stay as the user wrote them; `parameters` has the values.
-    filled.update({"a": [], **{key: config[key] for key in ("a", "grid") if key in config}})
+    # Ranges stay ranges; `parameters` has the values.
+    filled.setdefault("a", [])
     study = Study(filled, parameters_of(filled))
     values = list(study.grid.values())
     if "transient" in config and filled["lyapunov_alignment"] > filled["transient"] and "lyapunov_alignment" in config:

@@ -9,9 +9,17 @@ from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import set_parameters
+from burridge_knopoff.motion.settings import MotionSettings
 
+#: Keys of a config that belong to the criteria of motions, besides `motion`.
+_BESIDE_MOTION = ("synchronization_threshold", "section")
 #: Keys of a config that define a model, except the number of blocks.
 MODEL_KEYS = ("laws", "chain", "v", "contact")
+
+
+def motion_of(config: Mapping[str, Any]) -> MotionSettings:
+    """Return the criteria of a config by which kinds of motion are distinguished."""
+    return MotionSettings(**config["motion"], **{key: config[key] for key in _BESIDE_MOTION if key in config})
 
 
 def models_of(config: Mapping[str, Any], a: float, blocks: int | None = None) -> list[Model]:

@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from burridge_knopoff.dataset.point import write_point
-from burridge_knopoff.dataset.point_identity import point_identity
+from burridge_knopoff.dataset.run import open_run
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.seal import BadFile, check_seal
+from burridge_knopoff.provenance.bad_file import BadFile
+from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.runner import LOCKSTEP_RUNS, run_together
 from burridge_knopoff.running.settings import Settings
@@ -30,8 +31,11 @@ def make_points(study: Study, points: Sequence[Mapping[str, str]], folder: Path)
         run = study.run_of(**point)
         command = simulate_command(*run)
         try:
-            check_seal(path, point_identity(command))
+            with open_run(path, command) as dataset:
+                is_current = dataset.source_fingerprint == source_fingerprint("burridge_knopoff.dataset.point")
         except BadFile:
+            is_current = False
+        if not is_current:
             wanted.append((path, command, run))
     for first in range(0, len(wanted), LOCKSTEP_RUNS):
         failed += _simulate_together(wanted[first : first + LOCKSTEP_RUNS])

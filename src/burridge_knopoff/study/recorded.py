@@ -5,44 +5,54 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from burridge_knopoff.messages import escape_unprintable, full_key, unknown_key_error
 from burridge_knopoff.model.fields import FOLLOWS, Keys
 from burridge_knopoff.provenance.record import NAME, read_study_record
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.study import Study
-from burridge_knopoff.values import escape_unprintable, full_key
 
 
 def recorded_study(results: str | Path) -> tuple[dict[str, Any], Study]:
     """Return the record in a folder of results and the study that it describes.
 
-    Raises ValueError, one line that names the record, if the folder has no study, if the config has keys of another
-    version, or if the record was edited by hand.
+    Keys that are new since the run of an earlier version have their defaults, which mean what was done before: a key of
+    another meaning has another name.
+
+    Raises ValueError, one line that names the record, if the folder has no study, if the config has keys that this
+    version lacks, or if the record was edited by hand.
     """
     record, path = read_study_record(results), Path(results, NAME)
-    if key := _unmatched_key(record["config"], CONFIG):
-        raise ValueError(f"{escape_unprintable(str(path))}: not a study of this version ({key}); run snakemake again")
+    place = escape_unprintable(str(path))
+    try:
+        config = _with_new_keys(record["config"], CONFIG)
+    except ValueError as error:
+        raise ValueError(f"{place}: not a study of this version: {error}; run snakemake again") from None
     # A complete config is a config, except that some defaults may be refused if they are given explicitly.
-    asked = {name: value for name, value in record["config"].items() if value != CONFIG.fields[name].default}
+    asked = {name: value for name, value in config.items() if value != CONFIG.fields[name].default}
     # A comparison of solvers that is left out has no values of a; a config cannot ask for that.
     if (solvers := asked.get("solvers", {})).get("a") == []:
         asked["solvers"] = {key: value for key, value in solvers.items() if key != "a"}
     study = load_study(asked, str(path))
-    if (study.config, study.parameters) != (record["config"], record["grid"]):
-        raise ValueError(f"{escape_unprintable(str(path))}: not a valid record; run snakemake again to rewrite it")
-    # Keys in the order of the run, since seals depend on the order.
-    return record, Study(record["config"], record["grid"])
+    if (study.config, study.parameters) != (config, record["grid"]):
+        raise ValueError(f"{place}: not a valid record; run snakemake again to rewrite it")
+    # Keys in the order of the run: the order of laws and states counts.
+    return record, Study(config, record["grid"])
 
 
-def _unmatched_key(config: Any, keys: Keys, place: str = "") -> str:
-    """Return a key that a complete config has and this version lacks, or the reverse; empty if there is none."""
+def _with_new_keys(config: Any, keys: Keys, place: str = "") -> Any:
+    """Return a complete config of any version with the defaults of keys that it lacks.
+
+    Raises ValueError, one line, for a key that this version lacks.
+    """
     if not isinstance(config, dict):
-        return place
-    there = {name: field.range for name, field in keys.fields.items() if name in config}
-    sections = {name: inside for name, inside in there.items() if isinstance(inside, Keys)}
+        raise ValueError(f"{place}: got {config!r}, expected keys")
+    complete = dict(config)
+    for name, value in config.items():
+        if name not in keys.fields:
+            raise unknown_key_error(place, name, sorted(keys.fields))
+        if isinstance(inside := keys.fields[name].range, Keys):
+            complete[name] = _with_new_keys(value, inside, full_key(place, name))
     # A key whose default follows from other keys may be missing.
-    own = {name for name, field in keys.fields.items() if field.default is not FOLLOWS}
-    unmatched = [full_key(place, name) for name in sorted({*config} - {*keys.fields} | own - {*config})]
-    if not unmatched:
-        unmatched = [_unmatched_key(config[name], inside, full_key(place, name)) for name, inside in sections.items()]
-    return next(filter(None, unmatched), "")
+    new = {name: field for name, field in keys.fields.items() if name not in config and field.default is not FOLLOWS}
+    return complete | {name: field.range.form(field.default, full_key(place, name)) for name, field in new.items()}

@@ -14,6 +14,7 @@ from typing import Any
 
 from burridge_knopoff.basins.initial_phases import has_free_ends
 from burridge_knopoff.laws import LAWS, law_of, unknown_law
+from burridge_knopoff.messages import cut, refusal, suggestion
 from burridge_knopoff.model.chain import BLOCKS, Chain
 from burridge_knopoff.model.fields import Field, Keys
 from burridge_knopoff.model.initial import PAPER_STATES, PAPER_V, initial_state
@@ -27,7 +28,7 @@ from burridge_knopoff.study.grid import MAXIMUM_POINTS, values_of
 from burridge_knopoff.study.paper import PAPER_BASINS, PAPER_COMPARED, PAPER_PHASES
 from burridge_knopoff.study.paths import point_file
 from burridge_knopoff.study.stages import CHAIN_LENGTHS
-from burridge_knopoff.values import MOST_NUMBERS, cut, refusal, suggestion
+from burridge_knopoff.values import MOST_NUMBERS
 
 #: States labelled at once for each pair of nearby states: basins/pair_separation.py.
 _STATES_OF_A_PAIR = 2

@@ -16,6 +16,7 @@ from burridge_knopoff.model.parameters import parse_indexed_name, plain_name
 from burridge_knopoff.proof.scope import is_covered
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.settings import SOLVERS, Settings
+from burridge_knopoff.study.grid import parameters_of
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paper import PAPER_A
 from burridge_knopoff.study.paths import point_file
@@ -29,6 +30,11 @@ class Study:
 
     config: Mapping[str, Any]
     parameters: Mapping[str, Mapping[str, float]]
+
+    @classmethod
+    def of_keys(cls, config: Mapping[str, Any]) -> Study:
+        """Return the part of a study that some keys of its config describe."""
+        return cls(config, parameters_of({"grid": {}, "a": [], "a_digits": 0, **config}))
 
     @property
     def name(self) -> str:
@@ -82,13 +88,13 @@ class Study:
     @property
     def shown_point(self) -> str:
         """Name of the value of a in the figures of single runs."""
-        shown = self.config["figures"].get("a", PAPER_A)
-        return min(self.grid, key=lambda name: abs(self.grid[name] - shown))
+        return min(self.grid, key=lambda name: abs(self.grid[name] - self.shown_a))
 
     @property
     def shown_a(self) -> float:
         """The value of a in the figures of single runs."""
-        return self.grid[self.shown_point]
+        default = min(self.grid.values(), key=lambda value: abs(value - PAPER_A), default=PAPER_A)
+        return self.config["figures"].get("a", default)
 
     @property
     def shown_law(self) -> str:
@@ -117,8 +123,11 @@ class Study:
 
     @property
     def chain_description(self) -> dict[str, Any]:
-        """The arguments of `Chain`; those of the first point if the chain varies."""
-        chain, first = self.config["chain"], self.model(self.laws[0], self.shown_a, **self.other_values[0]).chain
+        """The arguments of `Chain`; those of the first point if several parameters vary."""
+        chain = self.config["chain"]
+        if not self.is_plane:
+            return chain
+        first = self.model(self.laws[0], next(iter(self.grid.values())), **self.other_values[0]).chain
         varied = {(parse_indexed_name(name) or (name,))[0] for name in self.parameters}
         return {key: getattr(first, key) if key in varied else value for key, value in chain.items()}
 
@@ -174,7 +183,7 @@ class Study:
     @property
     def marked_states(self) -> dict[str, list[tuple[float, float]]]:
         """U_1(0) and U_N(0) on each basin map of the initial states in its plane, by name."""
-        models = [self.model(law, self.grid[a]) for law, a in self.basin_maps]
+        models = [self.model(law, a) for law, values in self.config["basins"]["a"].items() for a in values]
         base = self.config["basins"]["initial"]
         marked = {}
         for name in self.initial:
@@ -224,7 +233,7 @@ class Study:
                 config["lyapunov_exponents"] = 0
         if config["solver"] != "rk4":
             # The other solvers have no step, so that a change of the step must not repeat their points.
-            del config["step"]
+            config.pop("step", None)
         return settings_from_config(Settings, config)
 
     def state(self, initial: str) -> InitialState:

@@ -9,8 +9,9 @@ from typing import Any
 
 import yaml
 
+from burridge_knopoff.messages import full_key
 from burridge_knopoff.provenance.files import display_path
-from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER, full_key
+from burridge_knopoff.values import OTHER_NUMBER, WHOLE_NUMBER
 
 _TAG = "tag:yaml.org,2002:"
 

@@ -23,6 +23,7 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import ChainState, Model
+from burridge_knopoff.study.grid import values_of
 from burridge_knopoff.study.model import models_of
 from burridge_knopoff.summaries import refined, rotation
 from burridge_knopoff.summaries.attractors import VARIABLES
@@ -32,15 +33,15 @@ from burridge_knopoff.summaries.branch_table import branch_lines
 LASTING = 3
 
 
-def make(
-    given: Given, model: Mapping[str, Any], a: float, attractors: Mapping[str, Any]
-) -> tuple[xarray.Dataset, str, xarray.Dataset, xarray.Dataset]:
+def make(given: Given, config: Mapping[str, Any]) -> tuple[xarray.Dataset, str, xarray.Dataset, xarray.Dataset]:
     """Return the attractors of all laws on the grid, with a text, those at all values of a, and their rotation.
 
     model, a : the config's description of the models, and any a; attractors : settings of the search
     """
-    parts, further, models = given.summaries("grid"), given.summaries("refined"), models_of(model, a)
-    numbers = branch_numbers(parts, models, SearchSettings(**attractors), given.cores)
+    parts, further = given.summaries("grid"), given.summaries("refined")
+    # Branches are compared by their returns; any a will do.
+    models = models_of(config, values_of(config["a"], "a")[0])
+    numbers = branch_numbers(parts, models, SearchSettings(**config["attractors"]), given.cores)
     on_grid = merge(parts, numbers)
     numbers = number_intermediate_branches(numbers, further)
     everywhere = merge(further, numbers, refined.VARIABLES, "Attractors at refined values of a")

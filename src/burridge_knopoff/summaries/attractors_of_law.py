@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import xarray
@@ -13,25 +13,20 @@ from burridge_knopoff.continuation.along_a import continue_attractors
 from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.model.initial import initial_state
-from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.provenance.sources import source_fingerprint
-from burridge_knopoff.study.model import model_of
+from burridge_knopoff.study.grid import values_of
+from burridge_knopoff.study.model import model_of, motion_of
 from burridge_knopoff.summaries import attractors, refined
 
 
-def make(given: Given, model: Mapping[str, Any], grid: Sequence[float], **config: Any) -> tuple[xarray.Dataset, ...]:
-    """Return the attractors of a law on the grid, at all values of a, and their section returns.
-
-    model, grid : the config's description of the model, and the values of a
-    config : initial, start, attractors, refine and motion, as in a config
-    """
-    models, start = [model_of(model, given.law, a) for a in grid], config["start"]
+def make(given: Given, config: Mapping[str, Any]) -> tuple[xarray.Dataset, ...]:
+    """Return the attractors of a law on the grid, at all values of a, and their section returns."""
+    models, start = [model_of(config, given.law, a) for a in values_of(config["a"], "a")], config["start"]
     initial = [initial_state(name, **state) for name, state in config["initial"].items()]
-    settings, motion = SearchSettings(**config["attractors"]), MotionSettings(**config["motion"])
+    settings, motion = SearchSettings(**config["attractors"]), motion_of(config)
     refine = RefinementSettings(**config["refine"])
-    kept = given.cache(
-        f"attractors {given.law}", config, model, source_fingerprint("burridge_knopoff.continuation.along_a")
-    )
+    decides = {key: value for key, value in config.items() if key != "a"}
+    kept = given.cache(f"attractors {given.law}", decides, source_fingerprint("burridge_knopoff.continuation.along_a"))
     found = continue_attractors(
         models, settings, motion, refine, starts=initial, start=start, processes=given.cores, folder=kept
     )

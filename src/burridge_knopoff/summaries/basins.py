@@ -20,6 +20,7 @@ from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_expone
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import initial_state
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.study.formatting import to_ascii, with_error
@@ -75,57 +76,41 @@ COORDINATES = {
 }
 
 
-def make_tile(given: Given, **params: Any) -> xarray.Dataset:
+def make_tile(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
     """Return one tile of a map; arguments as in `_known_attractors`."""
-    known, plane, search = _known_attractors(given, **params)
-    return tile(known, int(given.wildcards["tile"]), plane, search.label_limit, params["start"])
+    known, plane, search = _known_attractors(given, config)
+    return tile(known, int(given.wildcards["tile"]), plane, search.label_limit, config["start"])
 
 
-def make_pairs(given: Given, **params: Any) -> xarray.Dataset:
+def make_pairs(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
     """Return the pairs of nearby states of a map; arguments as in `_known_attractors`."""
-    known, plane, search = _known_attractors(given, **params)
-    return pairs(known, plane, search.label_limit, search.seed, params["start"])
+    known, plane, search = _known_attractors(given, config)
+    return pairs(known, plane, search.label_limit, search.seed, config["start"])
 
 
-def _known_attractors(
-    given: Given,
-    model: Mapping[str, Any],
-    a: float,
-    state: Mapping[str, Any],
-    attractors: Mapping[str, Any],
-    basins: Mapping[str, Any],
-    start: str,
-) -> tuple[KnownAttractors, BasinSettings, SearchSettings]:
-    """Return the attractors at one a, and the settings of a map and of the search.
-
-    state : the positions and velocities shared by all states of the plane; the other arguments as in a config
-    """
-    plane = BasinSettings(initial=initial_state(**state), threads=given.cores, **basins)
-    found = given.summary("attractors"), given.summary("returns")
-    return known_attractors(*found, model_of(model, given.law, a)), plane, SearchSettings(**attractors)
+def _known_attractors(given: Given, config: Mapping[str, Any]) -> tuple[KnownAttractors, BasinSettings, SearchSettings]:
+    """Return the attractors at one a, and the settings of a map and of the search."""
+    known = known_attractors(
+        given.summary("attractors"), given.summary("returns"), model_of(config, given.law, config["a"])
+    )
+    return known, replace(_plane(config), threads=given.cores), SearchSettings(**config["attractors"])
 
 
-def make(
-    given: Given,
-    model: Mapping[str, Any],
-    maps: Sequence[tuple[str, float]],
-    state: Mapping[str, Any],
-    attractors: Mapping[str, Any],
-    basins: Mapping[str, Any],
-    start: str,
-) -> tuple[xarray.Dataset, str]:
-    """Return all maps, and their description as text.
+def _plane(config: Mapping[str, Any]) -> BasinSettings:
+    (state,) = config["initial"].items()
+    return replace(settings_from_config(BasinSettings, config["basins"]), initial=initial_state(state[0], **state[1]))
 
-    maps : law and a of each; the other arguments as in `_known_attractors`
-    """
-    plane = BasinSettings(initial=initial_state(**state), **basins)
+
+def make(given: Given, config: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
+    """Return all maps, and their description as text."""
+    plane, maps = _plane(config), [(law, a) for law, values in config["basins"]["a"].items() for a in values]
     tiles, of_pairs = given.summaries("tiles"), given.summaries("pairs")
     parts = [
-        (model_of(model, law, a), tiles[n * plane.tiles : (n + 1) * plane.tiles], of_pairs[n])
+        (model_of(config, law, a), tiles[n * plane.tiles : (n + 1) * plane.tiles], of_pairs[n])
         for n, (law, a) in enumerate(maps)
     ]
-    limit = SearchSettings(**attractors).label_limit
-    dataset = merge(parts, given.summary("attractors"), plane, limit, start)
+    limit = SearchSettings(**config["attractors"]).label_limit
+    dataset = merge(parts, given.summary("attractors"), plane, limit, config["start"])
     return dataset, digest(dataset)
 
 

@@ -28,6 +28,7 @@ from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.study.grid import values_of
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.edges import saddle_at_crisis
 
@@ -155,16 +156,18 @@ PLACES = 11
 DIGITS = {"multiplier": 5, "multiplier_beyond": 5, "stick_time": 5, "lifetime_low": 3, "lifetime_high": 3}
 
 
-def make_of_law(given: Given, model: Mapping[str, Any], a: float) -> xarray.Dataset:
-    """Return the bifurcations under one law; model, a : the config's description of the model, and any a."""
+def make_of_law(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
+    """Return the bifurcations under one law."""
     attractors, refined = (given.summary(name).sel(law=given.law) for name in ("attractors", "refined"))
+    model = model_of(config, given.law, values_of(config["a"], "a")[0])
+    decides = {key: value for key, value in config.items() if key != "a"}
     kept = given.cache(
-        f"bifurcations {given.law}", model, source_fingerprint("burridge_knopoff.continuation.bifurcations")
+        f"bifurcations {given.law}", decides, source_fingerprint("burridge_knopoff.continuation.bifurcations")
     )
-    return one_law(model_of(model, given.law, a), attractors, refined, given.cores, kept)
+    return one_law(model, attractors, refined, given.cores, kept)
 
 
-def make(given: Given) -> tuple[xarray.Dataset, str]:
+def make(given: Given, config: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
     """Return the bifurcations under all laws, and their description as text."""
     dataset = merge(given.summaries("parts"))
     for edges in given.summaries("edges"):

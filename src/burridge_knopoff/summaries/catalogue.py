@@ -76,9 +76,10 @@ COORDINATES = {
 SHARED = ("contact", "loading", "start", "begin_time", "end_time")
 
 
-def make(given: Given, laws: Sequence[str], grid: Sequence[float], fit: Mapping[str, float]) -> xarray.Dataset:
-    """Return the statistics of all catalogues; fit : ends of the range of the fit; the rest as in `summarize`."""
-    return summarize(map(open_summary, given.paths("runs")), laws, grid, **fit)
+def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
+    """Return the statistics of all catalogues."""
+    fit = {name: value for name, value in config["catalogue"].items() if name != "a"}
+    return summarize(map(open_summary, given.paths("runs")), list(config["laws"]), config["catalogue"]["a"], **fit)
 
 
 def summarize(

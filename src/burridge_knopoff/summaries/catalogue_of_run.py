@@ -10,18 +10,21 @@ import xarray
 from burridge_knopoff.catalogue.settings import CatalogueSettings
 from burridge_knopoff.catalogue.slip_events import catalogue_of_run
 from burridge_knopoff.dataset.given import Given
+from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import initial_state
+from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.model import model_of
 
 
-def make(
-    given: Given,
-    model: Mapping[str, Any],
-    a: float,
-    state: Mapping[str, Any],
-    run: Mapping[str, Any],
-    catalogue: Mapping[str, Any],
-) -> xarray.Dataset:
-    """Return the slip events of a run; run : its start, solver and step; the other arguments as in a config."""
-    settings = CatalogueSettings(**catalogue)
-    return catalogue_of_run(model_of(model, given.law, a), initial_state(**state), settings, **run)
+def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
+    """Return the slip events of a run."""
+    (state,) = config["initial"].items()
+    run = settings_from_config(Settings, {**config, "solver": config["solver"][given.law]})
+    return catalogue_of_run(
+        model_of(config, given.law, config["a"]),
+        initial_state(state[0], **state[1]),
+        settings_from_config(CatalogueSettings, config["catalogue"]),
+        start=run.start,
+        solver=run.solver,
+        step=run.step,
+    )

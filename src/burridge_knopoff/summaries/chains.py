@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag, global_attributes
+from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import CHAIN_PARAMETERS
 from burridge_knopoff.model.sampling import CONFIDENCE, fraction_interval
@@ -75,20 +76,15 @@ VARIABLES = {
 }
 
 
-def make_of_length(
-    given: Given,
-    model: Mapping[str, Any],
-    grid: Sequence[float],
-    watch: Mapping[str, Any],
-    sample: Mapping[str, Any],
-    motion: Mapping[str, Any],
-) -> xarray.Dataset:
-    """Return the outcomes for one number of blocks; grid : values of a; the other arguments as in a config."""
-    models = models_of(model, grid[0], int(given.wildcards["blocks"]))
-    return chain_dataset(models, grid, Sample(**sample), Watch(**watch, **motion))
+def make_of_length(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
+    """Return the outcomes for one number of blocks."""
+    chains = config["chains"]
+    models = models_of(config, chains["a"][0], int(given.wildcards["blocks"]))
+    sample = settings_from_config(Sample, {**config, **chains})
+    return chain_dataset(models, chains["a"], sample, settings_from_config(Watch, {**config, **chains}))
 
 
-def make(given: Given) -> xarray.Dataset:
+def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
     """Return the fractions for all numbers of blocks."""
     return merge(given.summaries("parts"))
 
@@ -117,16 +113,7 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
 
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
-    """Combine chain files in the order of their numbers of blocks, and count outcomes.
-
-    Raises ValueError, one line, if a file was made with settings that differ from those of the first.
-    """
-    for part in parts:
-        if _settings(part) != _settings(parts[0]):
-            one, other = (dataset.encoding["source"] for dataset in (part, parts[0]))
-            raise ValueError(
-                f"{one}: made with settings that differ from those of {other}; delete both and run snakemake again"
-            )
+    """Combine chain files in the order of their numbers of blocks, and count outcomes."""
     chains = sorted(parts, key=lambda chain: chain.attrs["blocks"])
     first = chains[0]
     values = {name: np.stack([chain[name].values for chain in chains]) for name in CHAIN_VARIABLES}
@@ -148,12 +135,6 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
         {"confidence": CONFIDENCE, **kept},
         module=__name__,
     )
-
-
-def _settings(chain: xarray.Dataset) -> str:
-    """Return the settings that the chain files of a study have in common."""
-    shared = {name: np.asarray(value).tolist() for name, value in chain.attrs.items() if name not in _OWN_ATTRIBUTES}
-    return repr((shared, chain["law"].values.tolist(), chain["a"].values.tolist(), dict(chain.sizes)))
 
 
 def _coordinates(laws: ArrayLike, grid: ArrayLike, states: int, symmetric_states: int) -> dict[str, Any]:

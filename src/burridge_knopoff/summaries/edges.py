@@ -27,6 +27,7 @@ from burridge_knopoff.dataset.columns import Column, column_values
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
+from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
 from burridge_knopoff.motion.section_returns import state_of
@@ -197,21 +198,15 @@ _NUMBERS = {"segment": "orbit_segment", "orbit_segment": "orbit_segment", "crisi
 MEETING_DISTANCE = 0.02
 
 
-def make_of_law(
-    given: Given,
-    model: Mapping[str, Any],
-    grid: Sequence[float],
-    attractors: Mapping[str, Any],
-    edges: Mapping[str, Any],
-) -> xarray.Dataset:
-    """Return the edge states under one law; grid : values of a; the other arguments as in a config."""
+def make_of_law(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
+    """Return the edge states under one law."""
     found, refined = given.summary("attractors"), given.summary("refined").sel(law=given.law)
-    returns = given.summary("returns")
-    known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
-    limit = SearchSettings(**attractors).label_limit
+    returns, edges = given.summary("returns"), settings_from_config(EdgeSettings, config["edges"])
+    known = [known_attractors(found, returns, model_of(config, given.law, a)) for a in config["edges"]["a"]]
+    limit = SearchSettings(**config["attractors"]).label_limit
     pairs = [attractor_pairs(at) for at in known]
     owners = [at for at, of_a in zip(known, pairs, strict=True) for _ in of_a]
-    between = partial(edge_between, settings=EdgeSettings(**edges), time_limit=limit)
+    between = partial(edge_between, settings=edges, time_limit=limit)
     with parallel_map(given.cores) as apply:
         made = iter(apply("edge states", between, owners, list(chain.from_iterable(pairs)), span=(0.0, 0.95)))
     states = [edge for of_a in pairs for edge in distinct_edges(islice(made, len(of_a)))]
@@ -224,7 +219,7 @@ def make_of_law(
     return _of_law(known[0].model, states, numbers, segments, crises, found.sizes["attractor"])
 
 
-def make(given: Given) -> tuple[xarray.Dataset, str]:
+def make(given: Given, config: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
     """Return the edge states under all laws, and their description as text."""
     dataset = merge(given.summaries("parts"))
     return dataset, edges_in_words(dataset)

@@ -21,6 +21,7 @@ from burridge_knopoff.basins.settings import PhaseSettings
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import AXES, STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable
+from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.study.model import model_of
@@ -75,20 +76,15 @@ INNER_BLOCK = {"long_name": "block number, 2 to N - 1 along the chain", "units":
 ATTRIBUTES = ("history", "v", "contact", "seed", "label_limit")
 
 
-def make_of_law(
-    given: Given,
-    model: Mapping[str, Any],
-    grid: Sequence[float],
-    attractors: Mapping[str, Any],
-    phases: Mapping[str, Any],
-) -> xarray.Dataset:
-    """Return the outcomes under one law; grid : values of a; the other arguments as in a config."""
-    found, returns = given.summary("attractors"), given.summary("returns")
-    known = [known_attractors(found, returns, model_of(model, given.law, a)) for a in grid]
-    return one_law(known, PhaseSettings(**phases), SearchSettings(**attractors).label_limit, given.cores)
+def make_of_law(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
+    """Return the outcomes under one law."""
+    found, returns, phases = given.summary("attractors"), given.summary("returns"), config["phases"]
+    known = [known_attractors(found, returns, model_of(config, given.law, a)) for a in phases["a"]]
+    limit = SearchSettings(**config["attractors"]).label_limit
+    return one_law(known, settings_from_config(PhaseSettings, phases), limit, given.cores)
 
 
-def make(given: Given) -> xarray.Dataset:
+def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
     """Return the outcomes under all laws."""
     return merge(given.summaries("parts"))
 

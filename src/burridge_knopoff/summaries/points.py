@@ -3,28 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 import xarray
 
 from burridge_knopoff.dataset.given import Given
-from burridge_knopoff.dataset.point_identity import point_identity
+from burridge_knopoff.dataset.run import open_run
 from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState, initial_state
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.parameters import plain_name
-from burridge_knopoff.provenance.seal import check_seal
 from burridge_knopoff.running.command import simulate_command
 from burridge_knopoff.running.section import Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.study.model import MODEL_KEYS, model_of
 from burridge_knopoff.study.paths import point_file
+from burridge_knopoff.study.study import Study
 
 _EVENT = ("time", "block", "kind")
 
@@ -61,14 +60,13 @@ class Grid:
         )
 
     @classmethod
-    def from_job(cls, given: Given) -> Grid:
-        """Return the grid of the points that a job reads."""
-        return cls.from_points(given.results / "points", given.points)
+    def from_job(cls, given: Given, config: Mapping[str, Any]) -> Grid:
+        """Return the grid of the points that a job reads; config : the keys that define them."""
+        return cls.from_points(given.results / "points", Study.of_keys(config).points)
 
-    def copy_with(self, folder: Path, settings: Mapping[str, Mapping[str, Any]]) -> Grid:
+    def copy_with(self, folder: Path, settings: Mapping[str, Settings]) -> Grid:
         """Return the grid of the same points in another folder, run with other settings, {law: settings}."""
-        others = {law: Settings(**items) for law, items in settings.items()}
-        return Grid(folder, self.initial, self.parameters, others, self.models)
+        return replace(self, folder=folder, settings=settings)
 
     @property
     def a(self) -> Mapping[str, float]:
@@ -137,35 +135,17 @@ def read_point(grid: Grid, point: Sequence[str], names: Sequence[str]) -> dict[s
     """Return the named variables of one point.
 
     point : law, initial state and names of the values of the parameters
-    Raises BadFile, one line, if the file is missing, damaged or out of date.
+    Raises BadFile, one line, if the file is missing, damaged, or another run.
     """
-    return read_run(grid.path(*point), grid.command(*point), names)
-
-
-def read_run(path: Path, command: str, names: Sequence[str]) -> dict[str, np.ndarray]:
-    """Return the named variables of the point file of a run that `command` starts.
-
-    Raises BadFile as `read_point` does.
-    """
-    check_run(path, command)
-    with netCDF4.Dataset(path) as dataset:
-        dataset.set_auto_mask(False)
+    with open_run(grid.path(*point), grid.command(*point)) as dataset:
         return {name: dataset[name][...] for name in names}
 
 
 def open_point(grid: Grid, law: str, initial: str, a: str) -> xarray.Dataset:
     """Return one point as an xarray Dataset, loaded into memory; raises BadFile as `read_point` does."""
     path = grid.path(law, initial, a)
-    check_run(path, grid.command(law, initial, a))
-    return xarray.load_dataset(path, engine="netcdf4")
-
-
-def check_run(path: Path, command: str) -> str:
-    """Return how the run of a point file ended, after comparing its seal with the command and the current sources.
-
-    Raises BadFile as `read_point` does.
-    """
-    return check_seal(path, point_identity(command))
+    with open_run(path, grid.command(law, initial, a)):
+        return xarray.load_dataset(path, engine="netcdf4")
 
 
 def all_events(run: Mapping[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

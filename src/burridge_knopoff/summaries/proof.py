@@ -88,12 +88,9 @@ _COORDINATES = {
 }
 
 
-def make(given: Given, model: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
-    """Return the proofs under all laws, and their description as text.
-
-    model : the config's description of the models
-    """
-    dataset = summarize(models_of(model, GIVEN_A[0] / GIVEN_A[1], CHAIN_BLOCKS))
+def make(given: Given, config: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
+    """Return the proofs under all laws, and their description as text."""
+    dataset = summarize(models_of(config, GIVEN_A[0] / GIVEN_A[1], CHAIN_BLOCKS))
     return dataset, digest(dataset)
 
 

@@ -13,6 +13,7 @@ from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.running.status import STATUS_WORDS
+from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 
@@ -50,11 +51,16 @@ _COPIED = ("mean_distance", "mean_distance_error", "status", "step_count", "end_
 _READ = [*_COPIED, *EVENTS]
 
 
-def make(given: Given, others: Mapping[str, Mapping[str, Any]], step: float) -> xarray.Dataset:
-    """Return the comparison; others : {solver: {law: settings of its runs}}; step : of rk4."""
-    grid, folder = Grid.from_job(given), given.results / "solvers"
-    grids = {solver: grid.copy_with(folder / solver, settings) for solver, settings in others.items()}
-    return summarize(grid, grids, step)
+def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
+    """Return the comparison of the study's points at a few values of a with their repetitions."""
+    study = Study.of_keys({**config, "a": config["solvers"]["a"]})
+    settings = {
+        solver: {law: study.settings(law, solver) for law in study.laws if solver in study.other_solvers(law)}
+        for solver in SOLVERS
+    }
+    grid = Grid.from_points(given.results / "points", study.points)
+    others = {solver: grid.copy_with(given.results / "solvers" / solver, of) for solver, of in settings.items()}
+    return summarize(grid, others, config["solvers"]["step"])
 
 
 def summarize(grid: Grid, others: Mapping[str, Grid], step: float) -> xarray.Dataset:

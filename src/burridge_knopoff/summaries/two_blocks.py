@@ -24,6 +24,7 @@ from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
 from burridge_knopoff.model.chain import Chain
+from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.model.sampling import fraction_interval
@@ -34,7 +35,7 @@ from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
-from burridge_knopoff.study.model import models_of
+from burridge_knopoff.study.model import models_of, motion_of
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare, excess
 
@@ -92,26 +93,15 @@ VARIABLES = {
 }
 
 
-def make(
-    given: Given,
-    model: Mapping[str, Any],
-    two_blocks: Mapping[str, Any],
-    sample: Mapping[str, Any],
-    settings: Mapping[str, Any],
-    search: Mapping[str, Any],
-    motion: Mapping[str, Any],
-    agreement: Mapping[str, Any],
-) -> xarray.Dataset:
-    """Return the comparison.
-
-    two_blocks : values of a and number of states; sample, settings : of the states and of the runs; the other arguments
-        as in a config
-    """
-    grid = two_blocks["a"]
-    initial = Sample(samples=two_blocks["samples"], symmetric_samples=0, **sample).initial_states(BLOCKS)
-    judged = SearchSettings(**search), MotionSettings(**motion), agreement
-    models = models_of(model, grid[0], BLOCKS)
-    return summarize(models, initial, grid, run_settings(**settings), *judged, processes=given.cores)
+def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
+    """Return the comparison."""
+    pair = config["chains"]["two_blocks"]
+    sample = settings_from_config(Sample, {**config["chains"], **pair, "symmetric_samples": 0})
+    settings = {key: config[key] for key in ("start", "transient", "window")}
+    judged = SearchSettings(**config["attractors"]), motion_of(config), config["agreement"]
+    models = models_of(config, pair["a"][0], BLOCKS)
+    initial = sample.initial_states(BLOCKS)
+    return summarize(models, initial, pair["a"], run_settings(**settings), *judged, processes=given.cores)
 
 
 def train(chain: Chain, blocks: int) -> Chain:

@@ -1,0 +1,92 @@
+"""The origin of a file of a study: where a reader looks, in the words of the config."""
+
+import json
+import shutil
+
+import netCDF4
+import pytest
+from PIL import Image
+
+from burridge_knopoff.provenance.bad_file import BadFile
+from burridge_knopoff.provenance.origin import check_origin, read_origin
+from burridge_knopoff.provenance.record import read_study_record
+from burridge_knopoff.provenance.sources import source_fingerprint
+from tests.forged import forge
+from tests.small_study import SMALL, run_study
+
+STAGES = ("points", "summary", "figures", "claims", "report")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("origin") / "results/small"
+    return run_study(folder, {**SMALL, "without": ["attractors", "two_blocks", "solvers", "proof"]}, STAGES).folder
+
+
+@pytest.fixture
+def results(whole, tmp_path):
+    return shutil.copytree(whole, tmp_path / "results/small")
+
+
+def check(results, name):
+    origin, _ = read_origin(results / name, results)
+    check_origin(results / name, results, origin, read_study_record(results))
+    return origin
+
+
+def test_a_summary_says_with_what_it_was_made(results):
+    """As `ncdump -h` shows it."""
+    with netCDF4.Dataset(results / "summary/mean_distance.nc") as dataset:
+        attributes = vars(dataset)
+    assert (attributes["file"], attributes["rule"]) == ("summary/mean_distance.nc", "mean_distance")
+    params = json.loads(attributes["params"])
+    assert (params["a"], params["transient"], params["synchronization_threshold"]) == ([0.05, 0.2], 100.0, 1e-6)
+    # Neither a key of another stage, nor the step, which only rk4 has.
+    assert not {"basins", "agreement", "attractors", "step"} & {*params}
+    assert "NumPy" in attributes["versions"]
+    assert len(attributes["checksum"]) == 64
+    modules = "burridge_knopoff.summaries.of_points", "burridge_knopoff.summaries.mean_distance"
+    assert attributes["rule_fingerprint"] == source_fingerprint(*modules)
+
+
+def test_a_file_has_the_params_and_the_checksums_of_its_inputs(results):
+    picture = check(results, "figures/mean_distance.png")
+    with netCDF4.Dataset(results / "summary/mean_distance.nc") as dataset:
+        assert picture.inputs["summary/mean_distance.nc"] == dataset.checksum
+    assert picture.params["transient"] == 100.0
+    claims, report = check(results, "summary/claims.json"), check(results, "report.html")
+    assert {"figures/mean_distance.png", "summary/claims.json"} <= report.inputs.keys()
+    assert claims.params["agreement"] == check(results, "summary/agreement.nc").params["agreement"]
+    with Image.open(results / "figures/mean_distance.png") as opened:
+        assert json.loads(opened.info["origin"])["rule"] == "figure_mean_distance"
+
+
+@pytest.mark.parametrize(
+    "name", ["summary/mean_distance.nc", "figures/mean_distance.png", "summary/claims.json", "report.html"]
+)
+def test_a_file_of_another_config_is_refused(results, name):
+    """The record says what the study is now."""
+    check(results, name)
+    record = json.loads((results / "study.json").read_text())
+    record["config"]["transient"] = 200.0
+    (results / "study.json").write_text(json.dumps(record))
+    with pytest.raises(BadFile, match=r"was made with transient: got 100\.0, expected 200\.0"):
+        check(results, name)
+
+
+def test_a_file_in_the_place_of_another_is_refused(results):
+    shutil.copy(results / "summary/lyapunov.nc", results / "summary/mean_distance.nc")
+    with pytest.raises(BadFile, match=r"got summary/lyapunov\.nc, expected summary/mean_distance\.nc"):
+        check(results, "summary/mean_distance.nc")
+
+
+def test_a_file_of_no_study_is_refused(results):
+    forge(results / "summary/mean_distance.nc", params=None)
+    with pytest.raises(BadFile, match="was not made in a study"):
+        check(results, "summary/mean_distance.nc")
+
+
+def test_other_sources_are_no_reason_to_refuse_a_file(results):
+    """They are reported by `bk check`."""
+    forge(results / "summary/mean_distance.nc", rule_fingerprint="0" * 16, source_fingerprint="0" * 16)
+    assert check(results, "summary/mean_distance.nc").rule_fingerprint == "0" * 16
