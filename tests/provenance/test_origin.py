@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 
 from burridge_knopoff.provenance.bad_file import BadFile
-from burridge_knopoff.provenance.origin import check_origin, read_origin
+from burridge_knopoff.provenance.origin import check_origin
 from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.provenance.sources import source_fingerprint
 from tests.forged import forge
@@ -29,9 +29,7 @@ def results(whole, tmp_path):
 
 
 def check(results, name):
-    origin, _ = read_origin(results / name, results)
-    check_origin(results / name, results, origin, read_study_record(results))
-    return origin
+    return check_origin(results / name, results, read_study_record(results))[0]
 
 
 def test_a_summary_says_with_what_it_was_made(results):

@@ -23,6 +23,7 @@ from burridge_knopoff.figures.description import picture_names
 from burridge_knopoff.jobs.checked import damaged_files
 from burridge_knopoff.jobs.jobs import Jobs, files_of
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.provenance.bad_file import CHANGED
 from burridge_knopoff.provenance.files import (
     check_folder,
     display_path,
@@ -31,7 +32,7 @@ from burridge_knopoff.provenance.files import (
 from burridge_knopoff.provenance.record import check_owner, write_study_record
 from burridge_knopoff.provenance.keys import digest_of
 from burridge_knopoff.provenance.sources import source_fingerprint
-from burridge_knopoff.provenance.sums import CHANGED, write_sums
+from burridge_knopoff.provenance.sums import write_sums
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
 from burridge_knopoff.study.load import load_study

@@ -20,15 +20,20 @@ def changes(jobs: Jobs, results: Path) -> dict[str, list[str]]:
 
     The changes are those since the netCDF files of the rules were made; damaged files count as new.
     """
-    found: dict[str, list[str]] = defaultdict(list)
+    rules: dict[str, list[str]] = defaultdict(list)
     for name, (rule, job) in jobs.all_files.items():
-        if name.endswith(".nc") and (results / name).is_file():
-            # Whatever netCDF4 makes of overwritten bytes.
-            with suppress(OSError, RuntimeError, TypeError, ValueError), netCDF4.Dataset(results / name) as dataset:
-                if origin := Origin.from_attributes(vars(dataset)):
-                    for change in _changes(origin, jobs.config(rule, job), source_fingerprint(*rule.sources)):
-                        found[change] += [rule.name] * (rule.name not in found[change])
-    return found
+        if name.endswith(".nc") and (origin := _origin(results / name)):
+            for change in _changes(origin, jobs.config(rule, job), source_fingerprint(*rule.sources)):
+                rules[change] += [rule.name] * (rule.name not in rules[change])
+    return rules
+
+
+def _origin(path: Path) -> Origin | None:
+    """Return the origin of a netCDF file without a check of its content; None if it cannot be read."""
+    # Whatever netCDF4 makes of a missing file or of overwritten bytes.
+    with suppress(OSError, RuntimeError, TypeError, ValueError), netCDF4.Dataset(path) as dataset:
+        return Origin.from_attributes(vars(dataset))
+    return None
 
 
 def _changes(origin: Origin, config: Mapping[str, object], fingerprint: str) -> Iterator[str]:

@@ -9,8 +9,8 @@ from typing import Any
 from burridge_knopoff.dataset.run import open_run
 from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.bad_file import BadFile
-from burridge_knopoff.provenance.origin import Origin, check_origin, read_origin
-from burridge_knopoff.provenance.sums import check_sum
+from burridge_knopoff.provenance.origin import Origin, check_origin
+from burridge_knopoff.provenance.sums import check_sum, read_sums
 from burridge_knopoff.study.chunks import incomplete_chunks
 
 
@@ -24,18 +24,16 @@ def check_file(jobs: Jobs, results: Path, name: str, record: Mapping[str, Any]) 
     if command := jobs.command(name):
         with open_run(path, command) as dataset:
             return None, dataset.checksum
-    origin, checksum = read_origin(path, results)
-    check_origin(path, results, origin, record)
-    return origin, checksum
+    return check_origin(path, results, record)
 
 
 def damaged_files(jobs: Jobs, results: Path) -> list[tuple[Path, str]]:
     """Return damaged texts and pictures, which few jobs read, and marks of incomplete chunks, each with the reason."""
-    damaged = []
+    damaged, sums = [], read_sums(results)
     for name in jobs.all_files:
         if not name.endswith(".nc") and (results / name).is_file():
             try:
-                check_sum(results, name)
+                check_sum(results, name, sums)
             except BadFile as error:
                 damaged.append((error.path, error.reason))
     marks = incomplete_chunks(jobs.study, results)

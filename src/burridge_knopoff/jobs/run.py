@@ -12,8 +12,8 @@ import xarray
 from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.provenance.files import write_text
-from burridge_knopoff.provenance.keys import difference, nested, value_of
-from burridge_knopoff.provenance.origin import Origin, check_origin, read_origin, with_origin
+from burridge_knopoff.provenance.keys import nested
+from burridge_knopoff.provenance.origin import Origin, check_origin, other_params, with_origin
 from burridge_knopoff.provenance.record import NAME, read_study_record
 from burridge_knopoff.provenance.sums import add_sums
 
@@ -31,14 +31,12 @@ def do_job(
     OSError if a file cannot be written, and the errors of the function.
     """
     record = read_study_record(given.results)
-    for key, value in config.items():
-        if words := difference(value_of(record["config"], record["grid"], key), value, key):
-            raise ValueError(f"{given.results / NAME}: {words}, as another run has changed it; run snakemake again")
+    if words := other_params(config, record):
+        raise ValueError(f"{given.results / NAME}: another run has changed the config ({words}); run snakemake again")
     params: dict[str, Any] = {}
     inputs: dict[str, str] = {}
     for path in (path for paths in given.inputs.values() for path in paths):
-        origin, checksum = read_origin(path, given.results)
-        check_origin(path, given.results, origin, record)
+        origin, checksum = check_origin(path, given.results, record)
         params |= origin.params if origin else {}
         inputs[path.relative_to(given.results).as_posix()] = checksum
     room, _, function = make.partition(":")

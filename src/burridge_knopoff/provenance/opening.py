@@ -8,9 +8,8 @@ from pathlib import Path
 
 import netCDF4
 
-from burridge_knopoff.provenance.bad_file import BadFile
+from burridge_knopoff.provenance.bad_file import CHANGED, BadFile, read_bytes
 from burridge_knopoff.provenance.checksum import NAME, checksum_of
-from burridge_knopoff.provenance.sums import CHANGED
 
 
 @contextmanager
@@ -20,15 +19,7 @@ def open_whole(path: str | Path) -> Iterator[netCDF4.Dataset]:
     Raises BadFile if the file is missing, damaged, or was not written by this program.
     """
     path = Path(path)
-    try:
-        with path.open("rb") as file:
-            is_empty = not file.read(1)
-    except FileNotFoundError:
-        raise BadFile(path, "is missing", "missing") from None
-    except OSError as error:
-        raise BadFile(path, f"cannot be read: {error.strerror}", "corrupt") from None
-    if is_empty:
-        raise BadFile(path, "is empty", "corrupt")
+    read_bytes(path, 1)
     try:
         dataset = netCDF4.Dataset(path)
     except (OSError, RuntimeError, ValueError, UnicodeDecodeError):

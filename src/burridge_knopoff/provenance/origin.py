@@ -102,21 +102,27 @@ def _embedded(path: Path) -> dict[str, Any]:
             return {}
 
 
-def check_origin(path: Path, results: Path, origin: Origin | None, record: Mapping[str, Any]) -> None:
-    """Check that a file was made for its place in a study, and with the params of the study.
+def check_origin(path: Path, results: Path, record: Mapping[str, Any]) -> tuple[Origin | None, str]:
+    """Check that a file is whole, and was made for its place in a study and with the params of the study.
 
-    origin : of the file; None for a text or a picture that has none, which its checksum identifies
     record : of the study, see `provenance.record`
 
+    Returns its origin, None for a text or a picture that has none and that its checksum identifies, and its checksum.
     Raises BadFile, one line with the difference. Files that other sources made are accepted.
     """
-    if origin is None and path.suffix not in _WITH_ORIGIN:
-        return
+    origin, checksum = read_origin(path, results)
     name = path.relative_to(results).as_posix()
     if origin is None:
-        raise BadFile(path, "was not made in a study")
-    if origin.file != name:
+        if path.suffix in _WITH_ORIGIN:
+            raise BadFile(path, "was not made in a study")
+    elif origin.file != name:
         raise BadFile(path, f"is another file: got {origin.file}, expected {name}")
-    for key, value in origin.params.items():
-        if words := difference(value, value_of(record["config"], record["grid"], key), key):
-            raise BadFile(path, f"was made with {words}")
+    elif words := other_params(origin.params, record):
+        raise BadFile(path, f"was made with {words}")
+    return origin, checksum
+
+
+def other_params(params: Mapping[str, Any], record: Mapping[str, Any]) -> str:
+    """Return in words the first param that differs from that of a study; empty if all are equal."""
+    pairs = ((key, value, value_of(record["config"], record["grid"], key)) for key, value in params.items())
+    return next(filter(None, (difference(value, expected, key) for key, value, expected in pairs)), "")

@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import fcntl
 import hashlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-from burridge_knopoff.provenance.bad_file import BadFile
+from burridge_knopoff.provenance.bad_file import CHANGED, BadFile, read_bytes
 from burridge_knopoff.provenance.files import write_text
 
 NAME = "SHA256SUMS"
-#: Reason why a file is bad.
-CHANGED = "was changed after it was written"
 
 
 def add_sums(results: Path, names: Iterable[str]) -> None:
@@ -39,31 +37,27 @@ def read_sums(results: Path) -> dict[str, str]:
 
 def write_sums(results: Path, names: Iterable[str]) -> None:
     """Write the list of those files that exist, sorted; texts and pictures keep the sums with which they were made."""
-    known = read_sums(results)
-    found = sorted(name for name in names if (results / name).is_file())
-    sums = {name: _sum(results / name) if name.endswith(".nc") else known.get(name) for name in found}
+    recorded = read_sums(results)
+    existing = sorted(name for name in names if (results / name).is_file())
+    sums = {name: _sum(results / name) if name.endswith(".nc") else recorded.get(name) for name in existing}
     write_text(results / NAME, "".join(f"{digest}  {name}\n" for name, digest in sums.items() if digest))
 
 
-def check_sum(results: Path, name: str) -> str:
+def check_sum(results: Path, name: str, sums: Mapping[str, str] | None = None) -> str:
     """Return the checksum of a text or a picture.
 
-    Raises BadFile if it is missing, or differs from the file that was written.
+    sums : the list, if it has been read
+    Raises BadFile if the file is missing, or differs from the one that was written.
     """
     path = results / name
-    try:
-        digest = _sum(path)
-    except FileNotFoundError:
-        raise BadFile(path, "is missing", "missing") from None
-    except OSError as error:
-        raise BadFile(path, f"cannot be read: {error.strerror}", "corrupt") from None
-    recorded = read_sums(results).get(name)
+    digest = _sum(path)
+    recorded = (read_sums(results) if sums is None else sums).get(name)
     if recorded is None:
         raise BadFile(path, f"has no line in {NAME}", "corrupt")
     if recorded != digest:
-        raise BadFile(path, CHANGED if path.stat().st_size else "is empty", "corrupt")
+        raise BadFile(path, CHANGED, "corrupt")
     return digest
 
 
 def _sum(path: Path) -> str:
-    return hashlib.sha256(path.read_bytes()).hexdigest()
+    return hashlib.sha256(read_bytes(path)).hexdigest()

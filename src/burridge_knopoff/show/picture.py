@@ -103,14 +103,14 @@ def _fit(first: Mapping[str, Any], second: Mapping[str, Any]) -> bool:
 
     Files that were not made in a study fit.
     """
-    made_from = []
-    for attributes in (first, second):
-        if origin := Origin.from_attributes(attributes):
-            made_from.append({**origin.params, **origin.inputs, origin.file: attributes["checksum"]})
-    if len(made_from) < 2:
-        return True
-    one, other = made_from
-    return all(one[name] == other[name] for name in one.keys() & other.keys())
+    first_origin, second_origin = map(_made_from, (first, second))
+    return all(first_origin[name] == second_origin[name] for name in first_origin.keys() & second_origin.keys())
+
+
+def _made_from(attributes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return {param, input or the file itself: value or checksum}; empty for a file that was not made in a study."""
+    origin = Origin.from_attributes(attributes)
+    return {**origin.params, **origin.inputs, origin.file: attributes["checksum"]} if origin else {}
 
 
 def _study_arguments(result: Result, figure: Description) -> dict[str, Any]:

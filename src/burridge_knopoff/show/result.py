@@ -95,8 +95,8 @@ def _check(path: Path, study: Path | None) -> Collection[str]:
     jobs = None
     if study is not None:
         with contextlib.suppress(ValueError, KeyError):
-            record, known = recorded_study(study)
-            jobs = Jobs(known)
+            record, of_record = recorded_study(study)
+            jobs = Jobs(of_record)
     if study is None or jobs is None:
         with open_whole(path):
             return ()
