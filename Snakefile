@@ -19,10 +19,22 @@ container: "docker://python:3.11"
 
 
 include: "workflow/rules/study.smk"
-include: "workflow/rules/groups.smk"
-include: "workflow/rules/simulate.smk"
 include: "workflow/rules/common.smk"
-include: "workflow/rules/jobs.smk"
+include: "workflow/rules/groups.smk"
+include: "workflow/rules/points.smk"
+include: "workflow/rules/summaries.smk"
+include: "workflow/rules/attractors.smk"
+include: "workflow/rules/basins.smk"
+include: "workflow/rules/bifurcations.smk"
+include: "workflow/rules/phases.smk"
+include: "workflow/rules/solvers.smk"
+include: "workflow/rules/proof.smk"
+include: "workflow/rules/two_blocks.smk"
+include: "workflow/rules/catalogue.smk"
+include: "workflow/rules/chains.smk"
+include: "workflow/rules/figures.smk"
+include: "workflow/rules/claims.smk"
+include: "workflow/rules/report.smk"
 
 
 rule all:
@@ -30,16 +42,9 @@ rule all:
     default_target: True
     input:
         rules.points.input,
-        paths(JOBS.files()),
+        files_in(""),
     message:
         f"study {STUDY.name}: all points, summaries, figures and the report are in {RESULTS}"
 
 
-onstart:
-    prepare_results()
-
-
-onsuccess:
-    write_sums(
-        Path(RESULTS), [*(name for name, *_ in run_files(JOBS)), *JOBS.all_files]
-    )
+include: "workflow/rules/start.smk"

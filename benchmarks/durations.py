@@ -16,6 +16,7 @@ import numpy as np
 from replay import planned
 
 from snakemake_logger_plugin_study.durations import FILE, SHIPPED, measured_seconds, work_of
+from snakemake_logger_plugin_study.private import all_jobs
 
 
 def main():
@@ -23,8 +24,8 @@ def main():
     jobs = defaultdict(lambda: defaultdict(list))
     for config in sys.argv[1:]:
         plan = planned(config, "all", "chains")
-        work = work_of(plan.jobs)
-        for job in plan.workflow.dag.jobs:
+        work = work_of(plan.study)
+        for job in all_jobs(plan.workflow):
             seconds = measured_seconds(job.benchmark, int(job.threads)) if job.benchmark else None
             if seconds is not None:
                 size = sum(path.stat().st_size for path in map(Path, job.output) if path.is_file())

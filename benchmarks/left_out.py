@@ -29,10 +29,10 @@ LIMIT = 300.0
 STUDY = """
 import sys
 from pathlib import Path
-from tests.small_study import SMALL, SUMMARIES, run_study
+from tests.small_study import SMALL, run_study
 config = {**SMALL, "a": [0.05], "chain": {"damping": 0, "coupling": 1}, "catalogue": {}, "figures": {"a": 0.05}}
 config["solvers"], config["chains"]["two_blocks"] = {"a": [0.05], "step": 0.05}, {"a": [0.05], "samples": 2}
-run_study(Path(sys.argv[1]), config, SUMMARIES)
+run_study(Path(sys.argv[1]), config, ("summary",))
 """
 
 

@@ -26,7 +26,7 @@ from process import AS_TYPED, BIN, IMPORTS, ONE_THREAD, REPOSITORY, SNAKEFILE, c
 TARGETS = [
     f"results/paper/summary/{name}.nc" for name in ("mean_distance", "bifurcation_diagram", "lyapunov", "agreement")
 ]
-POINT_RULE = "workflow/rules/simulate.smk"
+POINT_RULE = "workflow/rules/points.smk"
 POINT_COMMAND = '"{params.command} --out {output} > /dev/null 2> {log} || [ $? = 3 ]"'
 PLANNED = re.compile(r"^(\d+) jobs: ", re.MULTILINE)
 

@@ -82,10 +82,10 @@ def finished(tmp_path_factory: pytest.TempPathFactory):
 @pytest.fixture(scope="session")
 def small_studies(tmp_path_factory: pytest.TempPathFactory):
     """Return small studies by their names in `tests.small_study`, with all summaries, each made once."""
-    from tests.small_study import SMALL, STUDIES, SUMMARIES, run_study
+    from tests.small_study import SMALL, STUDIES, run_study
 
     def make(name: str, folder: Path) -> None:
-        small = run_study(folder / "results" / name, {**SMALL, "study": name, **STUDIES[name]}, SUMMARIES)
+        small = run_study(folder / "results" / name, {**SMALL, "study": name, **STUDIES[name]}, ("summary",))
         assert small.found
         (folder / "study.pickle").write_bytes(pickle.dumps(small))
 

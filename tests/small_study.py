@@ -1,7 +1,8 @@
-"""Studies small enough to run inside a test, in this process, one job after another."""
+"""Studies small enough to run inside a test, by the real workflow."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,18 +12,13 @@ from typing import Any
 import pytest
 import xarray
 
-from burridge_knopoff.dataset.given import Given
-from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary
-from burridge_knopoff.jobs.jobs import Jobs
-from burridge_knopoff.jobs.run import do_job
 from burridge_knopoff.model.model import Model
-from burridge_knopoff.provenance.record import write_study_record
-from burridge_knopoff.provenance.sources import source_fingerprint
-from burridge_knopoff.running.simulation import run
+from burridge_knopoff.provenance.record import read_study_record, write_study_record
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.points import Grid
+from tests.workflow.snakemake import run_workflow
 
 ROOT = Path(__file__).parents[1]
 
@@ -95,11 +91,6 @@ class SmallStudy:
     folder: Path
 
     @property
-    def jobs(self) -> Jobs:
-        """Its jobs."""
-        return Jobs(self.study)
-
-    @property
     def grid(self) -> Grid:
         """Its points."""
         return Grid.from_points(self.folder / "points", self.study.points)
@@ -114,38 +105,24 @@ class SmallStudy:
         """The finished summaries, by name."""
         return {path.stem: open_summary(path) for path in sorted(self.folder.glob("summary/*.nc"))}
 
-    def do(self, names: Collection[str]) -> None:
-        """Do the jobs of some stages or rules, after those that they wait for."""
-        jobs = self.jobs
-        for rule in jobs.existing.values():
-            asked = rule.name in names or (rule.stage in names and rule.requested)
-            # The points of chunks are run one by one here.
-            for job in rule.each if asked and rule.name != "chunk" else ():
-                if rule.make:
-                    inputs = {
-                        name: [self.folder / file for file in files]
-                        for name, files in jobs.inputs(rule, job).items()
-                        if not name.endswith("points")
-                    }
-                    given = Given(self.folder, inputs, job, rule.sources[-1], figures=rule.figures)
-                    outputs = [self.folder / form.format(**job) for form in rule.files]
-                    fingerprint = source_fingerprint(*rule.sources)
-                    do_job(rule.make, rule.name, fingerprint, jobs.config(rule, job), given, outputs)
-                else:
-                    path = self.folder / rule.files[0].format(**job)
-                    write_point(run(*self.study.run_of(**job)), path)
+    def record(self, config_file: str | Path, config: Mapping[str, Any], arguments: str = "") -> None:
+        """Record another config file, its content and other arguments of Snakemake for the same study."""
+        files = read_study_record(self.folder)["files"]
+        write_study_record(
+            self.folder, self.study.config, self.study.parameters, config_file, dict(config), arguments, files
+        )
 
 
-#: The stages that make summaries, except proofs.
-SUMMARIES = (
-    *("points", "attractors", "basins", "bifurcations", "edges", "phases"),
-    *("solvers", "catalogue", "two_blocks", "summary"),
-)
+#: The rules of the summaries of points and of models, without those that need attractors or other runs.
+OF_POINTS = ("mean_distance", "bifurcation_diagram", "lyapunov", "agreement", "stick_slip", "orbits", "equilibrium")
 
 
-def run_study(folder: Path, config: Mapping[str, Any], names: Collection[str] = ("points",)) -> SmallStudy:
-    """Run some stages or rules of a study, by default the points, into a folder."""
-    small = SmallStudy(load_study(config, f"{config['study']}.yaml"), folder)
-    write_study_record(folder, small.study.config, small.study.parameters, "small.yaml", dict(config), "")
-    small.do(names)
-    return small
+def run_study(results: Path, config: Mapping[str, Any], targets: Collection[str] = ("points",)) -> SmallStudy:
+    """Run a study for some targets of the workflow, by default the points, into its results folder, results/<study>."""
+    root = results.parents[1]
+    root.mkdir(parents=True, exist_ok=True)
+    assert results == root / "results" / config["study"]
+    (root / "small.yaml").write_text(json.dumps(config))
+    run = run_workflow(root, *targets, "--configfile", "small.yaml")
+    assert run.returncode == 0, run.stderr
+    return SmallStudy(load_study(config, "small.yaml"), results)

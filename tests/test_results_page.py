@@ -5,15 +5,16 @@ import subprocess
 
 import pytest
 
-from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import NAME
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_yaml
+from tests.workflow.planned import planned
 
 
 def test_the_page_names_files_of_the_default_study(repository):
-    study = load_study(read_yaml(repository / "config/paper.yaml"), "paper.yaml")
-    known = {*Jobs(study).all_files, NAME, f"points/{study.point_file.replace('{a}', '<value>')}"}
+    config = read_yaml(repository / "config/paper.yaml")
+    study = load_study(config, "paper.yaml")
+    known = {*planned(config).files, NAME, f"points/{study.point_file.replace('{a}', '<value>')}"}
     text = (repository / "results/README.md").read_text(encoding="utf-8")
     named = re.findall(r"`((?:summary|figures|points)/\S+|\w+\.(?:html|json))`", text)
     assert len(named) > 10

@@ -3,9 +3,8 @@
 import re
 import runpy
 
-from burridge_knopoff.jobs.jobs import Jobs
-from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_yaml
+from tests.workflow.planned import planned
 
 
 def test_the_chart_is_that_of_the_rules(repository):
@@ -18,8 +17,9 @@ def test_the_chart_is_that_of_the_rules(repository):
 
 
 def test_the_page_names_every_summary_of_the_default_study(repository):
-    study = load_study(read_yaml(repository / "config/paper.yaml"), "paper.yaml")
     page = (repository / "docs/results.md").read_text(encoding="utf-8")
-    summaries = {name for name in Jobs(study).all_files if name.startswith("summary/")}
+    summaries = {
+        name for name in planned(read_yaml(repository / "config/paper.yaml")).files if name.startswith("summary/")
+    }
     assert len(summaries) > 15
     assert summaries <= set(re.findall(r"`(summary/[\w.]+)`", page))

@@ -103,7 +103,7 @@ class LogHandler(LogHandlerBase):
         """Return the text that replaces a record, empty to hide it; None to write the record itself."""
         event = getattr(record, "event", None)
         # Without a plan, as in another workflow, Snakemake's own messages are all there is.
-        shows_routine = self._shows_routine or (self.common_settings.dryrun and PLAN.jobs is None)
+        shows_routine = self._shows_routine or (self.common_settings.dryrun and PLAN.study is None)
         if event == LogEvent.JOB_ERROR and (job := self._run.jobs.get(record.jobid)):
             # Snakemake's own block lists all input, up to 10,000 files; version 9.22 reports each failure twice.
             is_whole = shows_routine or self.common_settings.show_failed_logs

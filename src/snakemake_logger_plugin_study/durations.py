@@ -9,12 +9,13 @@ from __future__ import annotations
 import json
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import prod
 from pathlib import Path
 from statistics import fmean, median
 
-from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.report.stages import job_costs
-from burridge_knopoff.study.study import all_points
+from burridge_knopoff.study.chunks import chunks
+from burridge_knopoff.study.study import Study, all_points
 
 FILE = Path(__file__).with_name("durations.json")
 #: {rule: one or two rows of the work of a job, its seconds times its threads, and its bytes, sorted by work}
@@ -64,7 +65,24 @@ class Durations:
         return {rule: fmean(known[rule]) if rule in known else ratio * self.shipped_cost(rule)[0] for rule in rules}
 
 
-def work_of(jobs: Jobs) -> dict[str, float]:
+def work_of(study: Study) -> dict[str, float]:
     """Return {rule: amount of work of one of its jobs}, each in its own unit; other rules read or draw "all points"."""
-    work = {rule.name: rule.work for rule in jobs.rules.values() if rule.work}
-    return {**work, "all points": len(all_points(jobs.study))}
+    config, laws, values = study.config, len(study.laws), len(study.grid)
+    search, basins, phases, chains = (config[name] for name in ("attractors", "basins", "phases", "chains"))
+    pair, time = chains["two_blocks"], config["transient"] + config["window"]
+    swept = [len(phases[name]) for name in ("a", "inner_share", "amplitude", "phase_difference")]
+    return {
+        "all points": len(all_points(study)),
+        "simulate": study.blocks * time,
+        "simulate_solver": study.blocks * time,
+        "chunk": study.blocks * time * max(map(len, chunks(study).values()), default=0),
+        "attractors_of_law": study.blocks * search["samples"] * (search["transient"] + search["window"]) * values,
+        "basin_tile": basins["pixels"] ** 2 / basins["tiles"],
+        "basin_pairs": basins["pairs"],
+        "basins": len(study.basin_maps),
+        "bifurcations_of_law": values,
+        "edges_of_law": len(config.get("edges", {"a": []})["a"]),
+        "phases_of_law": phases["samples"] * prod(swept),
+        "two_blocks": pair["samples"] * len(pair["a"]) * laws * time,
+        "watch_chain": chains["samples"] * len(chains["a"]) * len(chains["laws"]) * chains["time_limit"],
+    }

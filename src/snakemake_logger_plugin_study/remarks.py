@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from burridge_knopoff.jobs.changes import changes
-from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.record import read_study_record
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.stages import STAGES
-from burridge_knopoff.study.study import all_points
+from burridge_knopoff.study.study import Study, all_points
 
 #: Most rules that a line names.
 MOST_RULES = 3
 
 
-def replaced_results(jobs: Jobs, results: str, config_file: str, overrides: Mapping[str, Any]) -> list[str]:
+def replaced_results(study: Study, results: str, config_file: str, overrides: Mapping[str, Any]) -> list[str]:
     """Return a line if the values of --config change the results of a study in place.
 
     results : folder of the study; config_file : its config; overrides : the values of --config
@@ -26,7 +23,7 @@ def replaced_results(jobs: Jobs, results: str, config_file: str, overrides: Mapp
     if not overrides or "study" in overrides:
         return []
     try:
-        if read_study_record(results)["config"] == jobs.study.config:
+        if read_study_record(results)["config"] == study.config:
             return []
     except ValueError:
         # Without results there is no record; those of this run would be replaced by the next run without --config.
@@ -37,9 +34,8 @@ def replaced_results(jobs: Jobs, results: str, config_file: str, overrides: Mapp
     ]
 
 
-def points_of_grid(jobs: Jobs) -> list[str]:
+def points_of_grid(study: Study) -> list[str]:
     """Return a line with the number of points of a study of several parameters, and what such a study lacks."""
-    study = jobs.study
     if not study.is_plane:
         return []
     sizes = [f"{format_count(len(values), 'value')} of {name}" for name, values in study.parameters.items()]
@@ -51,13 +47,11 @@ def points_of_grid(jobs: Jobs) -> list[str]:
     ]
 
 
-def kept_stages(jobs: Jobs) -> list[str]:
-    """Return a line with the stages that a study with `without` still contains."""
-    study = jobs.study
+def kept_stages(study: Study, stages: Collection[str]) -> list[str]:
+    """Return a line with those of some stages that a study with `without` still contains."""
     if study.is_plane or not study.config["without"]:
         return []
-    asked = {rule.stage for rule in jobs.requested()}
-    kept = [stage for stage in STAGES if stage in asked]
+    kept = [stage for stage in STAGES if stage in stages]
     if not kept:
         return []
     return [
@@ -66,10 +60,13 @@ def kept_stages(jobs: Jobs) -> list[str]:
     ]
 
 
-def changed_params(jobs: Jobs, results: str) -> list[str]:
-    """Return a line for each change of the config, or of the sources, since the files of some rules were made."""
+def changed_params(changes: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return a line for each change of the config, or of the sources, since the files of some rules were made.
+
+    changes : {change: rules}, see `check.changes`
+    """
     return [
         f"changed: {change} ({', '.join(rules[:MOST_RULES])}{f' and {len(rules) - MOST_RULES} more' * more})"
-        for change, rules in changes(jobs, Path(results)).items()
+        for change, rules in changes.items()
         for more in [len(rules) > MOST_RULES]
     ]

@@ -10,7 +10,6 @@ from itertools import pairwise
 import pytest
 
 from burridge_knopoff.cli import COMMANDS, build_parser, main
-from burridge_knopoff.provenance.record import write_study_record
 from tests.small_study import run_study
 
 
@@ -28,8 +27,7 @@ def folder(tmp_path_factory):
     results = folder / "results" / "paper"
     given = {"study": "paper", "a": [0.08], "initial": {"plus": {}}, "laws": {"linearized": {}}}
     given |= {"transient": 10, "window": 20, "batches": 2}
-    study = run_study(results, given).study
-    write_study_record(results, study.config, study.parameters, folder / "paper.yaml", given, "")
+    run_study(results, given).record(folder / "paper.yaml", given)
     # As in the repository.
     (folder / "results/README.md").touch()
     return folder

@@ -10,10 +10,9 @@ import pytest
 import xarray
 
 from burridge_knopoff import open_study
-from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.show.result import open_result
 from tests.forged import forge
-from tests.small_study import run_study
+from tests.small_study import OF_POINTS, run_study
 
 CONFIG = {"study": "few", "a": [0.05, 0.08, 0.22], "initial": {"minus": {}, "plus": {}}}
 CONFIG |= {"transient": 20, "window": 60, "batches": 2, "event_window": 50}
@@ -24,15 +23,14 @@ MISSING = ("nonlinear", "plus", "0.0800")
 
 def make_study(folder):
     """Make all points of a study except one, and its summaries of points."""
-    small = run_study(folder, {**CONFIG, "without": ["attractors"]}, ("points", "summary"))
+    small = run_study(folder, {**CONFIG, "study": folder.name, "without": ["attractors"]}, OF_POINTS)
     small.grid.path(*MISSING).unlink()
-    study = small.study
-    write_study_record(folder, study.config, study.parameters, "few.yaml", CONFIG, "--configfile few.yaml")
+    small.record("few.yaml", CONFIG, "--configfile few.yaml")
 
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("results") / "few"
+    folder = tmp_path_factory.mktemp("few") / "results/few"
     make_study(folder)
     return folder
 

@@ -15,7 +15,6 @@ from snakemake.settings.enums import Quietness
 from snakemake_interface_logger_plugins.common import LogEvent
 
 import snakemake_logger_plugin_study as plugin
-from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.study.job_log import SILENT
 from burridge_knopoff.study.load import load_study
 from snakemake_logger_plugin_study.display import (
@@ -113,7 +112,8 @@ def test_what_the_snakefile_announces(tmp_path):
     """Jobs are those that make files, each with its stage, with what they need and with what they took before."""
     study = load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {}}}, "x.yaml")
     dag = Dag()
-    plan = Plan(str(tmp_path), SimpleNamespace(rules=dag.rules, dag=dag), Jobs(study))
+    rules = {"orbits": SimpleNamespace(stage="summary"), "simulate": SimpleNamespace(stage="points")}
+    plan = Plan(str(tmp_path), SimpleNamespace(rules=dag.rules, dag=dag), study, rules=rules)
     plan.announce()
     assert list(plan.run.jobs.items()) == [
         (7, Job("orbits", "summary", "orbits", needs=frozenset({8}))),
@@ -146,15 +146,15 @@ def written(monkeypatch):
     """Return a function: records given to a handler with these settings -> the lines that it wrote; no terminal.
 
     results, wanted, planned : of the run that the Snakefile announces, and the number of its jobs
-    jobs, cores : the study's jobs, if it has a plan, and arguments of the command line
+    study, cores : the study's jobs, if it has a plan, and arguments of the command line
     """
 
-    def write(*records, results="", wanted=(), planned=2, recording=lambda: None, jobs=None, cores="", **settings):
+    def write(*records, results="", wanted=(), planned=2, recording=lambda: None, study=None, cores="", **settings):
         stream, settings = io.StringIO(), {**SETTINGS, **settings}
         monkeypatch.setattr(sys, "stderr", stream)
         monkeypatch.setattr(sys, "argv", ["snakemake", *cores.split()])
         of_run = {number: Job("simulate a=0.0800", "points", "simulate") for number in range(1, planned + 1)}
-        plan = Plan(jobs=jobs, run=Run(results, of_run, wanted), record=recording)
+        plan = Plan(study=study, run=Run(results, of_run, wanted), record=recording)
         monkeypatch.setattr(plugin, "PLAN", plan)
         handler = plugin.LogHandler(common_settings=SimpleNamespace(**settings), settings=None)
         # As Snakemake does it.
@@ -267,11 +267,11 @@ def test_a_dry_run_ends_with_its_stages_and_lists_jobs_on_request(written, monke
     monkeypatch.setattr(Plan, "look_ahead", lambda self: self.run)
     messages = (record("Reasons:\n    (check)"), record("This was a dry-run (flag -n). The order of jobs does not"))
     plan = (BEGUN[0], start(1), start(2), BEGUN[0], *messages)
-    table = written(*plan, dryrun=True, jobs="study", cores="-c3")
+    table = written(*plan, dryrun=True, study="study", cores="-c3")
     assert [line.split()[:2] for line in table[:3]] == [["stage", "jobs"], ["points", "2"], ["all", "2"]]
     assert re.fullmatch("a run takes .* on 3 cores and .* of disk space .*", table[3])
     assert len(table) == 4
-    listed = written(*plan, dryrun=True, jobs="study", cores="-c3", printshellcmds=True)
+    listed = written(*plan, dryrun=True, study="study", cores="-c3", printshellcmds=True)
     assert listed[-4:] == table
     assert {"Job stats:", "Job 1: simulate it", "Reasons:"} <= set(listed)
 

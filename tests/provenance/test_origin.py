@@ -10,17 +10,15 @@ from PIL import Image
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.provenance.origin import check_origin
 from burridge_knopoff.provenance.record import read_study_record
-from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.sources import SCRIPTS, source_fingerprint
 from tests.forged import forge
 from tests.small_study import SMALL, run_study
-
-STAGES = ("points", "summary", "figures", "claims", "report")
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory):
     folder = tmp_path_factory.mktemp("origin") / "results/small"
-    return run_study(folder, {**SMALL, "without": ["attractors", "two_blocks", "solvers", "proof"]}, STAGES).folder
+    return run_study(folder, {**SMALL, "without": ["attractors", "two_blocks", "solvers", "proof"]}, ("all",)).folder
 
 
 @pytest.fixture
@@ -43,8 +41,8 @@ def test_a_summary_says_with_what_it_was_made(results):
     assert not {"basins", "agreement", "attractors", "step"} & {*params}
     assert "NumPy" in attributes["versions"]
     assert len(attributes["checksum"]) == 64
-    modules = "burridge_knopoff.summaries.of_points", "burridge_knopoff.summaries.mean_distance"
-    assert attributes["rule_fingerprint"] == source_fingerprint(*modules)
+    script = SCRIPTS / "mean_distance.py"
+    assert attributes["rule_fingerprint"] == f"mean_distance.py {source_fingerprint(script)}"
 
 
 def test_a_file_has_the_params_and_the_checksums_of_its_inputs(results):

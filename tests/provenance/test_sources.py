@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from burridge_knopoff.jobs.jobs import Jobs
+from burridge_knopoff.figures.description import figure_descriptions
 from burridge_knopoff.provenance.sources import (
     PACKAGE,
     PLUMBING,
@@ -22,7 +22,6 @@ from burridge_knopoff.provenance.sources import (
     source_fingerprint,
     sources_of,
 )
-from burridge_knopoff.study.load import load_study
 
 SCRIPTS = sorted((PACKAGE.parent.parent / "workflow" / "scripts").glob("*.py"))
 SOURCES = sorted([*PACKAGE.rglob("*.py"), *SCRIPTS])
@@ -117,10 +116,18 @@ def test_a_changed_word_of_code_is_noticed_and_a_comment_is_not(path, data):
     assert code_of("".join(changed)) == code_of(text)
 
 
-RULES = Jobs(load_study({"study": "x", "a": [0.05, 0.08], "initial": {"minus": {}}, "catalogue": {}}, "x.yaml")).rules
+FIGURE = next(path for path in SCRIPTS if path.stem == "figure")
+#: {rule: the script, and the module, that make its files}
+MAKERS = {path.stem: (path,) for path in SCRIPTS if path != FIGURE}
+MAKERS |= {f"figure_{item.name}": (FIGURE, f"burridge_knopoff.figures.{item.name}") for item in figure_descriptions()}
 
-#: {rule: the modules that make its files}
-MAKERS = {name: rule.sources for name, rule in RULES.items() if rule.make}
+
+def imports(entry):
+    """Return the imports of a script except that of its job, or of a module."""
+    if isinstance(entry, str):
+        return f"import {entry}"
+    lines = entry.read_text(encoding="utf-8").splitlines()
+    return "\n".join(line for line in lines if line.startswith("from burridge_knopoff") and ".job " not in line)
 
 
 # Third-party modules are imported once; the imports of each script follow in a process of its own.
@@ -139,23 +146,24 @@ for name, imports in json.load(sys.stdin).items():
 
 def test_every_module_that_a_rule_loads_is_among_its_sources():
     """Only modules that determine its files count; the worker that calls them does not affect these."""
-    programs = {name: "\n".join(f"import {module}" for module in modules) for name, modules in MAKERS.items()}
+    programs = {name: "\n".join(map(imports, entries)) for name, entries in MAKERS.items()}
     ran = subprocess.run(
         [sys.executable, "-c", LOADED], input=json.dumps(programs), check=True, capture_output=True, text=True
     )
     loaded = {name: names for name, *names in map(str.split, ran.stdout.splitlines())}
-    for name, modules in MAKERS.items():
+    for name, entries in MAKERS.items():
         needed = {file for module in loaded[name] for file in files_of(module)}
         needed = {path for path in needed if not path.relative_to(PACKAGE).as_posix().startswith(PLUMBING)}
         # The `__init__` of a folder is loaded with its modules and is followed if it contains code.
         needed = {path for path in needed if path.name != "__init__.py"}
         assert len(needed) > 3, name
-        assert needed <= set(sources_of(*modules)), name
+        assert needed <= set(sources_of(*entries)), name
 
 
 def test_results_depend_on_the_modules_that_make_them():
     def names(rule):
-        return {path.relative_to(PACKAGE).as_posix() for path in sources_of(*MAKERS[rule])}
+        sources = [path for path in sources_of(*MAKERS[rule]) if path not in SCRIPTS]
+        return {path.relative_to(PACKAGE).as_posix() for path in sources}
 
     point = {path.relative_to(PACKAGE).as_posix() for path in sources_of("burridge_knopoff.dataset.point")}
     assert {
@@ -194,9 +202,8 @@ def test_the_fingerprint_is_of_the_code(tmp_path):
 #: Names for users and for the display, which no script that makes a result uses.
 LOOKED_UP = ("burridge_knopoff/__init__.py",)
 LOOKED_UP += ("cli/__init__.py", "show/picture.py", "show/summary.py")
-#: Modules of the name that is among their params, and in `Rule.modules`.
-LOOKED_UP += ("jobs/run.py", "summaries/of_points.py", "summaries/of_models.py")
-LOOKED_UP += ("figures/of_summaries.py", "figures/of_runs.py")
+#: The module is among its params, and the fingerprint of its rule includes it.
+LOOKED_UP += ("scripts/figure.py",)
 
 
 def test_all_imports_can_be_followed():

@@ -15,7 +15,7 @@ from burridge_knopoff.dataset.summary import write_summary
 from burridge_knopoff.report.page import Sources
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.study import Study
-from tests.small_study import SMALL, STUDIES, run_study
+from tests.small_study import OF_POINTS, SMALL, STUDIES, run_study
 
 CLAIMS = Path(__file__).parent / "claims.json"
 
@@ -42,7 +42,7 @@ class Poor:
 @pytest.fixture(scope="session")
 def poor(tmp_path_factory) -> Poor:
     folder = tmp_path_factory.mktemp("poor") / "results" / "poor"
-    small = run_study(folder, POOR, ("points", "attractors", "summary"))
+    small = run_study(folder, POOR, ("attractors", *OF_POINTS))
     study, found = small.study, small.found
     _fail(found)
     for name in ("mean_distance", "lyapunov", "agreement"):
@@ -62,7 +62,7 @@ def poor(tmp_path_factory) -> Poor:
     claims.write_text(as_json(content))
     files = (folder.glob(f"{place}/*.{suffix}") for place, suffix in (("summary", "nc"), ("figures", "png")))
     summaries, figures = ({path.stem: path for path in one} for one in files)
-    return Poor(study, Sources(claims, summaries, figures, folder / "benchmarks"), folder)
+    return Poor(study, Sources(claims, summaries, figures, folder / "none"), folder)
 
 
 def _fail(found) -> None:

@@ -1,5 +1,6 @@
 """`bk show`: points and summaries in words and as pictures; other files are refused in a line."""
 
+import dataclasses
 import json
 import shlex
 import shutil
@@ -16,7 +17,6 @@ from burridge_knopoff import simulate
 from burridge_knopoff.cli import READER_GONE, main
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
-from burridge_knopoff.provenance.record import write_study_record
 from burridge_knopoff.show.result import open_result
 from burridge_knopoff.show.summary import digest, summary_lines
 from burridge_knopoff.study.formatting import to_ascii, with_error
@@ -37,7 +37,7 @@ def study(small_studies, tmp_path_factory):
     small = small_studies("paper")
     results = tmp_path_factory.mktemp("show") / "results" / "paper"
     shutil.copytree(small.folder, results)
-    write_study_record(results, small.study.config, small.study.parameters, "paper.yaml", {}, "")
+    dataclasses.replace(small, folder=results).record("paper.yaml", {})
     return results
 
 
@@ -146,7 +146,7 @@ def test_a_part_of_a_summary_is_described_and_not_drawn(small_studies, tmp_path,
     small = small_studies("paper")
     results = tmp_path / "results" / "paper"
     shutil.copytree(small.folder, results)
-    write_study_record(results, small.study.config, small.study.parameters, "paper.yaml", {}, "")
+    dataclasses.replace(small, folder=results).record("paper.yaml", {})
     for name in ("attractors", "bifurcations"):
         path = results / name / "linearized.nc"
         assert main(["show", str(path), "--plot", str(tmp_path / "x.png")]) == 2

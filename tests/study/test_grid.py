@@ -5,14 +5,13 @@ from itertools import chain, pairwise, product
 import pytest
 
 from burridge_knopoff.check.leftovers import leftovers
-from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.provenance.files import write_text
-from burridge_knopoff.provenance.record import write_study_record
+from burridge_knopoff.provenance.record import read_study_record, write_study_record
 from burridge_knopoff.study.chunks import MOST, chunks
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.points import make_points
 from burridge_knopoff.study.recorded import recorded_study
-from burridge_knopoff.study.study import Study, all_points
+from burridge_knopoff.study.study import Study, all_points, run_files
 from burridge_knopoff.study.yaml_file import ConfigError
 from tests.refused import refused
 
@@ -48,8 +47,7 @@ def test_the_value_of_one_block_is_a_parameter():
     ]
     assert [study.run_of(**point)[0].chain.masses.tolist() for point in points[:2]] == [[1.0, 1.0], [1.0, 1.5]]
     assert "--mass 1.0,1.5" in study.command(**points[1])
-    names = set(Jobs(study).all_files)
-    assert not any(letter in name for name in names for letter in "[]")
+    assert not any(letter in name for name in run_files(study) for letter in "[]")
     assert study.chain_description["mass"] == (1.0, 1.0)
     # A number for all blocks, and one for a single block.
     both = load(grid={"a": [0.2], "mass[2]": [1.0, 1.5], "mass": [1.0, 2.0]})
@@ -114,7 +112,14 @@ def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_pat
     small = load(grid={"a": [0.2], "v": [0.1, 0.2]})
     results = tmp_path / "results" / "plane"
     results.mkdir(parents=True)
-    write_study_record(results, small.config, small.parameters, "plane.yaml", {}, "")
+    earlier = ("summary/mean_distance.nc", "figures/mean_distance.png")
+    now = ("chunks/0000.done", "summary/grid.nc", "figures/grid_kinds.png")
+    for names in (earlier, now):
+        files = {name: f"logs/{name.partition('/')[2]}.log" for name in names}
+        write_study_record(results, small.config, small.parameters, "plane.yaml", {}, "", files)
+        for name in names:
+            (results / name).parent.mkdir(exist_ok=True)
+            (results / name).touch()
     assert recorded_study(results)[1] == small
     files = {
         "points/linearized/pair/a0.2000_v0.1000.nc": False,
@@ -134,7 +139,7 @@ def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_pat
     for name in files:
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         (results / name).touch()
-    found = {path.relative_to(results).as_posix() for path in leftovers(results, Jobs(small))}
+    found = {path.relative_to(results).as_posix() for path in leftovers(results, small, read_study_record(results))}
     assert found == {name for name, left in files.items() if left}
 
 

@@ -7,7 +7,6 @@ import pytest
 
 from burridge_knopoff.cli import build_parser
 from burridge_knopoff.cli.options import join_signed, model_of, state_of
-from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.model.springs import read_edges
 from burridge_knopoff.study.load import load_study
 from tests.refused import refused
@@ -86,7 +85,7 @@ def test_a_network_has_neither_phases_nor_other_lengths():
     study = load({"grid": [3, 1]})
     assert (study.single_length_key, study.is_mirror_symmetric) == ("grid", False)
     assert study.config["phases"]["a"] == []
-    assert not {"proof", "phases", "two_blocks"} & {*Jobs(study).existing}
+    assert not study.proved_laws
 
 
 def test_lists_are_limited_by_the_length_of_a_command():

@@ -179,3 +179,10 @@ def run_snakemake(
         code = Fork(command, folder, environment, *written, own_group=False).wait()
         output, error = (path.read_text() for path in written)
     return subprocess.CompletedProcess(command, code, output, error)
+
+
+def run_workflow(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run the Snakefile of this checkout in a folder on two cores."""
+    inherited = {key: value for key, value in os.environ.items() if not key.startswith("PYTEST")}
+    command = ["snakemake", "-c2", "-s", str(SOURCES.parent / "Snakefile"), "--nocolor", *arguments]
+    return run_snakemake(command, folder, {**inherited, "PYTHONPATH": str(SOURCES)})

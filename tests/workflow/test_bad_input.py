@@ -59,8 +59,8 @@ POINTS = "results/tiny/points/linearized"
 TARGETS = {
     "nothing.nc": ["nothing.nc: unknown target: this study makes files in results/tiny"],
     "simulate": [
-        "simulate: not a target, since its jobs differ in law, initial, a: name a file, such as "
-        "results/tiny/points/linearized/minus/a0.0500.nc, or the stage points, which makes all of them"
+        "simulate: not a target, since it has several jobs: name a file, such as "
+        "results/tiny/points/linearized/minus/a0.0500.nc, or the rule points, which makes all of them"
     ],
     "point": ["point: unknown target: no rule of that name (did you mean points?)"],
     "Curves": ["Curves: unknown target: no rule of that name (did you mean curves?)"],
@@ -83,13 +83,13 @@ TARGETS = {
     "results/velocity": ["the folder of study velocity, and this is study tiny: snakemake -c2 --configfile "],
     "results/tiny/figures": ["it is a folder: name a file in it, or a rule, such as figures"],
     "results/tiny/summary/grid.nc": ["only a study of several parameters has it: `grid: {a: …, v: …}`"],
-    "edges": ["edges: not made: study tiny: no edge states: add `edges: {}` to its config"],
+    "edges": ["edges: not made: no edge states: add `edges: {}` to its config"],
     "catalogue": ["no catalogues of slip events: add `catalogue: {}` to its config"],
     f"{POINTS}/plus/a0.0810.nc": ["a0.0810: not a point of study tiny", "grid"],
     f"{POINTS}/plus/a0.08.nc": ["a0.08: not a point of study tiny; write a0.0800"],
-    f"{POINTS}/middle/a0.0800.nc": ["middle/a0.0800.nc: unknown target: initial: got middle, expected minus | plus"],
+    f"{POINTS}/middle/a0.0800.nc": ["middle/a0.0800.nc: unknown target: got middle, expected minus | plus"],
     "results/tiny/points/linear/plus/a0.0800.nc": [
-        "linear/plus/a0.0800.nc: unknown target: law: got linear, expected linearized | nonlinear"
+        "linear/plus/a0.0800.nc: unknown target: got linear, expected linearized | nonlinear"
     ],
     "results/other/points/linearized/plus/a0.0800.nc": [
         "results/other/points/linearized/plus/a0.0800.nc: unknown target: a file of study other",
@@ -98,16 +98,21 @@ TARGETS = {
     "results/tiny/../tiny/summary/nothing.nc": ["nothing.nc: unknown target"],
     "results/tiny/solvers/linearized/map/plus/a0.2000.nc": ["linearized/map/plus/a0.2000.nc: unknown target"],
     "results/tiny/solvers/linearized/euler/plus/a0.2000.nc": ["euler/plus/a0.2000.nc: unknown target"],
-    "results/tiny/basins/linearized/a0.0500/tile9.nc": ["tile9.nc: unknown target: tile: got 9, expected 0 | 1"],
-    "results/tiny/basins/linearized/a0.0510/tile0.nc": ["a0.0510: not a point of study tiny"],
-    "results/tiny/basins/linearized/a0.0510/pairs.nc": ["a0.0510: not a point of study tiny"],
-    "results/tiny/chains/blocks11.nc": ["chains/blocks11.nc: unknown target: blocks: got 11, expected 10 | 9 "],
-    "results/tiny/attractors/linear.nc": ["attractors/linear.nc: unknown target: law: got linear"],
+    "results/tiny/basins/linearized/a0.0500/tile9.nc": ["tile9.nc: not made: tile: got 9, expected 0 | 1"],
+    "results/tiny/basins/linearized/a0.0510/tile0.nc": ["not made: a: got 0.0510, expected 0.0500 | 0.0800"],
+    "results/tiny/basins/linearized/a0.0510/pairs.nc": ["not made: a: got 0.0510, expected 0.0500 | 0.0800"],
+    "results/tiny/chains/blocks11.nc": ["chains/blocks11.nc: not made: blocks: got 11, expected 10 | 9 "],
+    "results/tiny/attractors/linear.nc": [
+        "attractors/linear.nc: unknown target: got linear.nc, expected linearized.nc | nonlinear.nc"
+    ],
     "results/tiny/summary/solvers.csv": [
-        "solvers.csv: unknown target: no summary",
+        "solvers.csv: unknown target: no summary has that name",
         "(did you mean results/tiny/summary/solvers.nc?)",
     ],
-    "results/tiny/figures/motion_middle.pdf": ["motion_middle.pdf: unknown target: initial: got middle"],
+    "results/tiny/figures/motion_middle.pdf": [
+        "motion_middle.pdf: unknown target: no figure has that name",
+        "did you mean results/tiny/figures/motion_minus.pdf?",
+    ],
 }
 
 
@@ -139,7 +144,7 @@ ONE_LAW = "laws: {linearized: {}}\nchain: {mass: [1, 1, 1.2]}\n"
         ("laws: {linearized: {}}\n", "two_blocks", "two_blocks: not made: it needs a second law"),
         ("without: [basins]\n", "basins", "basins: not made: part of stage basins: remove basins from `without: [ba"),
         (ONE_LAW, "figure_orbits", "figure_orbits: not made: it needs a mirror-symmetric chain of 3 blocks"),
-        (ONE_LAW, "chains", "chains: not made: chain.mass: got [1.0, 1.0, 1.2], expected one number"),
+        (ONE_LAW, "chains", "summary/chains.nc: not made: chain.mass: got [1.0, 1.0, 1.2], expected one number"),
         (ONE_LAW, "watch_chain", "watch_chain: not a target: chain.mass: got [1.0, 1.0, 1.2], expected one number"),
     ],
 )
@@ -155,7 +160,7 @@ def test_a_target_that_the_config_excludes(tmp_path, change, target, words):
 def test_a_target_of_a_study_that_has_run_here_names_its_arguments(tmp_path):
     other = load_study({"study": "other", "a": [0.05], "initial": {"minus": {}}}, "other.yaml")
     arguments = "--configfile mine/other.yaml --config window=100"
-    write_study_record(tmp_path / "results/other", other.config, other.parameters, "mine/other.yaml", {}, arguments)
+    write_study_record(tmp_path / "results/other", other.config, other.parameters, "mine/other.yaml", {}, arguments, {})
     run = Study(tmp_path, TINY).run("results/other/report.html")
     assert f"and this is study tiny: snakemake -c2 results/other/report.html {arguments}\n" in run.stderr
 

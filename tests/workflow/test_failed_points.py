@@ -19,7 +19,7 @@ def summaries(tmp_path_factory):
     """The summaries with a status, made by the jobs of the study in this process."""
     folder = tmp_path_factory.mktemp("limits")
     return run_study(
-        folder, yaml.safe_load(LIMITS), ("points", "attractors", "mean_distance", "lyapunov", "agreement")
+        folder / "results/limits", yaml.safe_load(LIMITS), ("attractors", "mean_distance", "lyapunov", "agreement")
     ).found
 
 

@@ -1,16 +1,14 @@
 """The files of a study: those that rules make are recorded and checked, and a job waits for its inputs."""
 
 import re
-import shutil
 import subprocess
 import sys
 
 import pytest
 
-from burridge_knopoff.jobs.jobs import Jobs
-from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.yaml_file import read_yaml
 from tests.workflow.conftest import REPOSITORY, Study
+from tests.workflow.planned import planned
 from tests.workflow.test_runs import jobs
 
 ONE_POINT = """
@@ -23,7 +21,16 @@ window: 20
 batches: 2
 without: [attractors, solvers, proof, claims]
 """
-ROW = '        point_summary("unseen", "Average J, which no figure shows.", "synchronization_threshold"),\n'
+RULE = """
+
+use rule mean_distance as unseen with:
+    output:
+        f"{RESULTS}/summary/unseen.nc",
+    log:
+        f"{RESULTS}/logs/unseen.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/unseen.tsv"
+"""
 SEEN = "summary/mean_distance.nc"
 UNSEEN = "summary/unseen.nc"
 
@@ -35,13 +42,8 @@ def with_unseen(tmp_path):
     tree.mkdir()
     for name in ("Snakefile", "profiles", "config", "src", "workflow"):
         subprocess.run(["cp", "-a", str(REPOSITORY / name), str(tree)], check=True)
-    rows = tree / "src/burridge_knopoff/jobs/shown.py"
-    before = rows.read_text()
-    rows.write_text(
-        before.replace("    return [\n        point_summary(", f"    return [\n{ROW}        point_summary(")
-    )
-    assert rows.read_text() != before
-    shutil.copy(tree / "src/burridge_knopoff/summaries/mean_distance.py", rows.parents[1] / "summaries/unseen.py")
+    rules = tree / "workflow/rules/summaries.smk"
+    rules.write_text(rules.read_text() + RULE)
     return Study(tmp_path / "study", ONE_POINT, tree)
 
 
@@ -72,7 +74,7 @@ def test_all_files_of_rules_are_checked(study):
     paths = set(re.findall(r"^results/tiny/(\S+)\t", made, re.MULTILINE))
     of_points = {path for path in paths if path.startswith(("points/", "solvers/"))}
     assert len(of_points) == 22
-    assert paths - of_points == Jobs(load_study(read_yaml(study.config), "study.yaml")).all_files.keys()
+    assert paths - of_points == planned(read_yaml(study.config)).files.keys()
 
 
 def test_verdicts_wait_for_the_inputs_of_judges(study):

@@ -2,6 +2,7 @@
 
 import csv
 import re
+import shutil
 import subprocess
 
 import numpy as np
@@ -11,14 +12,14 @@ from matplotlib.image import imread
 
 from burridge_knopoff import simulate
 from burridge_knopoff.check.leftovers import leftovers
-from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
+from burridge_knopoff.provenance.record import read_study_record, write_study_record
 from burridge_knopoff.study.load import load_study
 from burridge_knopoff.study.recorded import recorded_study
-from burridge_knopoff.study.study import Study
+from tests.workflow.planned import planned
 
 GRID = [0.05, 0.08, 0.2, 0.22]
 NAMES = ["0.0500", "0.0800", "0.2000", "0.2200"]
@@ -258,21 +259,34 @@ def test_logs_and_benchmarks(results):
     assert all(path.read_text() == "" for path in (results / "logs" / "simulate").rglob("*.log"))
 
 
-@pytest.mark.parametrize(("key", "name"), [("initial", "plus"), ("laws", "nonlinear"), ("grid", "0.0800")])
-def test_leftovers_of_a_larger_study_are_recognized_by_name(results, key, name):
+def left_over(results, folder, config):
+    """Return {name: path} of what is left over after the start of a run of another config in a copy of the results."""
+    copy = shutil.copytree(results, folder / "results/tiny")
+    record = planned(config, "points").record
+    study = load_study(config, "tiny.yaml")
+    write_study_record(copy, study.config, study.parameters, "tiny.yaml", config, "", record["files"])
+    return {path.relative_to(copy).as_posix() for path in leftovers(copy, study, read_study_record(copy))}
+
+
+def files_of(results):
+    return {path.relative_to(results).as_posix() for path in results.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize(("key", "name"), [("initial", "plus"), ("laws", "nonlinear"), ("a", "0.0800")])
+def test_leftovers_of_a_larger_study_are_recognized(results, tmp_path, key, name):
     """`bk prune` recognizes all files of a state, a law or an a that is no longer in the config."""
     record, study = recorded_study(results)
-    assert leftovers(results, Jobs(study)) == []
-    config, grid = record["config"], record["grid"]
-    del (grid["a"] if key == "grid" else config[key])[name]
-    maps = config["basins"].pop("a")
-    config["basins"]["a"] = {law: [a for a in maps[law] if a in grid["a"].values()] for law in maps if law != name}
+    assert leftovers(results, study, record) == []
+    config = {**record["given"], "initial": {"minus": {}, "plus": {}}, "laws": {"linearized": {}, "nonlinear": {}}}
+    if key == "a":
+        config["a"] = [a for a in study.grid.values() if a != 0.08]
+        config["phases"] = {**config["phases"], "a": [0.05]}
+    else:
+        del config[key][name]
     # With one law there is nothing to compare it with.
-    compared = r"|.*figures?[/_]agreement.*|.*/(figure_)?two_blocks\.[a-z]+" if key == "laws" else ""
-    named = re.compile(rf".*(/a?|motion_){name}(/.*|\.[a-z]+){compared}")
-    assert {*leftovers(results, Jobs(Study(config, grid)))} == {
-        path for path in results.rglob("*") if path.is_file() and named.fullmatch(str(path))
-    }
+    compared = r"|figures?[/_]agreement.*|.*(figure_)?two_blocks\.[a-z]+|.*figure_agreement.*" if key == "laws" else ""
+    named = re.compile(rf"(.*(/a?|motion_){name}(/.*|\.[a-z]+)){compared}")
+    assert left_over(results, tmp_path, config) == {file for file in files_of(results) if named.fullmatch(file)}
 
 
 @pytest.mark.parametrize(
@@ -290,12 +304,10 @@ def test_leftovers_of_a_larger_study_are_recognized_by_name(results, key, name):
         ("claims", "claims"),
     ],
 )
-def test_leftovers_of_an_omitted_stage_are_recognized_by_name(results, stage, names):
-    record, _ = recorded_study(results)
-    study = load_study({**record["given"], "without": [stage]}, "tiny.yaml")
+def test_leftovers_of_an_omitted_stage_are_recognized(results, tmp_path, stage, names):
+    left = left_over(results, tmp_path, {**recorded_study(results)[0]["given"], "without": [stage]})
     named = re.compile(rf"(.*/)?({names})(/.*|\.[a-z]+)")
-    paths = {path.relative_to(results).as_posix(): path for path in results.rglob("*") if path.is_file()}
-    assert {*leftovers(results, Jobs(study))} == {path for name, path in paths.items() if named.fullmatch(name)}
+    assert left == {file for file in files_of(results) if named.fullmatch(file)}
 
 
 def test_the_data_dictionary_names_every_variable(results, repository):

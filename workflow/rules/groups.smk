@@ -3,9 +3,7 @@
 
 def group(name):
     """Return the name of a group of jobs if the profile names it among `group-components`, otherwise None."""
-    return lambda wildcards: (
-        name if name in workflow.group_settings.group_components else None
-    )
+    return lambda wildcards: name if name in group_sizes(workflow) else None
 
 
 def fixed_group(name, points):
@@ -18,14 +16,12 @@ def fixed_group(name, points):
 
     def group_of(wildcards):
         # Known only when jobs are planned.
-        size = workflow.group_settings.group_components.get(name, 1)
+        size = group_sizes(workflow).get(name, 1)
         number = numbers.get(frozenset(wildcards.items()))
         if size == 1 or number is None:
             return None
         group = f"{name}{number // size}"
-        # Snakemake joins independent jobs up to the size of the parent group. No documented option selects these jobs:
-        # a group named by wildcards cannot divide the grid into chunks. tests/workflow/test_groups.py tests this.
-        workflow.parent_groupids[group] = name
+        join_groups(workflow, group, name)
         return group
 
     return group_of

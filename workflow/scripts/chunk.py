@@ -1,19 +1,12 @@
 """Simulate the points of a chunk that are missing, damaged or out of date."""
 
-import sys
+from burridge_knopoff.job import Job
 
-sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1)
+job = Job(snakemake)
 
-from burridge_knopoff.provenance.files import reserve_room
-
-reserve_room(sys.stderr)
-
-from pathlib import Path
-
-from burridge_knopoff.provenance.keys import nested
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.points import make_points
 from burridge_knopoff.study.study import Study
 
-study = Study.of_keys(nested(snakemake.params.config))
-make_points(study, chunks(study)[snakemake.wildcards.chunk], Path(snakemake.output[0]).parents[1] / "points")
+study = Study.of_keys(job.config)
+make_points(study, chunks(study)[job.wildcards.chunk], job.results / "points")

@@ -1,58 +1,60 @@
-"""Files of a study that are missing, and files left over from an earlier config, by their names."""
+"""Files of a study that are missing, and files left over from an earlier config, by the record of its runs."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Mapping
 from pathlib import Path
+from typing import Any
 
-from burridge_knopoff.jobs.jobs import Jobs
-from burridge_knopoff.jobs.rule import Rule, Wildcards
+from burridge_knopoff.study.paths import VALUE
+from burridge_knopoff.study.study import Study, run_files
+
+_VALUES = rf"[A-Za-z]\w*?{VALUE}(?:_[A-Za-z]\w*?{VALUE})*"
+#: Point files of any study, marks of chunks, and the logs and benchmarks of their jobs.
+_OF_RUNS = re.compile(
+    r"(?:points|solvers/\w+|(?:logs|benchmarks)/simulate(?:_solver/\w+)?)/[a-z]\w*/[A-Za-z]\w*/"
+    rf"{_VALUES}\.(?:nc|log|tsv)|chunks/\d+\.done|(?:logs|benchmarks)/chunk/\d+\.(?:log|tsv)"
+)
 
 
-def leftovers(results: Path, jobs: Jobs) -> list[Path]:
-    """Return results, logs and benchmarks of jobs that the study no longer has."""
-    point = jobs.study.point_file.removesuffix(".nc")
-    patterns: list[str] = []
-    known: set[str] = set()
-    for rule in jobs.rules.values():
-        for form in (*rule.files, f"logs/{rule.log_name}.log", f"benchmarks/{rule.log_name}.tsv"):
-            # A point of another config may have other parameters.
-            patterns.append(jobs.pattern(form.replace(point, "{law}/{initial}/{values}")))
-            known.update(form.format(**job) for job in rule.each if rule.name in jobs.existing)
-    # Each pattern has groups of the same names.
-    pattern, whole = re.compile(re.sub(r"\?P<\w+>", "?:", "|".join(patterns))), results.resolve()
+def run_logs(study: Study) -> dict[str, str]:
+    """Return {point file: log of the job that simulates it alone}, by their names in the results."""
+    folders = {"points": "simulate", "solvers": "simulate_solver"}
+    parts = ((name, *name.partition("/")[::2]) for name in run_files(study))
+    return {name: f"logs/{folders[folder]}/{rest.removesuffix('.nc')}.log" for name, folder, rest in parts}
+
+
+def leftovers(results: Path, study: Study, record: Mapping[str, Any]) -> list[Path]:
+    """Return results, logs and benchmarks of jobs that the study no longer has; record : of its last run."""
+    files, whole = {**record["files"], **run_logs(study)}, results.resolve()
+    known = {*files, *_logs(files.values())}
+    left = {*record["left"], *_logs(record["left"].values())}
     names = {path: path.relative_to(results).as_posix() for path in sorted(results.rglob("*"))}
     return [
         path
         for path, name in names.items()
-        if pattern.fullmatch(name)
-        and name not in known
+        if name not in known
+        and (name in left or _OF_RUNS.fullmatch(name))
         # The target of a link does not belong to the study.
         and path.resolve() == whole / name
         and path.is_file()
     ]
 
 
-def missing_files(results: Path, jobs: Jobs) -> dict[str, Path]:
-    """Return {name: log} of the missing files, except those of runs, whose job has started.
+def _logs(logs: Iterable[str]) -> set[str]:
+    """Return logs, and the benchmarks of the same jobs."""
+    known = set(logs)
+    return known | {f"benchmarks{log.removeprefix('logs').removesuffix('.log')}.tsv" for log in known}
+
+
+def missing_files(results: Path, record: Mapping[str, Any]) -> dict[str, Path]:
+    """Return {name: log} of the missing files, except those of runs, whose job has started; record : of the last run.
 
     The job of a file without a log was not requested yet, or waits for other missing files.
     """
-    logs = {name: results / log_path(*made) for name, made in jobs.all_files.items()}
+    logs = {name: results / log for name, log in record["files"].items()}
     return {name: log for name, log in logs.items() if log.exists() and not (results / name).exists()}
-
-
-def log_path(rule: Rule, job: Wildcards) -> str:
-    """Return the log of a job."""
-    return f"logs/{rule.log_name}.log".format(**job)
-
-
-def run_files(jobs: Jobs) -> Iterator[tuple[str, Wildcards, str]]:
-    """Yield the point file of each run, its wildcards, and its log."""
-    for rule in jobs.runs():
-        for job in rule.each:
-            yield rule.files[0].format(**job), job, log_path(rule, job)
 
 
 def delete(results: Path, paths: list[Path]) -> None:

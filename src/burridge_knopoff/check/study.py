@@ -12,23 +12,21 @@ from typing import Any
 
 import netCDF4
 
-from burridge_knopoff.check.leftovers import leftovers, missing_files, run_files
-from burridge_knopoff.jobs.checked import check_file
-from burridge_knopoff.jobs.jobs import Jobs
+from burridge_knopoff.check.leftovers import leftovers, missing_files, run_logs
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.provenance.origin import Origin
 from burridge_knopoff.provenance.record import NAME, remake_command
-from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.provenance.sources import current_sources
 from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.study.chunks import chunks
+from burridge_knopoff.study.damage import check_file
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.job_log import logged_error
 from burridge_knopoff.study.recorded import recorded_study
+from burridge_knopoff.study.study import Study, run_files
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 
 KINDS = ("missing", "corrupt", "stale", "failed")
-#: Modules that make a point file.
-POINT_SOURCES = ("burridge_knopoff.dataset.point",)
 #: Suffixes of logs and benchmarks, which are not results.
 LOGS = (".log", ".tsv")
 #: Maximum number of files in a printed command; for more, the command calls `bk check --paths`.
@@ -117,9 +115,8 @@ def check_study(results: str | Path) -> Check:
     """
     results = Path(results)
     record, study = recorded_study(results)
-    jobs = Jobs(study)
-    runs = _runs(results, jobs)
-    left = leftovers(results, jobs)
+    runs = _runs(results, study)
+    left = leftovers(results, study, record)
     notes = []
     if study.name != results.resolve().name:
         notes.append(f"this is study {study.name} under another name: Snakemake expects it in a folder {study.name}")
@@ -130,13 +127,16 @@ def check_study(results: str | Path) -> Check:
         absent = format_count(len(solver_runs), "run")
         notes += [f"not counted: {absent} of other solvers, none of which was requested yet"] if solver_runs else []
         solver_runs = {}
+    if not record["files"]:
+        notes.append(f"not counted: files other than points, which {NAME} does not list: run snakemake")
     if left:
         files = format_count(len(left), "file")
         notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
-    missing = missing_files(results, jobs)
-    rest = {name: missing.get(name, Path()) for name in jobs.all_files if name in missing or (results / name).is_file()}
+    missing = missing_files(results, record)
+    made = [name for name in record["files"] if not name.endswith(".done")]
+    rest = {name: missing.get(name, Path()) for name in made if name in missing or (results / name).is_file()}
     unknown = {path.relative_to(results).as_posix() for path in results.rglob("*.nc") if not path.name.startswith(".")}
-    unknown -= {*runs, *jobs.all_files, *(path.relative_to(results).as_posix() for path in left)}
+    unknown -= {*runs, *made, *(path.relative_to(results).as_posix() for path in left)}
     return Check(
         results,
         ", ".join(
@@ -147,7 +147,7 @@ def check_study(results: str | Path) -> Check:
             ]
         ),
         sorted(
-            _findings(jobs, results, record, {**points, **solver_runs, **rest}),
+            _findings(study, results, record, {**points, **solver_runs, **rest}),
             key=lambda finding: (KINDS.index(finding.kind), finding.path),
         ),
         [
@@ -160,29 +160,30 @@ def check_study(results: str | Path) -> Check:
     )
 
 
-def _runs(results: Path, jobs: Jobs) -> dict[str, Path]:
+def _runs(results: Path, study: Study) -> dict[str, Path]:
     """Return {point file: log} of all runs of a study."""
-    logs = {name: results / log for name, _, log in run_files(jobs)}
-    for chunk, of_chunk in chunks(jobs.study).items():
-        for run in of_chunk:
-            name = f"points/{jobs.study.point_file.format(**run)}"
+    logs = {name: results / log for name, log in run_logs(study).items()}
+    for chunk, points in chunks(study).items():
+        for point in points:
+            name = f"points/{study.point_file.format(**point)}"
             if not logs[name].exists():
                 logs[name] = results / f"logs/chunk/{chunk}.log"
     return logs
 
 
-def _findings(jobs: Jobs, results: Path, record: Mapping[str, Any], logs: Mapping[str, Path]) -> Iterator[Finding]:
+def _findings(study: Study, results: Path, record: Mapping[str, Any], logs: Mapping[str, Path]) -> Iterator[Finding]:
     """Yield the problems with files, given by their names in the results, and the logs of their jobs."""
     bad: dict[str, Finding] = {}
+    runs = run_files(study)
     origins: dict[str, Origin] = {}
     checksums: dict[str, str] = {}
     for name, log in logs.items():
         path = results / name
         try:
-            origin, checksums[name] = check_file(jobs, results, name, record)
+            origin, checksums[name] = check_file(study, results, name, record, runs.get(name))
             if origin:
                 origins[name] = origin
-            if finding := _own_finding(jobs, path, name, origin):
+            if finding := _own_finding(path, origin):
                 bad[name] = finding
         except BadFile as error:
             words = logged_error(log) if error.kind == "missing" else ""
@@ -190,29 +191,30 @@ def _findings(jobs: Jobs, results: Path, record: Mapping[str, Any], logs: Mappin
             bad[name] = Finding(error.kind, path, reason if error.kind == "missing" else error.reason)
     for name, origin in origins.items():
         for other, checksum in origin.inputs.items():
-            if name in bad or other not in logs:
-                continue
-            if other not in checksums:
-                bad[name] = Finding(
-                    "stale", results / name, f"was made from {results / other}, which is {bad[other].kind}"
-                )
-            elif checksums[other] != checksum:
+            if name in bad:
+                break
+            if other in bad and other not in checksums:
+                reason = f"was made from {results / other}, which is {bad[other].kind}"
+                bad[name] = Finding("stale", results / name, reason)
+            elif other in checksums and checksums[other] != checksum:
                 bad[name] = Finding("stale", results / name, f"was made from another {other}")
     yield from bad.values()
 
 
-def _own_finding(jobs: Jobs, path: Path, name: str, origin: Origin | None) -> Finding | None:
+def _own_finding(path: Path, origin: Origin | None) -> Finding | None:
     """Return the problem with an intact file: other sources, or a run that did not complete; or None."""
-    made_by, status = origin.rule_fingerprint if origin else "", None
-    sources = jobs.all_files[name][0].sources if name in jobs.all_files else POINT_SOURCES
+    sources, status = origin.rule_fingerprint if origin else "", None
     if path.suffix == ".nc":
         with netCDF4.Dataset(path) as dataset:
-            made_by = made_by or dataset.source_fingerprint
+            sources = sources or f"{dataset.source_module} {dataset.source_fingerprint}"
             # A catalogue is the result of a single run as well.
             if "status" in dataset.variables and not dataset["status"].dimensions:
                 status = STATUS_WORDS[int(dataset["status"][...])]
-    if made_by and made_by != (now := source_fingerprint(*sources)):
-        return Finding("stale", path, f"was made by other sources (fingerprint {made_by}, now {now})")
+    if sources and (now := current_sources(sources)) not in ("", sources):
+        made_by = sources.rpartition(" ")[2]
+        return Finding(
+            "stale", path, f"was made by other sources (fingerprint {made_by}, now {now.rpartition(' ')[2]})"
+        )
     return Finding("failed", path, f"ended with status {status}") if status not in (None, "completed") else None
 
 
@@ -246,10 +248,10 @@ def check_record(results: Path) -> None:
         raise ValueError(f"{results}: {change.path} {change.reason.partition(';')[0]}: run snakemake first")
     if study.name != results.resolve().name:
         raise ValueError(f"{results}: {NAME} is the record of study {study.name}: run snakemake first")
-    jobs = Jobs(study)
-    for name in (*(name for name, *_ in run_files(jobs)), *jobs.all_files):
+    runs = run_files(study)
+    for name in (*runs, *record["files"]):
         try:
-            check_file(jobs, results, name, record)
+            check_file(study, results, name, record, runs.get(name))
         except BadFile as error:
             if error.kind == "missing" and name.startswith("points/"):
                 reason = f"incomplete ({error.path}: not made yet), so that its record cannot be verified"

@@ -24,7 +24,6 @@ def run(options: argparse.Namespace) -> int:
     """Delete leftover files, and print how many."""
     from burridge_knopoff.check.leftovers import delete, leftovers
     from burridge_knopoff.check.study import check_record
-    from burridge_knopoff.jobs.jobs import Jobs
     from burridge_knopoff.study.formatting import format_count
     from burridge_knopoff.study.recorded import recorded_study
 
@@ -32,7 +31,8 @@ def run(options: argparse.Namespace) -> int:
     for folder in folders:
         check_record(folder)
     for folder in folders:
-        left = leftovers(folder, Jobs(recorded_study(folder)[1]))
+        record, study = recorded_study(folder)
+        left = leftovers(folder, study, record)
         for path in left:
             print(path)
         if not options.dry_run:

@@ -16,9 +16,8 @@ import xarray
 from burridge_knopoff.dataset.point import POINT_VARIABLES
 from burridge_knopoff.dataset.run import open_run
 from burridge_knopoff.dataset.summary import axes
-from burridge_knopoff.jobs.checked import check_file
-from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.messages import refusal
+from burridge_knopoff.study.damage import check_file
 from burridge_knopoff.study.recorded import recorded_study
 from burridge_knopoff.study.study import all_points
 
@@ -70,11 +69,10 @@ class StudyResults(Mapping[str, xarray.DataTree]):
     def __init__(self, results: Path) -> None:
         self._record, self._study = recorded_study(results)
         self._results = results
-        self._jobs = Jobs(self._study)
         self._points = {
             f"points/{self._study.point_file.format(**run)}".removesuffix(".nc"): run for run in all_points(self._study)
         }
-        files = (name.removesuffix(".nc") for name in self._jobs.all_files if name.endswith(".nc"))
+        files = (name.removesuffix(".nc") for name in self._record["files"] if name.endswith(".nc"))
         self._summaries = sorted(name for name in files if name.startswith("summary/"))
         self._grid: xarray.Dataset | None = None
         self.config = dict(self._study.config)
@@ -136,7 +134,7 @@ class StudyResults(Mapping[str, xarray.DataTree]):
                 self._grid = self._read_grid()
             return self._grid
         # Raises ValueError, one line, if the file is damaged or not the expected one of the study.
-        check_file(self._jobs, self._results, f"{name}.nc", self._record)
+        check_file(self._study, self._results, f"{name}.nc", self._record, self._points.get(name))
         return xarray.open_dataset(self._results / f"{name}.nc")
 
     def _read_grid(self) -> xarray.Dataset:

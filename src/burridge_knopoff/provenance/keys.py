@@ -16,24 +16,25 @@ Parameters = Mapping[str, Mapping[str, float]]
 
 #: Maximum length of a value in a message.
 _LONGEST = 60
-_MISSING = object()
+#: Stands for the value of a key that a study does not have.
+MISSING = object()
 
 
 def select(config: Mapping[str, Any], parameters: Parameters, keys: Iterable[str]) -> dict[str, Any]:
     """Return {key: value} of a study. Raises KeyError if it has no such key."""
     values = {key: value_of(config, parameters, key) for key in keys}
-    if missing := [key for key, value in values.items() if value is _MISSING]:
+    if missing := [key for key, value in values.items() if value is MISSING]:
         raise KeyError(missing[0])
     return values
 
 
 def value_of(config: Mapping[str, Any], parameters: Parameters, key: str) -> Any:
-    """Return the value of a key, `_MISSING` if the study has none."""
+    """Return the value of a key, `MISSING` if the study has none."""
     if key.startswith("a="):
-        return parameters.get("a", {}).get(key[2:], _MISSING)
+        return parameters.get("a", {}).get(key[2:], MISSING)
     value: Any = config
     for part in key.split("."):
-        value = value.get(part, _MISSING) if isinstance(value, Mapping) else _MISSING
+        value = value.get(part, MISSING) if isinstance(value, Mapping) else MISSING
     return value
 
 
@@ -58,7 +59,7 @@ def difference(made: Any, expected: Any, place: str = "", form: str = "{}: got {
         return ""
     if isinstance(made, Mapping) and isinstance(expected, Mapping):
         for key in {**expected, **made}:
-            pair = made.get(key, _MISSING), expected.get(key, _MISSING)
+            pair = made.get(key, MISSING), expected.get(key, MISSING)
             if words := difference(*pair, f"{place}.{key}" if place else key, form):
                 return words
         return difference(list(made), list(expected), place, form)
@@ -81,7 +82,7 @@ def _json(value: Any) -> str:
 
 
 def _text(value: Any) -> str:
-    return "nothing" if value is _MISSING else value if isinstance(value, str) else json.dumps(value)
+    return "nothing" if value is MISSING else value if isinstance(value, str) else json.dumps(value)
 
 
 def _cut(text: str, other: str) -> str:

@@ -21,7 +21,7 @@ NAME = "study.json"
 #: {key of a record: its type}
 _TYPES = {
     **dict.fromkeys(("software", "git_commit", "arguments", "config_file"), str),
-    **dict.fromkeys(("given", "config", "grid"), dict),
+    **dict.fromkeys(("given", "config", "grid", "files", "left"), dict),
 }
 
 
@@ -47,16 +47,24 @@ def write_study_record(
     config_file: str | Path,
     given: dict[str, Any],
     arguments: str,
+    files: Mapping[str, str],
 ) -> None:
     """Record a study in its folder of results; a record with the same content is left untouched.
 
     config, grid : the config with all defaults, and {parameter: {name in file names: value}}
     config_file, given : the config file and its content
     arguments : arguments of `snakemake` except its targets, such as `--configfile config/mine.yaml`
+    files : {file that the workflow makes in the folder, except points: its log}
     Raises OSError, one line, if the folder cannot be written to.
     """
     path = Path(results, NAME)
-    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, config, grid)
+    left: dict[str, str] = {}
+    with contextlib.suppress(ValueError):
+        earlier = read_study_record(results)
+        known = {**earlier["left"], **earlier["files"]}
+        gone = {name: log for name, log in known.items() if name not in files}
+        left = {name: log for name, log in gone.items() if any(Path(results, place).exists() for place in (name, log))}
+    values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, config, grid, files, left)
     text = json.dumps(dict(zip(_TYPES, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
     if not (path.is_file() and path.read_bytes() == text.encode()):
         write_text(path, text)
@@ -69,6 +77,8 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
     arguments, config_file : as they were recorded
     given, config : the content of the config file, and the config with all defaults
     grid : {parameter: {name in file names: value}}
+    files : {file that the workflow makes, except points: its log}
+    left : the same of those files of earlier runs that the workflow does not make any more
 
     Raises ValueError, one line, if there is no record.
     """
@@ -81,10 +91,18 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         raise ValueError(f"{folder}: {reason if Path(results).exists() else 'this folder does not exist'}") from None
     except (ValueError, RecursionError):
         record = None
-    # Records of earlier versions have more keys.
-    if not isinstance(record, dict) or {key: type(record.get(key)) for key in _TYPES} != _TYPES:
+    if isinstance(record, dict):
+        # Records of earlier versions have more keys, and no lists of files.
+        record = {"files": {}, "left": {}, **record}
+    if not _has_lists(record) or {key: type(record.get(key)) for key in _TYPES} != _TYPES:
         raise ValueError(f"{escape_unprintable(str(path))}: not a valid record; run snakemake again to rewrite it")
     return record
+
+
+def _has_lists(record: Any) -> bool:
+    """Return whether a record has lists of files with their logs."""
+    lists = [record.get(key) for key in ("files", "left")] if isinstance(record, dict) else [None]
+    return all(isinstance(files, dict) and all(isinstance(log, str) for log in files.values()) for files in lists)
 
 
 def study_folder(path: str | Path) -> Path | None:

@@ -17,12 +17,15 @@ from burridge_knopoff.version import __version__
 
 SOFTWARE = f"burridge-knopoff {__version__}"
 PACKAGE = Path(__file__).parents[1]
+#: Scripts of the workflow, which an installed package lacks.
+SCRIPTS = PACKAGE.parents[1] / "workflow/scripts"
 
 #: Code that moves bytes, reads arguments, words messages or names sources. No number depends on it, so its changes
 #: invalidate nothing: `benchmarks/left_out.py` tries random ones.
 PLUMBING = (
     "__init__.py",
     "cli/",
+    "job.py",
     "kernel/__init__.py",
     "messages.py",
     "model/fields.py",
@@ -79,6 +82,18 @@ def source_fingerprint(*entries: str | Path) -> str:
     # In the order of the names, since that of the paths depends on the place of the checkout.
     digests = sorted((_name(path), code_digest(path)) for path in sources_of(*entries))
     return hashlib.sha256("".join(f"{name} {digest}\n" for name, digest in digests).encode()).hexdigest()[:16]
+
+
+def current_sources(recorded: str) -> str:
+    """Return what a file would record of its sources today, by what it records; empty without the workflow.
+
+    recorded : names of scripts of the workflow and of modules, and their fingerprint, separated by blanks
+    """
+    *names, _ = recorded.split()
+    entries = [SCRIPTS / name if name.endswith(".py") else name for name in names]
+    if not all(entry.is_file() for entry in entries if isinstance(entry, Path)):
+        return ""
+    return " ".join([*names, source_fingerprint(*entries)])
 
 
 def sources_of(*entries: str | Path) -> tuple[Path, ...]:

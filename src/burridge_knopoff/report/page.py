@@ -13,7 +13,6 @@ import jinja2
 import xarray
 from markupsafe import Markup
 
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import open_summary
 from burridge_knopoff.report import overview, tables
 from burridge_knopoff.report.charts.embedded import Charts, charts
@@ -25,7 +24,6 @@ from burridge_knopoff.report.stages import read_stages
 from burridge_knopoff.report.trajectories import embedded_trajectories
 from burridge_knopoff.report.verdicts import SIGNS, Verdicts, read_verdicts
 from burridge_knopoff.study.formatting import text
-from burridge_knopoff.study.grid import parameters_of
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.agreement import digest
 from burridge_knopoff.summaries.bifurcation_diagram import NEVER_UPWARD
@@ -65,20 +63,6 @@ class Sources:
     figures: Mapping[str, Path]
     benchmarks: Path = field(default=Path("benchmarks"))
     points: Path | None = None
-
-
-def make(given: Given, config: Mapping[str, Any]) -> str:
-    """Return the report of a study."""
-    claims, summaries, figures = (given.paths(name) for name in ("claims", "summaries", "figures"))
-    study = Study(config, parameters_of(config))
-    sources = Sources(
-        next(iter(claims), None),
-        {path.stem: path for path in summaries},
-        {path.stem: path for path in figures},
-        given.results / "benchmarks",
-        None if study.is_plane else given.results / "points",
-    )
-    return render(study, sources, given.arguments)
 
 
 def render(study: Study, sources: Sources, arguments: Sequence[str] = ()) -> str:

@@ -12,15 +12,15 @@ from typing import Any
 import xarray
 
 from burridge_knopoff.dataset.point import POINT_VARIABLES
-from burridge_knopoff.jobs.checked import check_file
-from burridge_knopoff.jobs.jobs import Jobs
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
 from burridge_knopoff.provenance.bad_file import BadFile
 from burridge_knopoff.provenance.opening import open_whole
 from burridge_knopoff.provenance.record import read_study_record, study_folder
 from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.study.damage import check_file
 from burridge_knopoff.study.model import motion_of
 from burridge_knopoff.study.recorded import recorded_study
+from burridge_knopoff.study.study import run_files
 
 #: {variable that only one summary has: name of the summary}, for files whose source module makes several summaries.
 _BY_CONTENT = {"rotation_number": "rotation", "in_grid": "refined", "basin_fraction": "attractors"}
@@ -87,22 +87,22 @@ class Result:
         return source_fingerprint(self.data.attrs["source_module"]) == self.data.attrs["source_fingerprint"]
 
 
-def _check(path: Path, study: Path | None) -> Collection[str]:
+def _check(path: Path, folder: Path | None) -> Collection[str]:
     """Check that a file is intact and, in a study, the expected one; return the names of all its files except runs.
 
     Without a study, or in one of another version, there is none to compare with, and no name.
     """
-    jobs = None
-    if study is not None:
+    record = None
+    if folder is not None:
         with contextlib.suppress(ValueError, KeyError):
-            record, of_record = recorded_study(study)
-            jobs = Jobs(of_record)
-    if study is None or jobs is None:
+            record, study = recorded_study(folder)
+    if folder is None or record is None:
         with open_whole(path):
             return ()
-    results = study if path.is_absolute() else Path(os.path.relpath(study))
-    check_file(jobs, results, path.absolute().relative_to(study).as_posix(), record)
-    return jobs.all_files
+    results = folder if path.is_absolute() else Path(os.path.relpath(folder))
+    name = path.absolute().relative_to(folder).as_posix()
+    check_file(study, results, name, record, run_files(study).get(name))
+    return record["files"]
 
 
 def open_result(path: str | Path) -> Result:

@@ -157,6 +157,22 @@ class Study:
         without = STAGES if self.is_plane else self.config["without"]
         return tuple(stage for stage, needed in STAGES.items() if stage in without or needed in without)
 
+    def omission(self, stage: str, over: str = "a") -> str:
+        """Return why the study has no such stage; empty if it has.
+
+        over : the studies that can have it: over `a` alone, over `several` parameters, or over `any`
+        """
+        if over == "several" and not self.is_plane:
+            return "only a study of several parameters has it: `grid: {a: …, v: …}` in place of `a: …`"
+        if over == "a" and self.is_plane:
+            return "a study of several parameters has none: `a: …` in place of `grid: …`"
+        if stage not in self.omitted_stages:
+            return ""
+        without, needed = self.config["without"], STAGES[stage]
+        names = " and ".join(name for name in (stage, needed) if name in without)
+        needs = f", which needs {needed}" if needed in without else ""
+        return f"part of stage {stage}{needs}: remove {names} from `without: [{', '.join(without)}]`"
+
     @property
     def chain_lengths(self) -> list[int]:
         """Numbers of blocks of the chains of other lengths."""
@@ -273,6 +289,14 @@ def all_points(study: Study) -> list[dict[str, str]]:
     return [
         dict(zip(names, point, strict=True)) for point in product(study.laws, study.initial, *study.parameters.values())
     ]
+
+
+def run_files(study: Study) -> dict[str, dict[str, str]]:
+    """Return {point file in the results: its wildcards, the arguments of `Study.command`}, also by other solvers."""
+    file, again = f"points/{study.point_file}", f"solvers/{{solver}}/{study.point_file}"
+    repeated = [] if "solvers" in study.omitted_stages else solver_points(study)
+    runs = [(file, all_points(study)), (again, repeated)]
+    return {form.format(**point): point for form, points in runs for point in points}
 
 
 def solver_points(study: Study) -> list[dict[str, str]]:

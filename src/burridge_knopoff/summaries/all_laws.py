@@ -19,7 +19,6 @@ from burridge_knopoff.attractors.lookup import branch_names
 from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.table import NAMES, name_branches
 from burridge_knopoff.continuation.law_homotopy import match_branches
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import ChainState, Model
@@ -33,20 +32,22 @@ from burridge_knopoff.summaries.branch_table import branch_lines
 LASTING = 3
 
 
-def make(given: Given, config: Mapping[str, Any]) -> tuple[xarray.Dataset, str, xarray.Dataset, xarray.Dataset]:
-    """Return the attractors of all laws on the grid, with a text, those at all values of a, and their rotation.
+def merge_laws(
+    config: Mapping[str, Any], parts: Sequence[xarray.Dataset], further: Sequence[xarray.Dataset], cores: int
+) -> tuple[xarray.Dataset, xarray.Dataset, xarray.Dataset]:
+    """Return the attractors of all laws on the grid, those at all values of a, and their rotation.
 
-    model, a : the config's description of the models, and any a; attractors : settings of the search
+    config : the keys of a study's config that describe the models, any a, and the search
+    parts, further : the attractors of each law on the grid, and at all values of a
     """
-    parts, further = given.summaries("grid"), given.summaries("refined")
     # Branches are compared by their returns; any a will do.
     models = models_of(config, values_of(config["a"], "a")[0])
-    numbers = branch_numbers(parts, models, SearchSettings(**config["attractors"]), given.cores)
+    numbers = branch_numbers(parts, models, SearchSettings(**config["attractors"]), cores)
     on_grid = merge(parts, numbers)
     numbers = number_intermediate_branches(numbers, further)
     everywhere = merge(further, numbers, refined.VARIABLES, "Attractors at refined values of a")
     everywhere = common_branch_names(everywhere, on_grid)
-    return on_grid, digest(on_grid), everywhere, rotation.summarize(everywhere, models)
+    return on_grid, everywhere, rotation.summarize(everywhere, models)
 
 
 def merge(

@@ -17,7 +17,6 @@ from burridge_knopoff.basins.pair_separation import SEPARATIONS, follow_pairs
 from burridge_knopoff.basins.plane import pixel_centres, plane, states
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_exponent
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.fields import settings_from_config
@@ -76,24 +75,27 @@ COORDINATES = {
 }
 
 
-def make_tile(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return one tile of a map; arguments as in `_known_attractors`."""
-    known, plane, search = _known_attractors(given, config)
-    return tile(known, int(given.wildcards["tile"]), plane, search.label_limit, config["start"])
+def tile_of_map(
+    config: Mapping[str, Any], law: str, attractors: xarray.Dataset, returns: xarray.Dataset, number: int, cores: int
+) -> xarray.Dataset:
+    """Return one tile of the map of a law at one a.
+
+    config : the keys of a study's config that decide the map, with that a
+    attractors, returns : of all laws, and of the law, on the grid
+    number : of the tile, from 0
+    """
+    known = known_attractors(attractors, returns, model_of(config, law, config["a"]))
+    limit = SearchSettings(**config["attractors"]).label_limit
+    return tile(known, number, replace(_plane(config), threads=cores), limit, config["start"])
 
 
-def make_pairs(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return the pairs of nearby states of a map; arguments as in `_known_attractors`."""
-    known, plane, search = _known_attractors(given, config)
-    return pairs(known, plane, search.label_limit, search.seed, config["start"])
-
-
-def _known_attractors(given: Given, config: Mapping[str, Any]) -> tuple[KnownAttractors, BasinSettings, SearchSettings]:
-    """Return the attractors at one a, and the settings of a map and of the search."""
-    known = known_attractors(
-        given.summary("attractors"), given.summary("returns"), model_of(config, given.law, config["a"])
-    )
-    return known, replace(_plane(config), threads=given.cores), SearchSettings(**config["attractors"])
+def pairs_of_map(
+    config: Mapping[str, Any], law: str, attractors: xarray.Dataset, returns: xarray.Dataset, cores: int
+) -> xarray.Dataset:
+    """Return the pairs of nearby states of the map of a law at one a; arguments as in `tile_of_map`."""
+    known = known_attractors(attractors, returns, model_of(config, law, config["a"]))
+    search = SearchSettings(**config["attractors"])
+    return pairs(known, replace(_plane(config), threads=cores), search.label_limit, search.seed, config["start"])
 
 
 def _plane(config: Mapping[str, Any]) -> BasinSettings:
@@ -101,17 +103,24 @@ def _plane(config: Mapping[str, Any]) -> BasinSettings:
     return replace(settings_from_config(BasinSettings, config["basins"]), initial=initial_state(state[0], **state[1]))
 
 
-def make(given: Given, config: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
-    """Return all maps, and their description as text."""
+def merge_maps(
+    config: Mapping[str, Any],
+    attractors: xarray.Dataset,
+    tiles: Sequence[xarray.Dataset],
+    of_pairs: Sequence[xarray.Dataset],
+) -> xarray.Dataset:
+    """Return all maps.
+
+    config : the keys of a study's config that decide them
+    tiles, of_pairs : all tiles of all maps, and the pairs of each map, in the order of `basins.a`
+    """
     plane, maps = _plane(config), [(law, a) for law, values in config["basins"]["a"].items() for a in values]
-    tiles, of_pairs = given.summaries("tiles"), given.summaries("pairs")
     parts = [
         (model_of(config, law, a), tiles[n * plane.tiles : (n + 1) * plane.tiles], of_pairs[n])
         for n, (law, a) in enumerate(maps)
     ]
     limit = SearchSettings(**config["attractors"]).label_limit
-    dataset = merge(parts, given.summary("attractors"), plane, limit, config["start"])
-    return dataset, digest(dataset)
+    return merge(parts, attractors, plane, limit, config["start"])
 
 
 def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit: float, start: str) -> xarray.Dataset:

@@ -19,7 +19,6 @@ from burridge_knopoff.continuation.bifurcations import LEAST_ERROR, Entry, entri
 from burridge_knopoff.continuation.branch_changes import Change, branch_changes
 from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, follow_orbits
 from burridge_knopoff.dataset.columns import Column, column_values
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import ANSWER, Variable, flag
 from burridge_knopoff.model.model import Model
@@ -27,6 +26,7 @@ from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.periodic_orbits.bifurcation_kind import BifurcationKind
 from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
+from burridge_knopoff.provenance.keys import digest_of
 from burridge_knopoff.provenance.sources import source_fingerprint
 from burridge_knopoff.study.grid import values_of
 from burridge_knopoff.study.model import model_of
@@ -156,26 +156,31 @@ PLACES = 11
 DIGITS = {"multiplier": 5, "multiplier_beyond": 5, "stick_time": 5, "lifetime_low": 3, "lifetime_high": 3}
 
 
-def make_of_law(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return the bifurcations under one law."""
-    attractors, refined = (given.summary(name).sel(law=given.law) for name in ("attractors", "refined"))
-    model = model_of(config, given.law, values_of(config["a"], "a")[0])
+def bifurcations_of_law(
+    config: Mapping[str, Any], law: str, attractors: xarray.Dataset, refined: xarray.Dataset, cores: int, cache: Path
+) -> xarray.Dataset:
+    """Return the bifurcations under one law.
+
+    config : the keys of a study's config that decide them
+    attractors, refined : of all laws, on the grid and at all values of a
+    cores, cache : number of processes, and the folder in which a study caches what they find
+    """
+    model = model_of(config, law, values_of(config["a"], "a")[0])
     decides = {key: value for key, value in config.items() if key != "a"}
-    kept = given.cache(
-        f"bifurcations {given.law}", decides, source_fingerprint("burridge_knopoff.continuation.bifurcations")
-    )
-    return one_law(model, attractors, refined, given.cores, kept)
+    digest = digest_of(decides, source_fingerprint("burridge_knopoff.continuation.bifurcations"))
+    folder = cache / f"bifurcations {law}" / digest
+    return one_law(model, attractors.sel(law=law), refined.sel(law=law), cores, folder)
 
 
-def make(given: Given, config: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
-    """Return the bifurcations under all laws, and their description as text."""
-    dataset = merge(given.summaries("parts"))
-    for edges in given.summaries("edges"):
+def merge_laws(parts: Sequence[xarray.Dataset], edges: xarray.Dataset | None) -> xarray.Dataset:
+    """Return the bifurcations under all laws, with the saddles at their crises; edges : None without edge states."""
+    dataset = merge(parts)
+    if edges is not None:
         for k in np.flatnonzero(dataset["kind"].values == BifurcationKind.CRISIS):
             saddle = saddle_at_crisis(edges, str(dataset["law"].values[k]), float(dataset["a"].values[k]))
             for name, value in saddle.items():
                 dataset[f"saddle_{name}"].values[k] = value
-    return dataset, digest(dataset)
+    return dataset
 
 
 def one_law(

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ import xarray
 
 from burridge_knopoff.catalogue.distribution import EDGES, WIDTH, covered_blocks, fit_range, recurrence
 from burridge_knopoff.catalogue.slope import fit_slope
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import axes, open_summary, summary
 from burridge_knopoff.dataset.variables import Variable
@@ -76,10 +76,13 @@ COORDINATES = {
 SHARED = ("contact", "loading", "start", "begin_time", "end_time")
 
 
-def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return the statistics of all catalogues."""
+def statistics(config: Mapping[str, Any], paths: Iterable[Path]) -> xarray.Dataset:
+    """Return the statistics of all catalogues, one file for each law and a, opened one after another.
+
+    config : `laws` and the keys of `catalogue` of a study's config
+    """
     fit = {name: value for name, value in config["catalogue"].items() if name != "a"}
-    return summarize(map(open_summary, given.paths("runs")), list(config["laws"]), config["catalogue"]["a"], **fit)
+    return summarize(map(open_summary, paths), list(config["laws"]), config["catalogue"]["a"], **fit)
 
 
 def summarize(

@@ -13,7 +13,6 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag, global_attributes
 from burridge_knopoff.model.fields import settings_from_config
@@ -76,17 +75,12 @@ VARIABLES = {
 }
 
 
-def make_of_length(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return the outcomes for one number of blocks."""
+def chain_of_length(config: Mapping[str, Any], blocks: int) -> xarray.Dataset:
+    """Return the outcomes for one number of blocks; config : the keys of a study's config that decide them."""
     chains = config["chains"]
-    models = models_of(config, chains["a"][0], int(given.wildcards["blocks"]))
+    models = models_of(config, chains["a"][0], blocks)
     sample = settings_from_config(Sample, {**config, **chains})
     return chain_dataset(models, chains["a"], sample, settings_from_config(Watch, {**config, **chains}))
-
-
-def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return the fractions for all numbers of blocks."""
-    return merge(given.summaries("parts"))
 
 
 def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample, watch: Watch) -> xarray.Dataset:

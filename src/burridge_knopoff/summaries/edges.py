@@ -24,7 +24,6 @@ from burridge_knopoff.continuation.edges import (
     edge_between,
 )
 from burridge_knopoff.dataset.columns import Column, column_values
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
 from burridge_knopoff.model.fields import settings_from_config
@@ -37,7 +36,6 @@ from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.periodic_orbits.symmetry import Symmetry
 from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.study.model import model_of
-from burridge_knopoff.summaries.edges_in_words import edges_in_words
 
 TITLE = "Edge states on the boundaries between basins"
 
@@ -198,31 +196,37 @@ _NUMBERS = {"segment": "orbit_segment", "orbit_segment": "orbit_segment", "crisi
 MEETING_DISTANCE = 0.02
 
 
-def make_of_law(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return the edge states under one law."""
-    found, refined = given.summary("attractors"), given.summary("refined").sel(law=given.law)
-    returns, edges = given.summary("returns"), settings_from_config(EdgeSettings, config["edges"])
-    known = [known_attractors(found, returns, model_of(config, given.law, a)) for a in config["edges"]["a"]]
+def edges_of_law(
+    config: Mapping[str, Any],
+    law: str,
+    attractors: xarray.Dataset,
+    refined: xarray.Dataset,
+    returns: xarray.Dataset,
+    bifurcations: Sequence[xarray.Dataset],
+    cores: int,
+) -> xarray.Dataset:
+    """Return the edge states under one law.
+
+    config : the keys of a study's config that decide them
+    attractors, refined : of all laws, on the grid and at all values of a; returns : of the law
+    bifurcations : of the law; none if the study has none
+    """
+    refined, edges = refined.sel(law=law), settings_from_config(EdgeSettings, config["edges"])
+    known = [known_attractors(attractors, returns, model_of(config, law, a)) for a in config["edges"]["a"]]
     limit = SearchSettings(**config["attractors"]).label_limit
     pairs = [attractor_pairs(at) for at in known]
     owners = [at for at, of_a in zip(known, pairs, strict=True) for _ in of_a]
     between = partial(edge_between, settings=edges, time_limit=limit)
-    with parallel_map(given.cores) as apply:
+    with parallel_map(cores) as apply:
         made = iter(apply("edge states", between, owners, list(chain.from_iterable(pairs)), span=(0.0, 0.95)))
     states = [edge for of_a in pairs for edge in distinct_edges(islice(made, len(of_a)))]
-    segments, numbers = continue_edges(states, float(found["a"].max()))
+    segments, numbers = continue_edges(states, float(attractors["a"].max()))
     crises = [
         (a, branch, _approach(known[0].model.at(near), refined, states, branch))
-        for bifurcations in given.summaries("bifurcations")
-        for a, branch, near in _crises(bifurcations)
+        for dataset in bifurcations
+        for a, branch, near in _crises(dataset)
     ]
-    return _of_law(known[0].model, states, numbers, segments, crises, found.sizes["attractor"])
-
-
-def make(given: Given, config: Mapping[str, Any]) -> tuple[xarray.Dataset, str]:
-    """Return the edge states under all laws, and their description as text."""
-    dataset = merge(given.summaries("parts"))
-    return dataset, edges_in_words(dataset)
+    return _of_law(known[0].model, states, numbers, segments, crises, attractors.sizes["attractor"])
 
 
 def _crises(bifurcations: xarray.Dataset) -> list[tuple[float, int, float]]:

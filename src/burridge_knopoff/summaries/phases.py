@@ -18,7 +18,6 @@ from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.stored_returns import KnownAttractors, known_attractors
 from burridge_knopoff.basins.initial_phases import common_phases, inner_phases, oscillating_states, slipping_amplitude
 from burridge_knopoff.basins.settings import PhaseSettings
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import AXES, STATE, axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.fields import settings_from_config
@@ -76,17 +75,17 @@ INNER_BLOCK = {"long_name": "block number, 2 to N - 1 along the chain", "units":
 ATTRIBUTES = ("history", "v", "contact", "seed", "label_limit")
 
 
-def make_of_law(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return the outcomes under one law."""
-    found, returns, phases = given.summary("attractors"), given.summary("returns"), config["phases"]
-    known = [known_attractors(found, returns, model_of(config, given.law, a)) for a in phases["a"]]
-    limit = SearchSettings(**config["attractors"]).label_limit
-    return one_law(known, settings_from_config(PhaseSettings, phases), limit, given.cores)
+def phases_of_law(
+    config: Mapping[str, Any], law: str, attractors: xarray.Dataset, returns: xarray.Dataset, cores: int
+) -> xarray.Dataset:
+    """Return the outcomes under one law.
 
-
-def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return the outcomes under all laws."""
-    return merge(given.summaries("parts"))
+    config : the keys of a study's config that decide them
+    attractors, returns : of all laws, and of the law, on the grid
+    """
+    phases, limit = config["phases"], SearchSettings(**config["attractors"]).label_limit
+    known = [known_attractors(attractors, returns, model_of(config, law, a)) for a in phases["a"]]
+    return one_law(known, settings_from_config(PhaseSettings, phases), limit, cores)
 
 
 def one_law(

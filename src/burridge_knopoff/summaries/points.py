@@ -11,7 +11,6 @@ from typing import Any
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.run import open_run
 from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.model.chain import Chain
@@ -60,9 +59,9 @@ class Grid:
         )
 
     @classmethod
-    def from_job(cls, given: Given, config: Mapping[str, Any]) -> Grid:
-        """Return the grid of the points that a job reads; config : the keys that define them."""
-        return cls.from_points(given.results / "points", Study.of_keys(config).points)
+    def of_config(cls, folder: str | Path, config: Mapping[str, Any]) -> Grid:
+        """Return the grid of the points that some keys of a study's config define; folder : `points` of its results."""
+        return cls.from_points(folder, Study.of_keys(config).points)
 
     def copy_with(self, folder: Path, settings: Mapping[str, Settings]) -> Grid:
         """Return the grid of the same points in another folder, run with other settings, {law: settings}."""

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.settings import SOLVERS
@@ -51,15 +51,18 @@ _COPIED = ("mean_distance", "mean_distance_error", "status", "step_count", "end_
 _READ = [*_COPIED, *EVENTS]
 
 
-def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return the comparison of the study's points at a few values of a with their repetitions."""
+def compare_solvers(config: Mapping[str, Any], results: Path) -> xarray.Dataset:
+    """Return the comparison of a study's points at a few values of a with their repetitions.
+
+    config : the keys of the study's config that define these runs; results : folder of the study
+    """
     study = Study.of_keys({**config, "a": config["solvers"]["a"]})
     settings = {
         solver: {law: study.settings(law, solver) for law in study.laws if solver in study.other_solvers(law)}
         for solver in SOLVERS
     }
-    grid = Grid.from_points(given.results / "points", study.points)
-    others = {solver: grid.copy_with(given.results / "solvers" / solver, of) for solver, of in settings.items()}
+    grid = Grid.from_points(results / "points", study.points)
+    others = {solver: grid.copy_with(results / "solvers" / solver, of) for solver, of in settings.items()}
     return summarize(grid, others, config["solvers"]["step"])
 
 

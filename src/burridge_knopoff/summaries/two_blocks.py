@@ -20,7 +20,6 @@ import xarray
 
 from burridge_knopoff.attractors.asymptotic_states import asymptotic_states
 from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS, SearchSettings
-from burridge_knopoff.dataset.given import Given
 from burridge_knopoff.dataset.summary import STATE, axes, summary
 from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable, flag
 from burridge_knopoff.model.chain import Chain
@@ -93,15 +92,15 @@ VARIABLES = {
 }
 
 
-def make(given: Given, config: Mapping[str, Any]) -> xarray.Dataset:
-    """Return the comparison."""
+def compare_laws(config: Mapping[str, Any], cores: int) -> xarray.Dataset:
+    """Return the comparison; config : the keys of a study's config that decide it."""
     pair = config["chains"]["two_blocks"]
     sample = settings_from_config(Sample, {**config["chains"], **pair, "symmetric_samples": 0})
     settings = {key: config[key] for key in ("start", "transient", "window")}
     judged = SearchSettings(**config["attractors"]), motion_of(config), config["agreement"]
     models = models_of(config, pair["a"][0], BLOCKS)
     initial = sample.initial_states(BLOCKS)
-    return summarize(models, initial, pair["a"], run_settings(**settings), *judged, processes=given.cores)
+    return summarize(models, initial, pair["a"], run_settings(**settings), *judged, processes=cores)
 
 
 def train(chain: Chain, blocks: int) -> Chain:

@@ -1,0 +1,113 @@
+"""A job of a study, as a script of the workflow sees it: checked inputs, the config that it uses, and outputs."""
+
+from __future__ import annotations
+
+import logging
+import os
+import sys
+from pathlib import Path
+from typing import Any
+
+import xarray
+
+from burridge_knopoff.dataset.summary import open_summary, write_summary
+from burridge_knopoff.provenance.files import reserve_room, write_text
+from burridge_knopoff.provenance.keys import nested
+from burridge_knopoff.provenance.origin import OWN_ATTRIBUTES, Origin, check_origin, other_params, with_origin
+from burridge_knopoff.provenance.record import NAME, read_study_record, study_folder
+from burridge_knopoff.provenance.sums import add_sums
+from burridge_knopoff.summaries.points import Grid
+
+
+class Job:
+    """A job of a study: what it reads, and what it writes with its origin.
+
+    snakemake : what Snakemake gives a script, with `config`, the keys of the config that the job uses, and `sources`
+        among its params; messages, and errors, go to its log
+
+    config : the part of the study's config that these keys describe
+    law : its wildcard of that name
+    cores : number of its cores
+    results : folder of the study
+    cache : folder in which long jobs of the study cache their results, for other values of a or after a kill
+
+    Raises BadFile if an input is damaged or not the expected one, ValueError if the results belong to another config.
+    """
+
+    def __init__(self, snakemake: Any) -> None:
+        sys.stdout = sys.stderr = open(snakemake.log[0], "w", buffering=1, encoding="utf-8")
+        reserve_room(sys.stderr)
+        logging.basicConfig(format="%(message)s")
+        logging.getLogger("burridge_knopoff").setLevel(logging.INFO)
+        folder = study_folder(snakemake.output[0])
+        self.results = Path(os.path.relpath(folder or Path(snakemake.output[0]).parent))
+        self.config = nested(snakemake.params.config)
+        self.wildcards, self.params = snakemake.wildcards, snakemake.params
+        self.cores: int = snakemake.resources.get("cpus_per_task", snakemake.threads)
+        self.cache = Path(".snakemake/study_cache", self.results.name)
+        self._inputs, self._outputs, self._rule = snakemake.input, [*map(Path, snakemake.output)], snakemake.rule
+        self._check_inputs()
+
+    @property
+    def law(self) -> str:
+        """Name of the job's law."""
+        return self.wildcards.law
+
+    @property
+    def points(self) -> Grid:
+        """The points that the keys of its config describe."""
+        return Grid.of_config(self.results / "points", self.config)
+
+    def paths(self, name: str) -> list[Path]:
+        """Return the input files of a name."""
+        files = self._inputs.get(name, [])
+        return [Path(files)] if isinstance(files, str) else [*map(Path, files)]
+
+    def summaries(self, name: str) -> list[xarray.Dataset]:
+        """Return the input files of a name, loaded into memory, without their origin."""
+        datasets = [open_summary(path) for path in self.paths(name)]
+        for dataset in datasets:
+            dataset.attrs = {key: value for key, value in dataset.attrs.items() if key not in OWN_ATTRIBUTES}
+        return datasets
+
+    def summary(self, name: str) -> xarray.Dataset:
+        """Return the only input file of a name, loaded into memory, without its origin."""
+        (dataset,) = self.summaries(name)
+        return dataset
+
+    def _check_inputs(self) -> None:
+        record = read_study_record(self.results)
+        if words := other_params(self.params.config, record):
+            raise ValueError(
+                f"{self.results / NAME}: another run has changed the config ({words}); run snakemake again"
+            )
+        self._params: dict[str, Any] = {}
+        self._checksums: dict[str, str] = {}
+        # Points are checked when they are read.
+        names = [name for name, _ in self._inputs.items() if not name.endswith("points")]
+        for path in (path for name in names for path in self.paths(name)):
+            origin, checksum = check_origin(path, self.results, record)
+            self._params |= origin.params if origin else {}
+            self._checksums[path.relative_to(self.results).as_posix()] = checksum
+
+    def write(self, *contents: Any) -> None:
+        """Write the outputs: Datasets, texts, or one Figure to all of them."""
+        pictures = {}
+        names = [path.relative_to(self.results).as_posix() for path in self._outputs]
+        if len(contents) == 1:
+            contents *= len(names)
+        for path, name, content in zip(self._outputs, names, contents, strict=True):
+            params = {**self._params, **self.params.config}
+            origin = Origin(name, self._rule, params, self._checksums, self.params.sources)
+            if isinstance(content, xarray.Dataset):
+                write_summary(content.assign_attrs(origin.attributes()), path)
+            elif isinstance(content, str):
+                write_text(path, with_origin(content, name, origin))
+            else:
+                pictures[path] = vars(origin)
+        if pictures:
+            # Only figures need matplotlib.
+            from burridge_knopoff.figures.style import write_figure
+
+            write_figure(contents[0], *pictures, origins=pictures)
+        add_sums(self.results, [name for name in names if not name.endswith(".nc")])

@@ -1,0 +1,116 @@
+"""The rules of studies: which rules a study has, which files it makes, and on which keys these depend."""
+
+import pytest
+
+from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.stages import STAGES
+from tests.workflow.planned import planned
+
+STATES = {"minus": {}, "plus": {}}
+CONFIG = {"study": "some", "a": [0.05, 0.08], "initial": STATES}
+WHOLE = {"catalogue": {}, "edges": {}, "chains": {"blocks": [2, 3]}}
+PLANE = {"study": "plane", "grid": {"a": [0.05], "v": [0.1, 0.2]}, "initial": STATES}
+
+
+@pytest.fixture(scope="module")
+def whole():
+    """A study with all its stages."""
+    return planned({**CONFIG, **WHOLE})
+
+
+@pytest.mark.parametrize(
+    ("config", "missing"),
+    [
+        ({}, {"catalogue", "edges"}),
+        ({"catalogue": {}, "edges": {}}, set()),
+        ({"without": ["solvers", "claims"]}, {"solvers", "claims", "catalogue", "edges"}),
+        ({"without": ["attractors"]}, {"attractors", "bifurcations", "basins", "phases", "catalogue", "edges"}),
+        ({"laws": {"linearized": {}}}, {"two_blocks", "catalogue", "edges"}),
+        ({"a": [0.31]}, {"basins", "phases", "catalogue", "edges"}),
+        ({"laws": {"stribeck": {}, "exponential": {}}}, {"proof", "catalogue", "edges"}),
+        ({"chain": {"threshold": [1.0, 1.1, 1.2]}}, {"two_blocks", "proof", "phases", "catalogue", "edges"}),
+    ],
+)
+def test_the_stages_of_a_study(config, missing):
+    study = planned({**CONFIG, **config})
+    assert {name for name in STAGES if name not in study.rules} == missing
+    # A request of one says why the study does not have it.
+    assert missing <= {*study.refusals}
+
+
+def test_stages_that_are_left_out_have_no_values_of_a():
+    """A reader of the section alone then sees that the stage is not part of the study."""
+    study = load_study({**CONFIG, "without": ["attractors", "solvers"]}, "some.yaml")
+    assert (study.basin_maps, study.config["phases"]["a"], study.config["solvers"]["a"]) == ([], [], [])
+    assert study.omitted_stages == ("attractors", "bifurcations", "edges", "basins", "phases", "solvers")
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_leaving_out_a_stage_leaves_out_what_needs_its_results(stage):
+    refused = {*planned({**CONFIG, **WHOLE, "without": [stage]}, "points").refusals}
+    assert refused & {*STAGES} == {stage, *(other for other, needed in STAGES.items() if needed == stage)}
+
+
+def test_figures_of_a_study_without_attractors():
+    there = planned({**CONFIG, "without": ["attractors"]}).rules
+    assert {"figure_mean_distance", "figure_bifurcation_diagram", "figure_distance"} <= there
+    assert not {"figure_bifurcations", "figure_branches_reached", "figure_attractor_kinds"} & there
+
+
+def test_longer_chains_are_made_on_request_or_if_the_config_lists_them(whole):
+    files = {"summary/chains.nc", "figures/chains.pdf", "figures/chains.png", "chains/blocks2.nc"}
+    by_name = planned(CONFIG)
+    assert files <= by_name.files.keys()
+    for study, is_made in ((by_name, False), (whole, True)):
+        assert files.isdisjoint(file for job in study.jobs for file in job.output) != is_made
+        (report,) = study.of("report")
+        assert ("summary/chains.nc" in report.inputs["summaries"]) == is_made
+        assert ("figures/chains.png" in report.inputs["figures"]) == is_made
+    assert len(planned(CONFIG, "chains").of("watch_chain")) == 9
+    refused = planned({**CONFIG, "chain": {"mass": [1, 2, 1]}}, "points")
+    assert not files & refused.files.keys()
+    assert "expected one number for chains of other lengths" in refused.refusals["watch_chain"]
+
+
+def test_several_parameters(whole):
+    study = planned(PLANE)
+    assert {file for file in study.files if file.startswith("summary/")} == {"summary/grid.nc"}
+    assert [job.inputs["points"] for job in study.of("grid")] == [("chunks/0000.done",)]
+    assert not study.of("simulate")
+    assert {"mean_distance", "attractors", "claims"} <= study.refusals.keys()
+    assert {"chunk", "grid"} <= whole.refusals.keys()
+
+
+def test_jobs_wait_only_for_their_inputs(whole):
+    job = next(job for job in whole.of("basin_tile") if job.wildcards["law"] == "nonlinear")
+    assert job.inputs == {"attractors": ("summary/attractors.nc",), "returns": ("returns/nonlinear.nc",)}
+    # No statement of the paper depends on the longest jobs of a study.
+    (claims,) = whole.of("claims")
+    assert not {"summary/basins.nc", "summary/catalogue.nc"} & {*claims.inputs["summaries"]}
+    (solvers,) = planned({**CONFIG, "solvers": {"a": [0.08]}}, "solvers").of("solvers")
+    expected = [f"points/{law}/{state}/a0.0800.nc" for law in ("linearized", "nonlinear") for state in STATES]
+    assert [*solvers.inputs["points"]] == expected
+
+
+#: {change of a config: rules whose params it changes}
+CHANGES = [
+    ({"basins": {"pixels": 8}}, {"basin_tile", "basins"}),
+    ({"basins": {"pairs": 8}}, {"basin_pairs", "basins"}),
+    ({"basins": {"threads": 3}}, set()),
+    ({"phases": {"samples": 8}}, {"phases_of_law"}),
+    ({"agreement": {"standard_errors": 2}}, {"agreement", "two_blocks"}),
+    ({"catalogue": {"low": -1.0}}, {"catalogue"}),
+    ({"catalogue": {"window": 100.0}}, {"catalogue_of_run"}),
+    ({"chains": {"blocks": [2, 3], "time_limit": 500}}, {"watch_chain"}),
+    ({"solvers": {"step": 0.002}}, {"solvers"}),
+    ({"edges": {"samples": 50}}, {"edges_of_law"}),
+]
+
+
+@pytest.mark.parametrize(("change", "rules"), CHANGES)
+def test_a_key_is_a_param_of_what_uses_it_and_of_nothing_else(whole, change, rules):
+    other = {job.output: job for job in planned({**CONFIG, **WHOLE, **change}).jobs if "config" in job.params}
+    before = {job.output: job for job in whole.jobs if "config" in job.params}
+    assert before.keys() == other.keys()
+    changed = {job.rule for files, job in before.items() if job.params["config"] != other[files].params["config"]}
+    assert changed == rules | {"report"}

@@ -1,0 +1,53 @@
+# Catalogues of slip events: one run for each law and a, and the statistics of the events.
+CATALOGUES = [{"law": law, "a": a} for law in STUDY.laws for a in STUDY.catalogue_a]
+NO_CATALOGUE = "" if "catalogue" in STUDY.config else "no catalogues of slip events: add `catalogue: {}` to its config"
+
+
+rule catalogue_of_run:
+    """Record the slip events of one run."""
+    output:
+        f"{RESULTS}/catalogues/{{law}}/a{{a}}.nc",
+    log:
+        f"{RESULTS}/logs/catalogues/{{law}}/a{{a}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/catalogues/{{law}}/a{{a}}.tsv"
+    # Long runs start first.
+    priority: 1
+    resources:
+        mem_mb=1000,
+        runtime=240,
+    params:
+        config=uses(MODEL_OF_LAW, "a={a}", catalogue_keys, stage="catalogue", jobs=CATALOGUES, refusal=NO_CATALOGUE),
+        sources=sources("catalogue_of_run"),
+    message:
+        "slip events, {wildcards.law} law, a = {wildcards.a}"
+    script:
+        "../scripts/catalogue_of_run.py"
+
+
+rule catalogue:
+    """Count the slip events by magnitude, fit the slope, and measure extents, intervals and recurrence."""
+    input:
+        catalogues=jobs_of(rules.catalogue_of_run, CATALOGUES),
+    output:
+        f"{RESULTS}/summary/catalogue.nc",
+    log:
+        f"{RESULTS}/logs/catalogue.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/catalogue.tsv"
+    group:
+        group("summaries")
+    resources:
+        mem_mb=1000,
+    params:
+        config=uses(
+            "laws",
+            [f"catalogue.{name}" for name in ("a", "low", "high") if name in STUDY.config.get("catalogue", {})],
+            stage="catalogue",
+            refusal=NO_CATALOGUE,
+        ),
+        sources=sources("catalogue"),
+    message:
+        "statistics of slip events, all laws"
+    script:
+        "../scripts/catalogue.py"

@@ -1,0 +1,63 @@
+# Points: one simulation for each friction law, initial state and value of a, or of several parameters. In a study over a
+# each point is a job; in one over several parameters each chunk of consecutive points is a job.
+POINT = STUDY.point_file.removesuffix(".nc")
+GRID = {
+    "law": STUDY.laws,
+    "initial": STUDY.initial,
+    **{word: list(STUDY.parameters[name]) for word, name in STUDY.wildcards.items()},
+}
+CHUNKS = [{"chunk": chunk} for chunk in chunks(STUDY)]
+
+
+rule points:
+    """Simulate all points: each friction law from each initial state at each a, or at each point of the grid."""
+    input:
+        all_point_files,
+
+
+rule simulate:
+    """Simulate one point: one friction law from one initial state at one a, or at one point of the grid."""
+    output:
+        f"{RESULTS}/points/{POINT}.nc",
+    log:
+        f"{RESULTS}/logs/simulate/{POINT}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/simulate/{POINT}.tsv"
+    priority: 3
+    group:
+        fixed_group("points", all_points(STUDY))
+    resources:
+        mem_mb=150,
+        runtime=10,
+    params:
+        command=simulates("points"),
+        sources=source_fingerprint("burridge_knopoff.dataset.point"),
+    message:
+        "simulate {wildcards.law} law, initial state {wildcards.initial}, "
+        + ", ".join(f"{name} = {{wildcards.{word}}}" for word, name in STUDY.wildcards.items())
+    # A run that stopped at a limit is a result as well.
+    shell:
+        "{params.command} --out {output} > /dev/null 2> {log} || [ $? = 3 ]"
+
+
+rule chunk:
+    """Simulate the points of a chunk that are missing, damaged or out of date."""
+    output:
+        touch(f"{RESULTS}/chunks/{{chunk}}.done"),
+    log:
+        f"{RESULTS}/logs/chunk/{{chunk}}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/chunk/{{chunk}}.tsv"
+    wildcard_constraints:
+        chunk=r"\d+",
+    priority: 3
+    resources:
+        mem_mb=250,
+        runtime=120,
+    params:
+        config=uses(point_keys(STUDY), stage="points", over="several", jobs=CHUNKS),
+        sources=sources("chunk"),
+    message:
+        "simulate the points of chunk {wildcards.chunk}"
+    script:
+        "../scripts/chunk.py"

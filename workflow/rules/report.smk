@@ -1,0 +1,30 @@
+# The report, one HTML file that opens offline.
+
+
+rule report:
+    """Write the report of the study, one HTML file that opens offline."""
+    input:
+        # The page draws the moving blocks of single runs.
+        points=[] if STUDY.is_plane else all_point_files,
+        claims=optional("claims", f"{RESULTS}/summary/claims.json"),
+        summaries=files_in("summary/", suffix=".nc"),
+        figures=files_in("figures/", suffix=".png"),
+    output:
+        f"{RESULTS}/report.html",
+    log:
+        f"{RESULTS}/logs/report.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/report.tsv"
+    group:
+        group("figures")
+    resources:
+        mem_mb=600,
+    params:
+        # The report shows the whole config.
+        config=uses(*STUDY.config, stage="report", over="any"),
+        sources=sources("report"),
+        arguments=CONFIG_ARGUMENTS,
+    message:
+        f"report: {RESULTS}/report.html"
+    script:
+        "../scripts/report.py"

@@ -1,0 +1,45 @@
+# The comparison of the solvers: points at a few values of a, repeated with every other solver of each law.
+REPEATED = solver_points(STUDY)
+
+
+use rule simulate as simulate_solver with:
+    """Repeat one point with another solver."""
+    output:
+        f"{RESULTS}/solvers/{{solver}}/{POINT}.nc",
+    log:
+        f"{RESULTS}/logs/simulate_solver/{{solver}}/{POINT}.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/simulate_solver/{{solver}}/{POINT}.tsv"
+    wildcard_constraints:
+        solver="|".join(SOLVERS),
+    group:
+        fixed_group("solver_points", REPEATED)
+    resources:
+        mem_mb=150,
+        runtime=60,
+    params:
+        command=simulates("solvers"),
+    message:
+        "simulate {wildcards.law} law by {wildcards.solver}, initial state {wildcards.initial}, a = {wildcards.a}"
+
+
+rule solvers:
+    """Compare independent solvers of the equations of motion."""
+    input:
+        points=lambda wildcards: point_files(a=STUDY.compared_values),
+        other_points=jobs_of(rules.simulate_solver, REPEATED),
+    output:
+        f"{RESULTS}/summary/solvers.nc",
+    log:
+        f"{RESULTS}/logs/solvers.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/solvers.tsv"
+    group:
+        group("summaries")
+    params:
+        config=uses(run_keys(STUDY), "initial", "solvers.a", "solvers.step", stage="solvers"),
+        sources=sources("solvers"),
+    message:
+        "independent solvers of the same equations"
+    script:
+        "../scripts/solvers.py"

@@ -1,0 +1,196 @@
+# Summaries of all points, and of the models without points: one netCDF file for each question.
+POINTS = point_keys(STUDY)
+
+
+rule summary:
+    """Compute all summaries of the study, and the verdicts on the claims of the paper."""
+    input:
+        files_in("summary/"),
+
+
+rule mean_distance:
+    """Average the distance J between the end blocks over each run."""
+    input:
+        points=all_point_files,
+    output:
+        f"{RESULTS}/summary/mean_distance.nc",
+    log:
+        f"{RESULTS}/logs/mean_distance.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/mean_distance.tsv"
+    priority: FIRST
+    group:
+        group("summaries")
+    resources:
+        runtime=30,
+    params:
+        config=uses(POINTS, "synchronization_threshold", stage="summary"),
+        sources=sources("mean_distance"),
+    message:
+        "summary: mean_distance"
+    script:
+        "../scripts/mean_distance.py"
+
+
+rule bifurcation_diagram:
+    """Collect the section points of all runs for the bifurcation diagrams."""
+    input:
+        points=all_point_files,
+    output:
+        f"{RESULTS}/summary/bifurcation_diagram.nc",
+    log:
+        f"{RESULTS}/logs/bifurcation_diagram.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/bifurcation_diagram.tsv"
+    priority: FIRST
+    group:
+        group("summaries")
+    resources:
+        mem_mb=1000,
+        runtime=30,
+    params:
+        config=uses(POINTS, stage="summary"),
+        sources=sources("bifurcation_diagram"),
+    message:
+        "summary: bifurcation_diagram"
+    script:
+        "../scripts/bifurcation_diagram.py"
+
+
+rule lyapunov:
+    """Estimate the Lyapunov exponents of each run and determine its kind of motion."""
+    input:
+        points=all_point_files,
+    output:
+        f"{RESULTS}/summary/lyapunov.nc",
+    log:
+        f"{RESULTS}/logs/lyapunov.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/lyapunov.tsv"
+    group:
+        group("summaries")
+    resources:
+        runtime=30,
+    params:
+        config=uses(POINTS, "synchronization_threshold", "motion", stage="summary"),
+        sources=sources("lyapunov"),
+    message:
+        "summary: lyapunov"
+    script:
+        "../scripts/lyapunov.py"
+
+
+rule stick_slip:
+    """Measure the stick-slip cycles of each block in each run."""
+    input:
+        points=all_point_files,
+    output:
+        f"{RESULTS}/summary/stick_slip.nc",
+    log:
+        f"{RESULTS}/logs/stick_slip.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/stick_slip.tsv"
+    group:
+        group("summaries")
+    resources:
+        runtime=30,
+    params:
+        config=uses(POINTS, stage="summary"),
+        sources=sources("stick_slip"),
+    message:
+        "summary: stick_slip"
+    script:
+        "../scripts/stick_slip.py"
+
+
+rule agreement:
+    """Determine where each friction law agrees with the first."""
+    input:
+        points=all_point_files,
+        lyapunov=f"{RESULTS}/summary/lyapunov.nc",
+        attractors=optional("attractors", f"{RESULTS}/summary/attractors.nc"),
+    output:
+        f"{RESULTS}/summary/agreement.nc",
+        shown("agreement.csv", "table of the agreement", "Friction laws"),
+        shown("agreement.txt", "agreement in words", "Friction laws"),
+    log:
+        f"{RESULTS}/logs/agreement.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/agreement.tsv"
+    group:
+        group("summaries")
+    resources:
+        runtime=30,
+    params:
+        config=uses(POINTS, "synchronization_threshold", "agreement", stage="summary"),
+        sources=sources("agreement"),
+    message:
+        "summary: agreement"
+    script:
+        "../scripts/agreement.py"
+
+
+rule orbits:
+    """Continue the synchronized orbit in a to its loss of stability, and the orbit that branches off there."""
+    output:
+        f"{RESULTS}/summary/orbits.nc",
+    log:
+        f"{RESULTS}/logs/orbits.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/orbits.tsv"
+    priority: FIRST
+    group:
+        group("summaries")
+    resources:
+        runtime=30,
+    params:
+        config=uses(MODELS, "a", stage="summary"),
+        sources=sources("orbits"),
+    message:
+        "summary: orbits"
+    script:
+        "../scripts/orbits.py"
+
+
+rule equilibrium:
+    """Find uniform sliding and the eigenvalues of its perturbations."""
+    output:
+        f"{RESULTS}/summary/equilibrium.nc",
+    log:
+        f"{RESULTS}/logs/equilibrium.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/equilibrium.tsv"
+    group:
+        group("summaries")
+    resources:
+        runtime=30,
+    params:
+        config=uses(MODELS, "a", stage="summary"),
+        sources=sources("equilibrium"),
+    message:
+        "summary: equilibrium"
+    script:
+        "../scripts/equilibrium.py"
+
+
+rule grid:
+    """Collect the results of all runs over the study's parameters."""
+    input:
+        points=all_point_files,
+    output:
+        f"{RESULTS}/summary/grid.nc",
+    log:
+        f"{RESULTS}/logs/grid.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/grid.tsv"
+    group:
+        group("summaries")
+    resources:
+        runtime=30,
+    params:
+        config=uses(POINTS, "synchronization_threshold", "motion", stage="summary", over="several"),
+        sources=sources("grid"),
+    message:
+        "summary: grid"
+    script:
+        "../scripts/grid.py"

@@ -1,0 +1,10 @@
+"""Measure how rough the basin boundaries are."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.basins import pairs_of_map
+
+known = job.summary("attractors"), job.summary("returns")
+job.write(pairs_of_map(job.config, job.law, *known, job.cores))

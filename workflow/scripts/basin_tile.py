@@ -1,0 +1,10 @@
+"""Map one tile of the basins of attraction."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.basins import tile_of_map
+
+known = job.summary("attractors"), job.summary("returns")
+job.write(tile_of_map(job.config, job.law, *known, int(job.wildcards.tile), job.cores))

@@ -1,0 +1,10 @@
+"""Merge the tiles and pairs into basin maps."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.basins import digest, merge_maps
+
+maps = merge_maps(job.config, job.summary("attractors"), job.summaries("tiles"), job.summaries("pairs"))
+job.write(maps, digest(maps))

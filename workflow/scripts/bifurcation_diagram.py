@@ -1,0 +1,9 @@
+"""Collect the section points of all runs."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.bifurcation_diagram import summarize
+
+job.write(summarize(job.points))

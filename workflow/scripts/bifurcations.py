@@ -1,0 +1,11 @@
+"""Merge the bifurcations of all friction laws."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.bifurcations import digest, merge_laws
+
+edges = next(iter(job.summaries("edges")), None)
+bifurcations = merge_laws(job.summaries("bifurcations"), edges)
+job.write(bifurcations, digest(bifurcations))

@@ -1,0 +1,9 @@
+"""Measure the statistics of the slip events of all catalogues."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.catalogue import statistics
+
+job.write(statistics(job.config, job.paths("catalogues")))

@@ -1,0 +1,9 @@
+"""Merge the fractions of synchronizing states over chain length and a."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.chains import merge
+
+job.write(merge(job.summaries("chains")))

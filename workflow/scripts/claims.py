@@ -1,0 +1,11 @@
+"""Judge every claim of the paper."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.claims.making import verdicts
+
+names = [path.stem for path in job.paths("summaries")]
+summaries = dict(zip(names, job.summaries("summaries"), strict=True))
+job.write(*verdicts(job.config, summaries, job.params.figures))

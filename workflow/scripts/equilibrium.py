@@ -1,0 +1,12 @@
+"""Find uniform sliding and the eigenvalues of its perturbations."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.study.grid import values_of
+from burridge_knopoff.study.model import models_of
+from burridge_knopoff.summaries.equilibrium import summarize
+
+grid = values_of(job.config["a"], "a")
+job.write(summarize(models_of(job.config, grid[0]), grid))

@@ -1,0 +1,9 @@
+"""Merge the outcomes of initial phases of all friction laws."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.phases import merge
+
+job.write(merge(job.summaries("phases")))

@@ -1,0 +1,10 @@
+"""Determine which phases of the end blocks lead to synchrony under one friction law."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.phases import phases_of_law
+
+known = job.summary("attractors"), job.summary("returns")
+job.write(phases_of_law(job.config, job.law, *known, job.cores))

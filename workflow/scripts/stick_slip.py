@@ -1,0 +1,10 @@
+"""Measure the stick-slip cycles of each block in each run."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.stick_slip import summarize
+
+config = job.config
+job.write(summarize(job.points, config["transient"], config["window"], config["batches"]))
