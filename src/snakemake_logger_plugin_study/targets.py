@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from difflib import get_close_matches
 from pathlib import Path, PurePosixPath
 
@@ -66,11 +66,15 @@ def _of_file(path: str) -> str:
     if not path.startswith(f"{folder}/"):
         return _of_other_study(path, list(files))
     if values := _values(path, files):
-        shown = " | ".join([*values[1:][:MOST_VALUES], *["…"] * (len(values) > MOST_VALUES + 1)])
-        return f"got {values[0]}, expected {shown}"
+        return f"got {values[0]}, expected {listed(values[1:])}"
     similar = _similar(path, list(files)) or "; snakemake --list-rules says what each rule makes"
     kind = {f"{folder}/figures": "figure", f"{folder}/summary": "summary"}.get(path.rpartition("/")[0], "file")
     return f"no {kind} has that name{similar}"
+
+
+def listed(values: Sequence[str]) -> str:
+    """Return values as a message lists them."""
+    return " | ".join([*values[:MOST_VALUES], *["…"] * (len(values) > MOST_VALUES)])
 
 
 def _values(path: str, files: Iterable[str]) -> list[str]:

@@ -6,7 +6,7 @@ FIRST = 4
 ONCE = [{}]
 LAWS = [{"law": law} for law in STUDY.laws]
 #: Keys of the config that define the models, and the model under one law; criteria of kinds of motion.
-MODELS = ["laws", "chain", "v", "contact"]
+MODELS = [*MODEL_KEYS]
 MODEL_OF_LAW = ["laws.{law}", *MODELS[1:]]
 MOTION = ["motion", "synchronization_threshold", "section"]
 
@@ -63,8 +63,7 @@ def other_value(wildcards, jobs):
     for name, value in wildcards.items():
         values = list(dict.fromkeys(job[name] for job in jobs))
         if value not in values:
-            listed = " | ".join([*values[:8], *["…"] * (len(values) > 8)])
-            return f"{name}: got {value}, expected {listed or 'no value'}"
+            return f"{name}: got {value}, expected {listed(values) or 'no value'}"
     return "this study has no job of these values"
 
 

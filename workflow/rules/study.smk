@@ -20,7 +20,6 @@ except KernelError as error:
 
 from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS
 from burridge_knopoff.check.changes import changes
-from burridge_knopoff.study.damage import damaged_files
 from burridge_knopoff.check.study import is_locked
 from burridge_knopoff.claims.claim import FILE as CLAIMS_FILE
 from burridge_knopoff.claims.claim import claims_of, read_claims
@@ -41,6 +40,7 @@ from burridge_knopoff.provenance.sums import write_sums
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.study.chunks import chunks
 from burridge_knopoff.study.command_line import config_arguments, of_command_line
+from burridge_knopoff.study.damage import damaged_files
 from burridge_knopoff.study.keys import (
     condition_refusal,
     length_refusal,
@@ -51,6 +51,7 @@ from burridge_knopoff.study.keys import (
     study_keys,
 )
 from burridge_knopoff.study.load import load_study
+from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.paths import VALUE
 from burridge_knopoff.study.remarks import remarks
 from burridge_knopoff.study.study import all_points, run_files, solver_points
@@ -77,6 +78,7 @@ from snakemake_logger_plugin_study.remarks import (
     points_of_grid,
     replaced_results,
 )
+from snakemake_logger_plugin_study.targets import listed
 
 # Another Snakefile may import this one as a module; it is then the main Snakefile.
 ROOT = Path(f"{workflow.current_basedir}").resolve().parents[1]

@@ -91,18 +91,12 @@ def read_study_record(results: str | Path) -> dict[str, Any]:
         raise ValueError(f"{folder}: {reason if Path(results).exists() else 'this folder does not exist'}") from None
     except (ValueError, RecursionError):
         record = None
-    if isinstance(record, dict):
-        # Records of earlier versions have more keys, and no lists of files.
-        record = {"files": {}, "left": {}, **record}
-    if not _has_lists(record) or {key: type(record.get(key)) for key in _TYPES} != _TYPES:
+    # Records of earlier versions have more keys, and no lists of files.
+    complete = {"files": {}, "left": {}, **record} if isinstance(record, dict) else {}
+    types = {key: type(complete.get(key)) for key in _TYPES}
+    if types != _TYPES or not all(isinstance(log, str) for key in ("files", "left") for log in complete[key].values()):
         raise ValueError(f"{escape_unprintable(str(path))}: not a valid record; run snakemake again to rewrite it")
-    return record
-
-
-def _has_lists(record: Any) -> bool:
-    """Return whether a record has lists of files with their logs."""
-    lists = [record.get(key) for key in ("files", "left")] if isinstance(record, dict) else [None]
-    return all(isinstance(files, dict) and all(isinstance(log, str) for log in files.values()) for files in lists)
+    return complete
 
 
 def study_folder(path: str | Path) -> Path | None:
