@@ -103,7 +103,9 @@ def rows(path: Path) -> list[Row]:
 
 
 def _row(variable: netCDF4.Variable) -> Row:
-    text = UNKNOWN.sub("", variable.long_name)
+    text = UNKNOWN.sub(
+        "", ": ".join([variable.long_name, *([variable.comment] if "comment" in variable.ncattrs() else [])])
+    )
     if "flag_meanings" in variable.ncattrs():
         meanings = dict(zip(np.atleast_1d(variable.flag_values).tolist(), variable.flag_meanings.split(), strict=True))
         # The page explains answers and kinds of motion once.

@@ -11,7 +11,7 @@ import xarray
 
 from burridge_knopoff import Chain, Model, law_of, multipliers, simulate, synchronized_orbit
 from burridge_knopoff.dataset.variables import Answer
-from burridge_knopoff.summaries.mean_distance import settling_time
+from burridge_knopoff.summaries.runs import settling_time
 
 NUMBERS = [
     (

@@ -115,7 +115,7 @@ def test_by_the_record_of_another_study_nothing_is_pruned(results, capsys, case)
     record(results, given, read_study_record(results)["files"], "foreign.yaml")
     points = results / "points/linearized/minus"
     paths = {"point": points / "a0.0500.nc", "other": points / "a0.0600.nc"}
-    paths["summary"] = results / "summary/mean_distance.nc"
+    paths["summary"] = results / "summary/runs.nc"
     before = files_in(results)
     for arguments in ([], ["--dry-run"]):
         assert main(["prune", *arguments, str(results)]) == 2

@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff.claims.claim import read_claims
+from burridge_knopoff.claims.claim import OWN, READS, read_claims
 from burridge_knopoff.claims.conventions import rounded_state_changes
 from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
 from burridge_knopoff.claims.judge import JUDGES, Judge
-from burridge_knopoff.claims.ledger import OWN, READS, ledger
+from burridge_knopoff.claims.ledger import ledger
 from burridge_knopoff.claims.margins import BOUNDS, LISTED
 from burridge_knopoff.claims.verdict import (
     NOT_TESTABLE,

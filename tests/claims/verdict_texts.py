@@ -16,7 +16,7 @@ from burridge_knopoff.claims.verdict import Verdict
 from burridge_knopoff.figures.description import picture_names
 from burridge_knopoff.model.initial import PAPER_STATES
 from tests.claims.alterations import CASES, Alteration
-from tests.claims.worlds import evidence, paper_world
+from tests.claims.worlds import evidence, judge_means, paper_world
 
 ROOT = Path(__file__).parents[2]
 FILE = Path(__file__).with_name("verdict_texts.json")
@@ -28,6 +28,7 @@ def judge_altered(name: str, alteration: Alteration) -> Verdict:
     """Return the verdict on a claim from altered data for which the paper would otherwise be right."""
     world = paper_world()
     alteration(world)
+    judge_means(world)
     return judge_claim(name, evidence(world))
 
 

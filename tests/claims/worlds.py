@@ -10,9 +10,10 @@ import xarray
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.continuation.branch_changes import Change
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.motion.kind import MotionKind
+from burridge_knopoff.motion.kind import SYNCHRONOUS, MotionKind
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.paper import PAPER_LAWS as LAWS
+from burridge_knopoff.summaries.judgement import excess, same_mean
 from tests.grids import PAPER_MODELS
 from tests.sections import AGREEMENT, MOTION
 
@@ -60,6 +61,7 @@ def paper_world() -> Summaries:
         "agreement": _dataset(
             {
                 **_compared(PAIR, 1e-4 * MEANS),
+                **dict.fromkeys(("section_distance", "event_order_time", "event_order_count"), (PAIR, 1.0)),
                 "settled": (POINT, np.int8(1)),
                 "mean_distance": (POINT, MEANS),
                 "mean_distance_error": (POINT, 1e-5),
@@ -97,6 +99,7 @@ def paper_world() -> Summaries:
             {
                 **_compared(PAIR_OF_STATES, 1e-5),
                 "margin": (PAIR_OF_STATES, -40.0),
+                "section_period": (("chain", "law", "state", "a"), np.int16(0)),
                 "mean_distance": (("chain", "law", "state", "a"), 0.14),
                 "mean_distance_error": (("chain", "law", "state", "a"), 1e-5),
                 "kind": (("chain", "law", "state", "a"), np.int8(QUASIPERIODIC)),
@@ -118,7 +121,30 @@ def paper_world() -> Summaries:
         for values in (dataset[key].values for key in numbers):
             if name != "equilibrium":
                 values *= np.linspace(1.0, 1.001, values.size).reshape(values.shape)
-    return world
+    return {"runs": _runs(world["mean_distance"], world["lyapunov"]), **world}
+
+
+def judge_means(world: Summaries) -> None:
+    """Determine again whether ⟨J⟩ agrees, after a change of means or differences."""
+    for name in ("agreement", "two_blocks"):
+        dataset = world[name]
+        about = {key: dataset.attrs[key if name == "agreement" else f"agreement_{key}"] for key in AGREEMENT}
+        synchronous = dataset["kind"].isin(SYNCHRONOUS).all("law")
+        beyond = excess(dataset["difference"], dataset["mean_distance"].max("law", skipna=False), 1e-6, about)
+        same = same_mean(beyond, dataset["difference_error"], synchronous, about)
+        dataset["same_mean_distance"].values[...] = same.transpose(*dataset["difference"].dims)
+
+
+def _runs(mean_distance: xarray.Dataset, lyapunov: xarray.Dataset) -> xarray.Dataset:
+    """Return the scalars of runs of these mean distances, exponents and periods."""
+    kept = ["lyapunov_exponent", "lyapunov_error", "lyapunov_infinite_count"]
+    repetition = {"repetition_points": lyapunov["section_period"], "repetition_period": lyapunov["period"]}
+    runs = mean_distance.drop_vars("synchronized").assign(lyapunov[kept]).assign(repetition).copy(deep=True)
+    runs["repetition_divergence"] = xarray.zeros_like(runs["mean_distance"])
+    for name, value in (("mirror_symmetric", 1), ("event_count", 100)):
+        runs[name] = xarray.full_like(runs["status"], value)
+    runs["window_least_spring_force"] = xarray.full_like(runs["mean_distance"], 0.1)
+    return runs.assign_coords(v=0.1)
 
 
 def _dataset(variables: dict, **coordinates: object) -> xarray.Dataset:
@@ -138,6 +164,7 @@ def _compared(pair: tuple[str, ...], difference: object) -> dict:
     return {
         "agrees": (pair, np.int8(1)),
         "same_kind": (pair, np.int8(1)),
+        "same_mean_distance": (pair, np.int8(1)),
         "difference": (pair, difference),
         "difference_error": (pair, 1e-6),
         "parting_a": (pair[:-1], np.nan),
@@ -210,6 +237,8 @@ def _attractors() -> xarray.Dataset:
             "side": (slots, np.int8(0)),
             "kind": (slots, np.stack(kind, axis=1).astype("i1")),
             "mean_distance": (slots, [0.0, 0.14, 0.1]),
+            "mean_distance_error": (slots, 1e-5),
+            "period": (slots, [7.5, np.nan, 7.5]),
             "basin_count": (slots, np.where(A[:, None] > 0.1, [0, 100, 0], 100).astype("i4")),
             "undetermined_count": (slots[:2], np.int32(0)),
             "basin_fraction": (slots, 0.5),
@@ -226,7 +255,7 @@ def _attractors() -> xarray.Dataset:
         start=["moving", "tested"],
         corner=[0, 1],
         block=BLOCKS,
-    )
+    ).assign_attrs(contact="one_sided", start="moving", resolution=1e-4, v=0.1)
 
 
 def _refined() -> xarray.Dataset:

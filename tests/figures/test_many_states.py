@@ -57,10 +57,10 @@ def test_figures_of_one_to_eight_states(count, small, point):
     found = {name: with_states(data, names) for name, data in small.found.items()}
     drawn = []
     for figure in figure_descriptions():
-        known = figure.of_runs or set(figure.inputs) <= set(found)
-        if not known or not (figure.of_runs or OF_STATES & set(figure.inputs)) or "{initial}" in figure.file:
+        known = figure.of_points or set(figure.inputs) <= set(found)
+        if not known or not (figure.of_points or OF_STATES & set(figure.inputs)) or "{initial}" in figure.file:
             continue
-        taken = [dict.fromkeys(names, point)] if figure.of_runs else [found[name] for name in figure.inputs]
+        taken = [dict.fromkeys(names, point)] if figure.of_points else [found[name] for name in figure.inputs]
         draw = import_module(f"burridge_knopoff.figures.{figure.name}").draw
         made = draw(*taken, **{name: getattr(small.study, name) for name in figure.from_study})
         if count < STATES[-1]:

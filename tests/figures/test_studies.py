@@ -23,10 +23,10 @@ def figures_of(small):
     law, initial = study.config["figures"]["law"], study.initial[0]
     point = to_dataset(run(study.model(law, 0.2), grid.initial[initial], grid.settings[law]))
     for figure in figure_descriptions():
-        missing = not figure.of_runs and not set(figure.inputs) <= set(found)
+        missing = not figure.of_points and not set(figure.inputs) <= set(found)
         if missing or (figure.condition and not getattr(study, figure.condition)):
             continue
-        taken = [{initial: point}] if figure.of_runs else [found[name] for name in figure.inputs]
+        taken = [{initial: point}] if figure.of_points else [found[name] for name in figure.inputs]
         draw = import_module(f"burridge_knopoff.figures.{figure.name}").draw
         yield figure.name, draw(*taken, **{name: getattr(study, name) for name in figure.from_study})
 

@@ -5,7 +5,6 @@ import shutil
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 import xarray
 
@@ -40,9 +39,9 @@ def test_the_tree_has_the_files_as_nodes(results):
     # A file that a job is writing, or has left incomplete, is not a node.
     (results / "summary" / ".some.part-0123abcd.nc").touch()
     study = open_study(results)
-    assert len(list(study["summary"])) == 7
-    assert len(files) == 11 + 7
-    assert sorted(study) == sorted(["grid", *(str(path.relative_to(results).with_suffix("")) for path in files)])
+    assert len(list(study["summary"])) == 8
+    assert len(files) == 11 + 8
+    assert sorted(study) == sorted(str(path.relative_to(results).with_suffix("")) for path in files)
     for path in files:
         node = study[str(path.relative_to(results).with_suffix(""))]
         with xarray.open_dataset(path) as expected:
@@ -54,12 +53,12 @@ def test_the_tree_has_the_files_as_nodes(results):
 
 def test_a_study_is_shown_on_one_screen(results):
     lines = repr(open_study(results)).splitlines()
-    assert len(lines) == 4 + 7
+    assert len(lines) == 3 + 8
     assert max(map(len, lines)) < 120
     assert lines[0] == f"<study few in {results}>"
-    assert re.fullmatch("grid +scalars of the points over law 2, initial 2, a 3", lines[1])
-    form = "points/<law>/<initial>/a<a> +11 of 12 points, such as points/linearized/minus/a0.0500"
-    assert re.fullmatch(form, lines[2])
+    over = "over law 2, initial 2, a 3"
+    form = f"points/<law>/<initial>/a<a> +11 of 12 points {over}, such as points/linearized/minus/a0.0500"
+    assert re.fullmatch(form, lines[1])
     assert any(re.fullmatch("summary/lyapunov +Lyapunov exponents and kinds of motion", line) for line in lines)
 
 
@@ -72,7 +71,7 @@ def test_files_are_opened_on_request(results, tmp_path):
     assert "summary/mean_distance" in repr(study)
     assert study["points/linearized/plus/a0.2200"].sizes["block"] == 3
     assert study["summary/lyapunov"].sizes["a"] == 3
-    for path in ("grid", "points", "summary", POINT.removesuffix(".nc"), "/"):
+    for path in ("points", "summary", POINT.removesuffix(".nc"), "/"):
         with pytest.raises(ValueError, match="is empty"):
             study[path]
 
@@ -81,7 +80,7 @@ def test_groups_are_trees_of_their_files(results):
     study = open_study(results)
     assert set(study["points/linearized"].children) == {"minus", "plus"}
     assert set(study["/points/nonlinear/plus/"].children) == {"a0.0500", "a0.2200"}
-    assert set(study["/"].children) == {"grid", "points", "summary"}
+    assert set(study["/"].children) == {"points", "summary"}
     point = "points/linearized/plus/a0.0500"
     assert study["/"][point].identical(study[point])
 
@@ -103,22 +102,6 @@ def test_parts_of_arrays_are_read_on_request(results):
         for chosen in ({"block": 1}, {"event": [5, 2, 2]}, {"event": slice(None, None, 7), "block": [0, 2]}):
             assert node.event_velocity.isel(chosen).equals(point.event_velocity.isel(chosen))
         assert node.velocity.sel(block=2).equals(point.velocity.sel(block=2))
-
-
-def test_numbers_over_the_grid(results):
-    grid = open_study(results)["grid"]
-    assert dict(grid.sizes) == {"law": 2, "initial": 2, "a": 3}
-    law, initial, a = MISSING
-    missing = grid.sel(law=law, initial=initial, a=float(a))
-    assert np.isnan(missing.mean_distance)
-    assert missing.event_count == missing.status == -1
-    with xarray.open_dataset(results / "points" / "nonlinear" / "minus" / "a0.0800.nc") as point:
-        one = grid.sel(law="nonlinear", initial="minus", a=0.08)
-        assert set(grid.data_vars) == {name for name, item in point.data_vars.items() if not item.dims}
-        for name in grid.data_vars:
-            assert one[name].item() == point[name].item()
-            assert grid[name].dtype == point[name].dtype
-            assert grid[name].attrs.keys() == point[name].attrs.keys()
 
 
 @pytest.mark.parametrize(
@@ -171,7 +154,7 @@ def test_a_folder_without_a_study_is_refused(tmp_path):
 def test_dask_is_not_needed(results):
     script = (
         "import sys; sys.modules['dask'] = None; from burridge_knopoff import open_study; "
-        f"print(open_study({str(results)!r})['grid'].mean_distance.sel(a=0.05).notnull().all().item())"
+        f"print(open_study({str(results)!r})['summary/mean_distance'].mean_distance.sel(a=0.05).notnull().all().item())"
     )
     run = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
     assert run.stdout == "True\n"
@@ -181,7 +164,7 @@ def test_a_study_that_snakemake_has_made(finished):
     results = finished.folder / "results" / "tiny"
     study = open_study(results)
     assert set(study["summary"].children) == {path.stem for path in (results / "summary").glob("*.nc")}
-    assert study["grid"].mean_distance.equals(study["summary/mean_distance"].mean_distance)
+    assert study["summary/runs"].mean_distance.equals(study["summary/mean_distance"].mean_distance)
 
 
 @pytest.mark.slow
@@ -193,7 +176,7 @@ def test_threads_may_open_files(results):
         "with ThreadPoolExecutor(8) as pool: print(len([*pool.map(study.__getitem__, [*study] * 3)]))"
     )
     run = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True)
-    assert (run.returncode, run.stdout) == (0, f"{3 * (1 + 11 + 7)}\n")
+    assert (run.returncode, run.stdout) == (0, f"{3 * (11 + 8)}\n")
 
 
 def test_the_whole_tree_is_one_file(results, tmp_path):

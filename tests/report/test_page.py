@@ -153,7 +153,8 @@ def test_a_study_of_two_parameters_begins_with_the_distance(tmp_path, values, ch
     grid = {"a": values, "v": [0.1, 0.2]}
     config = {"study": "plane", "grid": grid, "initial": {"plus": {}}, "transient": 20, "window": 20, "batches": 2}
     small = run_study(tmp_path / "results/plane", config, ("points", "summary"))
-    html = render(small.study, Sources(None, {"grid": small.folder / "summary/grid.nc"}, {}))
+    summaries = {name: small.folder / f"summary/{name}.nc" for name in ("runs", "lyapunov")}
+    html = render(small.study, Sources(None, summaries, {}))
     assert html.count('data-chart="grid"') == charts
     assert ('id="plotly"' in html) == (charts > 0)
     page = Page(html)

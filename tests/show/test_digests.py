@@ -181,10 +181,22 @@ def test_kinds_of_motion_over_several_parameters():
     axes = {"law": ["linearized"], "initial": ["minus"], "a": [0.1, 0.2], "v": [0.1, 0.3]}
     kinds = np.array([[[[0, 1], [1, -1]]]], "i1")
     distance = np.array([[[[0.0, 0.1], [0.2, np.nan]]]])
-    data = xarray.Dataset({"run_kind": (tuple(axes), kinds), "mean_distance": (tuple(axes), distance)}, axes)
-    assert digests.grid(data) == (
-        "linearized, minus: 4 points: undetermined 1, synchronized 1, periodic 2; largest <J> 0.2 at a = 0.2, v = 0.1"
+    exponent = (0.1 * kinds)[..., None]
+    data = xarray.Dataset(
+        {
+            "run_kind": (tuple(axes), kinds),
+            "lyapunov_exponent": ((*axes, "exponent"), exponent),
+            "mean_distance": (tuple(axes), distance),
+            "synchronized": (tuple(axes), (kinds == 0).astype("i1"), flag("i1", {0: "no", 1: "yes"})),
+        },
+        axes,
     )
+    counts = "linearized, minus: 4 points: undetermined 1, synchronized 1, periodic 2"
+    assert digests.lyapunov(data) == f"{counts}; largest exponent 0.1 at a = 0.1, v = 0.3"
+    assert digests.mean_distance(data) == (
+        "linearized, minus: synchronized at 1 of 4 points; largest <J> 0.2 at a = 0.2, v = 0.1"
+    )
+    assert digests.lyapunov(data.isel(exponent=slice(0))) == counts
 
 
 def test_where_uniform_sliding_is_unstable():

@@ -112,8 +112,8 @@ def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_pat
     small = load(grid={"a": [0.2], "v": [0.1, 0.2]})
     results = tmp_path / "results" / "plane"
     results.mkdir(parents=True)
-    earlier = ("summary/mean_distance.nc", "figures/mean_distance.png")
-    now = ("chunks/0000.done", "summary/grid.nc", "figures/grid_kinds.png")
+    earlier = ("summary/stick_slip.nc", "figures/mean_distance.png")
+    now = ("chunks/0000.done", "summary/lyapunov.nc", "figures/grid_kinds.png")
     for names in (earlier, now):
         files = {name: f"logs/{name.partition('/')[2]}.log" for name in names}
         write_study_record(results, small.config, small.parameters, "plane.yaml", {}, "", files)
@@ -131,8 +131,8 @@ def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_pat
         "chunks/0000.done": False,
         "chunks/0001.done": True,
         "logs/chunk/0001.log": True,
-        "summary/grid.nc": False,
-        "summary/mean_distance.nc": True,
+        "summary/lyapunov.nc": False,
+        "summary/stick_slip.nc": True,
         "figures/grid_kinds.png": False,
         "figures/mean_distance.png": True,
     }

@@ -11,10 +11,11 @@ from burridge_knopoff import simulate
 from burridge_knopoff.dataset.point import write_point
 from burridge_knopoff.dataset.summary import open_summary, write_summary
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries import agreement, judgement, lyapunov, mean_distance
+from burridge_knopoff.summaries import agreement
+from burridge_knopoff.summaries.judgement import compare_laws
 from tests.grids import grid_of
 from tests.sections import AGREEMENT, MOTION
-from tests.summaries.points import write_points
+from tests.summaries.points import kinds, means, scalars, write_points
 
 SETTINGS = {"transient": 2000.0, "window": 400.0, "batches": 4}
 
@@ -41,10 +42,11 @@ def compare(runs, tmp_path):
 
 def summarize_kinds(grid, *found, kind=None):
     """Return the comparison, of runs of a given kind if there is one."""
-    kinds = lyapunov.summarize(grid, 3, 1e-6, MOTION)
+    of_runs = kinds(grid, MOTION)
     if kind is not None:
-        kinds["run_kind"][...] = kind
-    return agreement.summarize(grid, kinds, *found, synchronization_threshold=1e-6, agreement=AGREEMENT)
+        of_runs["run_kind"][...] = kind
+    read = scalars(grid), of_runs, agreement.compare_events(grid)
+    return agreement.summarize(*read, *found, synchronization_threshold=1e-6, agreement=AGREEMENT)
 
 
 def test_without_attractors_it_is_undetermined_which_runs_settled(compare):
@@ -204,10 +206,10 @@ def test_a_run_without_result_agrees_with_nothing(compare):
     assert f"no value of a could be compared. {reason}" in words
     assert agreement.table(dataset).count("undetermined") == 6
     assert (dataset["kind"].sel(law="linearized") == -1).all()
-    means = mean_distance.summarize(grid, 1e-6)
-    assert np.isnan(means["mean_distance"].sel(law="linearized")).all()
-    assert (means["synchronized"].sel(law="linearized") == 0).all()
-    assert (means["status"].sel(law="linearized") == 1).all()
+    of_law = means(grid).sel(law="linearized")
+    assert np.isnan(of_law["mean_distance"]).all()
+    assert (of_law["synchronized"] == 0).all()
+    assert (of_law["status"] == 1).all()
 
 
 def of_laws(folder, laws):
@@ -278,29 +280,30 @@ def test_a_single_law_is_not_compared(tmp_path):
     ],
 )
 def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
-    names = ("mean_distance", "mean_distance_error", "kind")
-    # The same at the first a of each state; at the second one the first state agrees with itself.
-    pair = {name: np.array(item)[:, None, None] for name, item in zip(names, (means, errors, kinds), strict=True)}
+    # At the second a the first law agrees with itself.
     same = {"mean_distance": 1.0, "mean_distance_error": 0.0, "kind": 3}
-    values = {name: np.concatenate([item, np.full((2, 1, 1), same[name])], axis=2) for name, item in pair.items()}
-    filled = ("difference", "difference_error", "same_kind", "agrees")
-    values |= {name: np.zeros((1, 2)) for name in filled} | {"parting_a": np.zeros(1)}
-    judgement.compare(values, np.array([0.1, 0.2]), 1e-6, AGREEMENT)
-    assert values["agrees"].tolist() == [[agrees, 1]]
-    assert values["same_kind"].tolist() == [
+    found = compared(
+        {name: [[value, same[name]] for value in pair] for name, pair in zip(same, (means, errors, kinds), strict=True)}
+    )
+    assert found["agrees"].values.tolist() == [[agrees, 1]]
+    assert found["same_kind"].values.tolist() == [
         [-1 if -1 in kinds else int(kinds in {(k, k) for k in range(4)} | {(1, 2)}), 1]
     ]
-    assert values["difference"] == pytest.approx(np.array([[means[1] - means[0], 0.0]]), nan_ok=True)
-    assert values["difference_error"] == pytest.approx(np.array([[np.hypot(*errors), 0.0]]), nan_ok=True)
-    assert values["parting_a"] == pytest.approx([0.1 if agrees == 0 else np.nan], nan_ok=True)
+    assert found["difference"].values == pytest.approx(np.array([[means[1] - means[0], 0.0]]), nan_ok=True)
+    assert found["difference_error"].values == pytest.approx(np.array([[np.hypot(*errors), 0.0]]), nan_ok=True)
+    assert found["parting_a"].values == pytest.approx([0.1 if agrees == 0 else np.nan], nan_ok=True)
+
+
+def compared(motion):
+    """Return the comparison of motions under several laws at a = 0.1, 0.2, …; motion : {variable: [[a, …], …]}."""
+    grid = 0.1 * (1.0 + np.arange(len(motion["kind"][0])))
+    dataset = xarray.Dataset({name: (("law", "a"), rows) for name, rows in motion.items()}, {"a": grid})
+    return compare_laws(dataset, 1e-6, AGREEMENT)
 
 
 def test_parting_a_is_the_smallest_a_of_disagreement():
-    names = ("mean_distance", "mean_distance_error", "kind")
-    given = np.array([[[[1.0, 1.0, 1.0]], [[1.0, 2.0, 3.0]]], np.zeros((2, 1, 3)), np.ones((2, 1, 3))])
-    filled = ("difference", "difference_error", "same_kind", "agrees")
-    values = dict(zip(names, given, strict=True)) | {name: np.zeros((1, 3)) for name in filled}
-    values["parting_a"] = np.zeros(1)
-    judgement.compare(values, np.array([0.1, 0.2, 0.3]), 1e-6, AGREEMENT)
-    assert values["agrees"].tolist() == [[1, 0, 0]]
-    assert values["parting_a"].tolist() == [0.2]
+    means = [[1.0, 1.0, 1.0], [1.0, 2.0, 3.0], [1.0, 1.0, 3.0]]
+    found = compared({"mean_distance": means, "mean_distance_error": np.zeros((3, 3)), "kind": np.ones((3, 3), int)})
+    assert found["agrees"].values.tolist() == [[1, 0, 0], [1, 1, 0]]
+    assert found["same_mean_distance"].values.tolist() == [[1, 0, 0], [1, 1, 0]]
+    assert found["parting_a"].values == pytest.approx([0.2, 0.3])

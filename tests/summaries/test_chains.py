@@ -15,7 +15,7 @@ from burridge_knopoff.figures.chains import draw
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.chain_synchronization import Sample, Watch
 from burridge_knopoff.motion.settings import MOTION
-from burridge_knopoff.summaries import chains, two_blocks
+from burridge_knopoff.summaries import chains, judgement, two_blocks
 from burridge_knopoff.summaries.event_order import common_order
 from tests.sections import AGREEMENT
 
@@ -93,12 +93,12 @@ def test_two_blocks_agree_where_both_synchronize(compared):
     assert np.array_equal(compared["difference"].values, mean[:, 1:] - mean[:, :1])
     for chain, other, a in product(range(2), range(2), range(3)):
         given = [compared[f"agreeing_{name}"].values[chain, other, a] for name in ("fraction", "low", "high")]
-        assert given == pytest.approx(two_blocks.agreeing_fraction(compared["agrees"].values[chain, other, :, a]))
+        assert given == pytest.approx(judgement.agreeing_fraction(compared["agrees"].values[chain, other, :, a]))
     assert len(np.unique(compared["agreeing_fraction"])) > 1
 
 
 def test_undetermined_agreement_widens_the_interval():
-    fraction, low, high = two_blocks.agreeing_fraction(np.array([1, 1, 0, -1, -1, -1, 0, 1]))
+    fraction, low, high = judgement.agreeing_fraction(np.array([1, 1, 0, -1, -1, -1, 0, 1]))
     assert fraction == 3 / 8
     assert (low, high) == (fraction_interval(3, 8)[1], fraction_interval(6, 8)[2])
 

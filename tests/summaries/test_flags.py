@@ -21,13 +21,14 @@ BIFURCATION = {
 }
 DIRECTION = {-1: "downward", 1: "upward"}
 VERDICT = {-1: "undetermined", **YES_NO}
-AGREEMENT = {"kind": MOTION, "same_kind": VERDICT, "agrees": VERDICT}
+AGREEMENT = {"kind": MOTION, **dict.fromkeys(("same_kind", "same_mean_distance", "agrees"), VERDICT)}
 SLOT = {
     "symmetry": {-1: "none", 0: "synchronized", 1: "symmetric", 2: "asymmetric"},
     "kind": MOTION,
     "slow": {-1: "none", **YES_NO},
 }
 EXPECTED = {
+    "runs": {"mirror_symmetric": YES_NO, "status": STATUS},
     "agreement": {**AGREEMENT, "settled": VERDICT},
     "attractors": {**SLOT, "sliding_attracts": YES_NO},
     "refined": {**SLOT, "in_grid": YES_NO},
@@ -60,6 +61,8 @@ def test_flags(name):
     variables = importlib.import_module(f"burridge_knopoff.summaries.{name}").VARIABLES
     assert {key for key, item in variables.items() if "flag_values" in item.attributes} == set(EXPECTED[name])
     for key, item in variables.items():
+        # Longer names do not fit on the axis of a plot by xarray; `comment` has the sentence.
+        assert 0 < len(item.all_attributes()["long_name"]) <= 40
         assert ("units" in item.all_attributes()) == (key not in EXPECTED[name] and item.dtype != "U")
     for key, meanings in EXPECTED[name].items():
         values, words = (variables[key].attributes[part] for part in ("flag_values", "flag_meanings"))

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from burridge_knopoff import Chain, InitialState, Model, MotionKind, law_of, simulate
-from burridge_knopoff.summaries import bifurcation_diagram, lyapunov
-from burridge_knopoff.summaries.mean_distance import LEVELS, settling_time, summarize
+from burridge_knopoff.summaries import bifurcation_diagram
+from burridge_knopoff.summaries.runs import LEVELS, settling_time
 from tests.grids import PAPER_MODELS, grid_of
 from tests.sections import MOTION
-from tests.summaries.points import write_points
+from tests.summaries.points import kinds, means, write_points
 
 TIME = np.array([0.0, 5.0, 10.0, 15.0])
 SHORT = {"transient": 50.0, "window": 50.0, "batches": 2}
@@ -38,7 +38,7 @@ def test_settling_times_of_runs(tmp_path):
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, **settings)
     ended = {"linearized": "completed", "nonlinear": "step_limit"}
     write_points(grid, lambda own: dataclasses.replace(own, status=ended[own.model.law.name]))
-    found = summarize(grid, 1e-6)["settling_time"]
+    found = means(grid)["settling_time"]
     # Near synchrony J decays like the transverse multiplier to the power of the number of periods.
     settled = found.sel(law="linearized", initial="minus", a=0.08)
     np.testing.assert_array_equal(settled.values, settling_time(run.time, run.distance, LEVELS))
@@ -51,7 +51,7 @@ def test_the_least_friction_in_the_window_is_not_that_of_the_transient(tmp_path)
     """From plus, the first slips are eight times as fast as those on the attractor."""
     grid = grid_of(tmp_path, ["plus"], {"0.0800": 0.08}, transient=500.0, window=100.0, batches=2)
     write_points(grid)
-    found = summarize(grid, 1e-6).sel(initial="plus", a=0.08)
+    found = means(grid).sel(initial="plus", a=0.08)
     for law in ("linearized", "nonlinear"):
         whole, window = (found[name].sel(law=law).item() for name in ("least_friction", "window_least_friction"))
         assert whole < 0.9 < 0.97 < window < 1.0
@@ -87,10 +87,10 @@ def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresh
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, models, **SHORT)
     given = {"mean_distance": 1e-9, "lyapunov_exponent": np.array([0.0, -0.1, -0.2])}
     write_points(grid, lambda trajectory: same_section(trajectory, **given))
-    found = summarize(grid, 1e-6)["synchronized"]
+    found = means(grid)["synchronized"]
     assert found.values.ravel().tolist() == [synchronized]
-    assert ("comment" in found.attrs) == (not synchronized)
-    kind = lyapunov.summarize(grid, 3, 1e-6, MOTION)["run_kind"]
+    assert ("not defined" in found.attrs["comment"]) == (not synchronized)
+    kind = kinds(grid, MOTION)["run_kind"]
     assert kind.item() == (MotionKind.SYNCHRONIZED if synchronized else MotionKind.PERIODIC)
 
 
@@ -123,7 +123,7 @@ def points(tmp_path):
 
 
 def test_kinds_of_motion_of_runs(points):
-    found = lyapunov.summarize(points, 3, 1e-6, MOTION)
+    found = kinds(points, MOTION)
     assert (found.attrs["synchronization_threshold"], found.attrs["longest_period"]) == (1e-6, 2000.0)
     for point in (found.sel(law=law, initial=state) for law in found["law"].values for state in ("minus", "plus")):
         expected = list(zip(*RUNS.values(), strict=True))

@@ -25,12 +25,12 @@ def grid(tmp_path):
 
 
 def test_a_grid_is_its_points_in_order(grid, tmp_path):
-    assert (grid.laws, grid.blocks, grid.shape) == (("linearized", "nonlinear"), 3, (2, 1, 2))
+    assert (grid.laws, grid.chain.blocks, grid.shape) == (("linearized", "nonlinear"), 3, (2, 1, 2))
     expected = [((i, 0, k), (law, "plus", a)) for i, law in enumerate(grid.laws) for k, a in enumerate(grid.a)]
     assert list(grid) == expected
     assert grid.path(*POINT) == tmp_path / "nonlinear/plus/a0.20.nc"
-    assert not grid.is_mirror_symmetric
-    assert grid_of(tmp_path, ["plus"], {"0.1": 0.1}).is_mirror_symmetric
+    assert grid.of_laws(["nonlinear"]).path(*POINT) == grid.path(*POINT)
+    assert grid.of_laws(["nonlinear"]).laws == ("nonlinear",)
     model = grid.model("nonlinear", 0.2)
     assert (model.v, model.law.a, model.law.name, model.chain.threshold) == (0.2, 0.2, "nonlinear", (1.0, 1.0, 0.9))
     for words in ("simulate --law nonlinear --a 0.2", "--initial plus", "--v 0.2", "--transient 10.0", "--window 20.0"):

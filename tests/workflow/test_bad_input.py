@@ -82,7 +82,7 @@ TARGETS = {
     "results/tiny/": ["results/tiny: unknown target: it is a folder"],
     "results/velocity": ["the folder of study velocity, and this is study tiny: snakemake -c2 --configfile "],
     "results/tiny/figures": ["it is a folder: name a file in it, or a rule, such as figures"],
-    "results/tiny/summary/grid.nc": ["only a study of several parameters has it: `grid: {a: …, v: …}`"],
+    "results/tiny/figures/grid_kinds.png": ["only a study of several parameters has it: `grid: {a: …, v: …}`"],
     "edges": ["edges: not made: no edge states: add `edges: {}` to its config"],
     "catalogue": ["no catalogues of slip events: add `catalogue: {}` to its config"],
     f"{POINTS}/plus/a0.0810.nc": ["a0.0810: not a point of study tiny", "grid"],

@@ -87,7 +87,7 @@ KEYS = [
     ),
     (
         {"motion.zero_exponent": 1.0e-3, "motion.longest_period": 1000.0},
-        ("lyapunov", "attractors_of_law", "two_blocks"),
+        ("runs", "lyapunov", "attractors_of_law", "two_blocks"),
     ),
     ({"agreement.relative_tolerance": 0.2, "agreement.standard_errors": 2}, ("agreement", "two_blocks")),
     ({"figures.a": 0.05}, ("figure_motion", "figure_distance", "figure_friction_laws")),
@@ -172,12 +172,12 @@ def entries(job):
     [
         ("kernel/series.h", {*POINTS, "attractors_of_law", "basin_tile", "phases_of_law", "orbits", "two_blocks"}),
         ("running/runner.py", {*POINTS, "attractors_of_law", "basin_pairs", "bifurcations_of_law"}),
-        ("dataset/point.py", {*POINTS, "mean_distance"}),
+        ("dataset/point.py", {*POINTS, "runs"}),
         ("attractors/search.py", {"attractors_of_law", "two_blocks"}),
         ("motion/chain_synchronization.py", {"watch_chain", "chains_summary", "figure_chains"}),
         ("basins/plane.py", {"basin_tile", "basin_pairs", "basins"}),
         ("basins/initial_phases.py", {"phases_of_law", "phases"}),
-        ("summaries/mean_distance.py", {"mean_distance"}),
+        ("summaries/mean_distance.py", {"mean_distance", "claims"}),
         ("summaries/orbits.py", {"orbits"}),
         ("figures/lyapunov.py", {"figure_lyapunov", "report"}),
         ("figures/style.py", {"figure_motion", "figure_basins"}),

@@ -61,10 +61,10 @@ def test_the_whole_study_is_computed_and_read(plane):
         "grid_exponents",
         "grid_kinds",
     }
-    summary = xr.load_dataset(results / "summary/grid.nc")
+    summary = xr.load_dataset(results / "summary/lyapunov.nc")
     assert dict(summary.sizes) == {"law": 2, "initial": 1, "a": 2, "v": 2, "exponent": 3}
     tree = open_study(results)
-    assert tree["grid"].mean_distance.equals(summary.mean_distance)
+    assert tree["summary/runs"].mean_distance.equals(summary.mean_distance)
     one = tree["points/nonlinear/pair/a0.3000_v0.0500"]
     assert (one.a.item(), one.v.item()) == (0.3, 0.05)
     page = (results / "report.html").read_text()
@@ -104,13 +104,13 @@ def test_a_single_point_can_be_computed(tmp_path, plane):
 def test_another_value_computes_its_points_only(copy):
     before = times(copy)
     copy.config.write_text(PLANE.replace("v: [0.05, 0.1]", "v: [0.05, 0.1, 0.2]"))
-    copy.ok(f"{RESULTS}/summary/grid.nc")
+    copy.ok(f"{RESULTS}/summary/mean_distance.nc")
     after = times(copy)
     assert {name: after[name] for name in before} == before
     added = {f"{RESULTS}/points/{law}/pair/a{a}_v0.2000.nc" for law in ("linearized", "nonlinear") for a in A}
     assert {*after} - {*before} == added
     copy.config.write_text(PLANE)
-    copy.ok(f"{RESULTS}/summary/grid.nc")
+    copy.ok(f"{RESULTS}/summary/mean_distance.nc")
     listed = bk(copy, "prune", "--dry-run", RESULTS).stdout
     assert all(name in listed for name in added)
 

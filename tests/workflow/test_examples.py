@@ -22,7 +22,7 @@ TARGETS = {
     "carlson_langer": ["lyapunov.nc"],
     "unequal_blocks": ["lyapunov.nc", "agreement.nc"],
     "fault": ["catalogue.nc"],
-    "two_parameters": ["grid.nc"],
+    "two_parameters": ["mean_distance.nc", "lyapunov.nc"],
 }
 
 

@@ -137,13 +137,13 @@ def test_a_single_point_and_nothing_to_do(finished, study):
 def test_failed_jobs_are_named_with_their_logs(copy):
     point = copy.folder / "results" / "tiny" / "points" / "nonlinear" / "minus" / "a0.0500.nc"
     point.write_bytes(b"")
-    run = copy.run("-R", "mean_distance", "--rerun-triggers", "params", "--until", "figure_mean_distance")
+    run = copy.run("-R", "runs", "--rerun-triggers", "params", "--until", "figure_mean_distance")
     lines = run.stderr.splitlines()
     assert run.returncode != 0
     end = next(n for n, line in enumerate(lines) if line.startswith("study tiny: stopped"))
-    assert re.fullmatch(r"study tiny: stopped after [\d min]+ s: 1 job failed, 1 job did not run", lines[end])
+    assert re.fullmatch(r"study tiny: stopped after [\d min]+ s: 1 job failed, 2 jobs did not run", lines[end])
     closing, path = lines[end + 1], point.relative_to(copy.folder)
-    assert closing == f"failed: mean_distance: {path}: is empty (log results/tiny/logs/mean_distance.log)"
+    assert closing == f"failed: runs: {path}: is empty (log results/tiny/logs/runs.log)"
     assert lines[end + 2] == "made: nothing"
     remake = rf"this command recreates the bad files and continues: snakemake -c2 .* -R {path}"
     assert re.fullmatch(remake, lines[end + 3])

@@ -74,11 +74,12 @@ def test_longer_chains_are_made_on_request_or_if_the_config_lists_them(whole):
 
 def test_several_parameters(whole):
     study = planned(PLANE)
-    assert {file for file in study.files if file.startswith("summary/")} == {"summary/grid.nc"}
-    assert [job.inputs["points"] for job in study.of("grid")] == [("chunks/0000.done",)]
+    summaries = {f"summary/{name}.nc" for name in ("runs", "mean_distance", "lyapunov")}
+    assert {file for file in study.files if file.startswith("summary/")} == summaries
+    assert [job.inputs["points"] for job in study.of("runs")] == [("chunks/0000.done",)]
     assert not study.of("simulate")
-    assert {"mean_distance", "attractors", "claims"} <= study.refusals.keys()
-    assert {"chunk", "grid"} <= whole.refusals.keys()
+    assert {"stick_slip", "attractors", "claims"} <= study.refusals.keys()
+    assert {"chunk", "figure_grid_kinds"} <= whole.refusals.keys()
 
 
 def test_jobs_wait_only_for_their_inputs(whole):

@@ -161,7 +161,7 @@ def test_comments_order_and_notation_of_a_config_do_not_count(edited):
 
 def test_results_record_their_sources(finished):
     summaries = sorted((finished.folder / "results/tiny/summary").glob("*.nc"))
-    assert len(summaries) == 16
+    assert len(summaries) == 17
     for path in summaries:
         attributes = open_summary(path).attrs
         assert attributes["source_fingerprint"] == source_fingerprint(attributes["source_module"])

@@ -129,14 +129,14 @@ def shown_points(wildcards):
 
 def input_of(figure):
     """Return the named input of a figure."""
-    if figure.of_runs:
+    if figure.of_points:
         return {"points": shown_points}
     return {"summaries": [f"{RESULTS}/summary/{name}.nc" for name in figure.inputs]}
 
 
 def keys_of(figure):
     """Return the keys of the config that a figure uses."""
-    if figure.of_runs:
+    if figure.of_points:
         state = "initial.{initial}" if "{initial}" in figure.file else "initial"
         return [*run_keys(STUDY, STUDY.shown_law), state, "figures.a", "figures.law"]
     return [key for name in figure.from_study for key in study_keys(STUDY, name)]

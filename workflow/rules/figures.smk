@@ -51,7 +51,7 @@ for figure in figure_descriptions():
             config=uses(
                 *keys_of(figure),
                 stage="figures",
-                over="a" if figure.of_runs else "any",
+                over=figure.over,
                 jobs=STATES if "{initial}" in figure.file else ONCE,
                 refusal=condition_refusal(STUDY, figure.condition),
             ),

@@ -22,8 +22,7 @@ from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS
 from burridge_knopoff.check.changes import changes
 from burridge_knopoff.check.study import is_locked
 from burridge_knopoff.claims.claim import FILE as CLAIMS_FILE
-from burridge_knopoff.claims.claim import claims_of, read_claims
-from burridge_knopoff.claims.ledger import READS
+from burridge_knopoff.claims.claim import READS, claims_of, read_claims
 from burridge_knopoff.figures.description import figure_descriptions, picture_names
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V

@@ -8,10 +8,34 @@ rule summary:
         files_in("summary/"),
 
 
-rule mean_distance:
-    """Average the distance J between the end blocks over each run."""
+rule runs:
+    """Collect the scalars of all runs, each of which is checked and read once."""
     input:
         points=all_point_files,
+    output:
+        f"{RESULTS}/summary/runs.nc",
+    log:
+        f"{RESULTS}/logs/runs.log",
+    benchmark:
+        f"{RESULTS}/benchmarks/runs.tsv"
+    priority: FIRST
+    group:
+        group("summaries")
+    resources:
+        runtime=30,
+    params:
+        config=uses(POINTS, "motion.period_tolerance", "motion.longest_period", stage="summary", over="any"),
+        sources=sources("runs"),
+    message:
+        "summary: runs"
+    script:
+        "../scripts/runs.py"
+
+
+rule mean_distance:
+    """Compare the mean distance J between the end blocks with the threshold of synchrony."""
+    input:
+        runs=f"{RESULTS}/summary/runs.nc",
     output:
         f"{RESULTS}/summary/mean_distance.nc",
     log:
@@ -24,7 +48,7 @@ rule mean_distance:
     resources:
         runtime=30,
     params:
-        config=uses(POINTS, "synchronization_threshold", stage="summary"),
+        config=uses("synchronization_threshold", stage="summary", over="any"),
         sources=sources("mean_distance"),
     message:
         "summary: mean_distance"
@@ -58,9 +82,9 @@ rule bifurcation_diagram:
 
 
 rule lyapunov:
-    """Estimate the Lyapunov exponents of each run and determine its kind of motion."""
+    """Determine the kind of motion of each run from its Lyapunov exponents."""
     input:
-        points=all_point_files,
+        runs=f"{RESULTS}/summary/runs.nc",
     output:
         f"{RESULTS}/summary/lyapunov.nc",
     log:
@@ -72,7 +96,7 @@ rule lyapunov:
     resources:
         runtime=30,
     params:
-        config=uses(POINTS, "synchronization_threshold", "motion", stage="summary"),
+        config=uses(MOTION, stage="summary", over="any"),
         sources=sources("lyapunov"),
     message:
         "summary: lyapunov"
@@ -107,6 +131,7 @@ rule agreement:
     """Determine where each friction law agrees with the first."""
     input:
         points=all_point_files,
+        runs=f"{RESULTS}/summary/runs.nc",
         lyapunov=f"{RESULTS}/summary/lyapunov.nc",
         attractors=optional("attractors", f"{RESULTS}/summary/attractors.nc"),
     output:
@@ -171,26 +196,3 @@ rule equilibrium:
         "summary: equilibrium"
     script:
         "../scripts/equilibrium.py"
-
-
-rule grid:
-    """Collect the results of all runs over the study's parameters."""
-    input:
-        points=all_point_files,
-    output:
-        f"{RESULTS}/summary/grid.nc",
-    log:
-        f"{RESULTS}/logs/grid.log",
-    benchmark:
-        f"{RESULTS}/benchmarks/grid.tsv"
-    group:
-        group("summaries")
-    resources:
-        runtime=30,
-    params:
-        config=uses(POINTS, "synchronization_threshold", "motion", stage="summary", over="several"),
-        sources=sources("grid"),
-    message:
-        "summary: grid"
-    script:
-        "../scripts/grid.py"

@@ -4,12 +4,13 @@ from burridge_knopoff.job import Job
 
 job = Job(snakemake)
 
-from burridge_knopoff.summaries.agreement import digest, summarize, table
+from burridge_knopoff.summaries.agreement import compare_events, digest, summarize, table
 
 config = job.config
 agreement = summarize(
-    job.points,
+    job.summary("runs"),
     job.summary("lyapunov"),
+    compare_events(job.points),
     *job.summaries("attractors"),
     synchronization_threshold=config["synchronization_threshold"],
     agreement=config["agreement"],

@@ -13,7 +13,7 @@ from burridge_knopoff.summaries.points import Grid, open_point
 # A figure is drawn quickly, and garbage collection would take a tenth of the time.
 gc.disable()
 figure = import_module(f"burridge_knopoff.figures.{job.params.figure}")
-if figure.INPUTS == ("runs",):
+if figure.INPUTS == ("points",):
     grid = Grid.of_config(job.results / "points", {**job.config, "a": [job.config["figures"]["a"]]})
     job.write(figure.draw({initial: open_point(grid, law, initial, a) for _, (law, initial, a) in grid}))
 else:

@@ -1,10 +1,10 @@
-"""Estimate the Lyapunov exponents of each run."""
+"""Determine the kind of motion of each run."""
 
 from burridge_knopoff.job import Job
 
 job = Job(snakemake)
 
+from burridge_knopoff.study.model import motion_of
 from burridge_knopoff.summaries.lyapunov import summarize
 
-config = job.config
-job.write(summarize(job.points, config["lyapunov_exponents"], config["synchronization_threshold"], config["motion"]))
+job.write(summarize(job.summary("runs"), motion_of(job.config)))

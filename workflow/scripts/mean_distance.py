@@ -1,4 +1,4 @@
-"""Average the distance J between the end blocks over each run."""
+"""Compare the mean distance J between the end blocks with the threshold of synchrony."""
 
 from burridge_knopoff.job import Job
 
@@ -6,4 +6,4 @@ job = Job(snakemake)
 
 from burridge_knopoff.summaries.mean_distance import summarize
 
-job.write(summarize(job.points, job.config["synchronization_threshold"]))
+job.write(summarize(job.summary("runs"), **job.config))

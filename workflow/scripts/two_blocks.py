@@ -4,6 +4,6 @@ from burridge_knopoff.job import Job
 
 job = Job(snakemake)
 
-from burridge_knopoff.summaries.two_blocks import compare_laws
+from burridge_knopoff.summaries.two_blocks import compare_two_blocks
 
-job.write(compare_laws(job.config, job.cores))
+job.write(compare_two_blocks(job.config, job.cores))

@@ -60,3 +60,18 @@ def reached_values(attractors: xarray.Dataset, initial: str, law: str, name: str
     branch = of("branch")
     slots = (branch == of("initial_branch")[:, None]) & (of("side") == of("initial_side")[:, None]) & (branch >= 0)
     return slots.any(axis=1), of(name)[np.arange(len(slots)), slots.argmax(axis=1)]
+
+
+def reached_attractors(attractors: xarray.Dataset) -> xarray.Dataset:
+    """Return mean_distance, its error, kind and period of the attractors that the initial states of a study reach.
+
+    attractors : the summary of that name, whose attributes name the study's convention
+
+    The result is over (law, initial, a). Where `known` is false the attractor is undetermined, and the values are
+    meaningless.
+    """
+    own = attractors.sel(contact=attractors.attrs["contact"], start=attractors.attrs["start"])
+    slots = (own["branch"] == own["initial_branch"]) & (own["side"] == own["initial_side"]) & (own["branch"] >= 0)
+    names = ["mean_distance", "mean_distance_error", "kind", "period"]
+    reached = own[names].isel(attractor=slots.argmax("attractor")).assign(known=slots.any("attractor"))
+    return reached.drop_vars(("contact", "start")).transpose("law", "initial", "a")

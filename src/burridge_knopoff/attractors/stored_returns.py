@@ -14,8 +14,8 @@ import xarray
 
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED
-from burridge_knopoff.attractors.table import Row, slot_coordinates
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.attractors.table import Row
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.messages import format_value, refusal
 from burridge_knopoff.model.model import Model
@@ -27,12 +27,12 @@ _RETURN = ("section_return", "block")
 VARIABLES = {
     "a": Variable(("attractor",), "f8", "friction parameter a"),
     "slot": Variable(
-        ("attractor",), "i2", "number of the attractor at this a along the dimension `attractor` of attractors.nc"
+        ("attractor",), "i2", "number of the attractor: at this a, along the dimension `attractor` of attractors.nc"
     ),
     "return_count": Variable(
-        ("attractor",), "i4", "number of section returns of the attractor", {"sample_dimension": "section_return"}
+        ("attractor",), "i4", "section returns of the attractor", {"sample_dimension": "section_return"}
     ),
-    "section_block": Variable(("attractor",), "i4", "block at whose stops the returns are taken"),
+    "section_block": Variable(("attractor",), "i4", "block of the returns: the returns are taken at its stops"),
     "spacing": Variable(("attractor",), "f8", "distance between neighbouring returns"),
     "position": Variable(
         _RETURN,
@@ -69,7 +69,7 @@ def returns_of_law(models: Sequence[Model], rows: Sequence[Sequence[Row]], about
     }
     title = f"Section returns of the attractors, {models[0].law.name} friction law"
     arrays = {name: np.asarray(value) for name, value in values.items()}
-    return summary(title, VARIABLES, arrays, slot_coordinates(blocks), about, module=__name__)
+    return summary(title, VARIABLES, arrays, axes(block=range(1, blocks + 1)), about, module=__name__)
 
 
 @dataclass(frozen=True, eq=False)

@@ -65,20 +65,23 @@ NOTHING = {"comment": "-1 if there is none or it is undetermined"}
 _SYMMETRY = flag("i1", {-1: "none", **{int(item): item.name.lower() for item in Symmetry}})
 _SLOW = flag("i1", {-1: "none", 0: "no", 1: "yes"})
 _SIDE = "side of the branch: 1 and -1 for the two of a mirror pair, 0 for a set that is its own mirror image"
-_POINTS = "number of upward section points after which the state of all blocks repeats, 0 if it does not"
+_POINTS = "period in section points: number of upward section points after which the state of all blocks "
+"repeats, 0 if it does not"
 _LIFE = (
-    "mean lifetime of chaos, inf if no trajectory of an ensemble left it; NaN for other motion, and at inserted values "
-    "of a between two at which the chaos lasts"
+    "mean lifetime of chaos: inf if no trajectory of an ensemble left it; NaN for other motion, and "
+    "at inserted values of a between two at which the chaos lasts"
 )
-_RETURNS = "number of successive returns within the radius after which a trajectory counts as captured"
-_PATIENCE = "time by which a captured trajectory may still reach a periodic orbit embedded in the attractor; 0 if none"
-_POSITION = "positions of one state on the attractor, at a stop of the block nearest to an end that stops often"
+_RETURNS = "returns until capture: number of successive returns within the radius after which a trajectory "
+"counts as captured"
+_PATIENCE = "patience: time by which a captured trajectory may still reach a periodic orbit embedded in the "
+"attractor; 0 if none"
+_POSITION = "position on the attractor: of one state, at a stop of the block nearest to an end that stops often"
 _DRIVER = {"comment": "relative to the driver: U - v*tau, U the position of the paper"}
 
 #: The names of the branches of a file, by their numbers.
 NAMES = {
     "branch_number": Variable(("number",), "i2", "numbers of the branches"),
-    "branch_name": Variable(("number",), "O", "name of the branch of that number, from its symmetry and its sticks"),
+    "branch_name": Variable(("number",), "O", "name of the branch: from its symmetry and its sticks"),
 }
 
 
@@ -94,37 +97,40 @@ def slot_variables(place: str) -> dict[str, Column]:
         )
 
     of = "row.attractor"
-    mean = "time average <J> of the phase-space distance between the end blocks"
+    mean = "mean distance <J>: time average of the phase-space distance between the end blocks"
     return {
-        "branch": column("row.branch", "i2", "branch of attractors along a; 0 is the synchronized one", NOTHING),
+        "branch": column(
+            "row.branch", "i2", "branch: number of the branch of attractors along a; 0 is the synchronized one", NOTHING
+        ),
         "side": replace(column("row.side", "i1", _SIDE), nothing=0),
         "symmetry": column(f"{of}.symmetry", "i1", "mirror symmetry of the attractor", _SYMMETRY),
         "mean_distance": column(f"{of}.motion.mean_distance", "f8", mean),
         "mean_distance_error": column(
-            f"{of}.motion.mean_distance_error", "f8", "standard error of <J> from batch means"
+            f"{of}.motion.mean_distance_error", "f8", "standard error of <J>: from batch means"
         ),
         "kind": column("kind", "i1", "kind of motion", flag("i1", MotionKind)),
         "section_period": replace(column(f"{of}.motion.section_period", "i2", _POINTS), nothing=0),
         "period": column(f"{of}.motion.period", "f8", *PERIOD),
         "lifetime": life(_LIFE, lambda one: one.mean),
-        "lifetime_low": life("lower end of the 95 % confidence interval of the lifetime", lambda one: one.interval[0]),
-        "lifetime_high": life("upper end of the 95 % confidence interval of the lifetime", lambda one: one.interval[1]),
-        "radius": column(f"{of}.radius", "f8", "distance from its returns within which trajectories are captured"),
+        "lifetime_low": life("lower end of the lifetime: of its 95 % confidence interval", lambda one: one.interval[0]),
+        "lifetime_high": life(
+            "upper end of the lifetime: of its 95 % confidence interval", lambda one: one.interval[1]
+        ),
+        "radius": column(
+            f"{of}.radius", "f8", "capture radius: distance from its returns within which trajectories are captured"
+        ),
         "close_returns": column(f"{of}.close_returns", "i4", _RETURNS),
         "patience": column(f"{of}.patience", "f8", _PATIENCE),
-        "slow": column(f"{of}.slow", "i1", "whether motion on the attractor is too slow to settle", _SLOW),
-        "stop_rate": column(f"{of}.motion.stop_rate", "f8", "stops of a block per unit of time", None, "block"),
+        "slow": column(f"{of}.slow", "i1", "slow: whether motion on the attractor is too slow to settle", _SLOW),
+        "stop_rate": column(
+            f"{of}.motion.stop_rate", "f8", "stop rate: stops of a block per unit of time", None, "block"
+        ),
         "lyapunov_exponent": column(
-            f"{of}.motion.exponent", "f8", "Lyapunov exponents, the largest first", None, "exponent"
+            f"{of}.motion.exponent", "f8", "Lyapunov exponent: the largest first", None, "exponent"
         ),
         "position": column("position", "f8", _POSITION, _DRIVER, "block"),
         "velocity": column("velocity", "f8", "velocities U' of that state", None, "block"),
     }
-
-
-def slot_coordinates(blocks: int) -> dict[str, Any]:
-    """Return the coordinates of slots in addition to a."""
-    return {"block": ("block", np.arange(1, blocks + 1, dtype="i4"), {"long_name": "block number", "units": "1"})}
 
 
 def slot_values(

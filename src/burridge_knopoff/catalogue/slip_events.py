@@ -20,14 +20,14 @@ CATALOGUE_VARIABLES = {
     "a": _V((), "f8", "friction parameter a", coordinate=True),
     "v": _V((), "f8", "driver velocity v", coordinate=True),
     "status": _V((), "i1", "how the run ended", STATUS_FLAG),
-    "time": _V(_EVENT, "f8", "time tau of the first start, on the loading clock", coordinate=True),
+    "time": _V(_EVENT, "f8", "time tau of the first start: on the loading clock", coordinate=True),
     "slip_time": _V(
         _EVENT,
         "f8",
-        "time of the first start on the slip clock",
+        "slip time of the first start",
         {"comment": "equal to time under steady loading; stops between events under quasi-static loading"},
     ),
-    "duration": _V(_EVENT, "f8", "slip time from the first start to the last stop"),
+    "duration": _V(_EVENT, "f8", "duration: slip time from the first start to the last stop"),
     "epicentre": _V(_EVENT, "i4", "block that starts first"),
     "first_block": _V(_EVENT, "i4", "first slipping block along the chain"),
     "last_block": _V(_EVENT, "i4", "last slipping block along the chain"),
@@ -36,13 +36,16 @@ CATALOGUE_VARIABLES = {
     "magnitude": _V(_EVENT, "f8", "magnitude: natural logarithm of the modulus of the moment"),
     "largest_slip": _V(_EVENT, "f8", "largest slip of a block"),
     "peak_velocity": _V(_EVENT, "f8", "highest slip speed of a block"),
-    "stress_drop": _V(_EVENT, "f8", "decrease of the spring force, mean over the slipping blocks"),
-    "energy_released": _V(_EVENT, "f8", "work of the springs on the blocks, which friction and dashpots dissipate"),
-    "energy_damped": _V(_EVENT, "f8", "energy dissipated by the dashpots at slipping blocks"),
+    "stress_drop": _V(_EVENT, "f8", "stress drop: decrease of the spring force, mean over the slipping blocks"),
+    "energy_released": _V(
+        _EVENT, "f8", "dissipated energy: work of the springs on the blocks, which friction and dashpots dissipate"
+    ),
+    "energy_damped": _V(_EVENT, "f8", "energy dissipated by dashpots: at slipping blocks"),
     "interval": _V(
         _EVENT,
         "f8",
-        "time tau since the start of the previous event in which the epicentre slipped, NaN if there is none",
+        "interval since the previous event: time tau since the start of the last event in which the "
+        "epicentre slipped, NaN if there is none",
     ),
 }
 #: With profiles, the slips of all events in the order of the events, as a contiguous ragged array.

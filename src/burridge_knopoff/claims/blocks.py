@@ -11,7 +11,6 @@ from burridge_knopoff.claims.judge import judge
 from burridge_knopoff.claims.verdict import FAILS, Measured, Range, Verdict, format_values, judge_share
 from burridge_knopoff.dataset.variables import Answer
 from burridge_knopoff.motion.kind import CHAOS, MotionKind
-from burridge_knopoff.summaries.judgement import same_mean
 
 #: The two readings of «the same».
 KIND_AND_MEAN, MEAN = "in the kind of motion and in ⟨J⟩", "in ⟨J⟩"
@@ -28,12 +27,7 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
     both = evidence.choose(evidence.law_comparison(summary), a)
     found = both.sel(chain="train").transpose("law", "state", "a", ...)
     grid, states = found["a"].values, found.sizes["state"]
-    agreement = {key: summary.attrs[f"agreement_{key}"] for key in ("relative_tolerance", "standard_errors")}
-    pair = {name: found[name].values for name in ("mean_distance", "kind", "difference", "difference_error")}
-    answers = {
-        KIND_AND_MEAN: found["agrees"].values,
-        MEAN: same_mean(pair, summary.attrs["synchronization_threshold"], agreement),
-    }
+    answers = {KIND_AND_MEAN: found["agrees"].values, MEAN: found["same_mean_distance"].values}
     measured, changes, readings, texts = [], [], {}, []
     for reading, agrees in answers.items():
         known, right = _states_agree(agrees)
@@ -50,7 +44,7 @@ def two_blocks_agree(evidence: Evidence, a: Range, loose_share: float) -> Verdic
             measured.append(Measured(f"smallest a at which they disagree {reading}", wrong[0]))
             measured.append(Measured(f"largest a at which they disagree {reading}", wrong[-1]))
         changes += case.exceptions(f"they disagree {reading}", f"undetermined {reading}")
-    ratio = np.abs(pair["difference"]) / np.maximum(*pair["mean_distance"])
+    ratio = np.abs(found["difference"].values) / found["mean_distance"].max("law", skipna=False).values
     if np.isfinite(ratio).any():
         measured.append(Measured("largest |Δ⟨J⟩|/⟨J⟩", float(np.nanmax(ratio))))
     by_distance = (found["same_kind"].values == Answer.YES) & (answers[KIND_AND_MEAN] != Answer.UNDETERMINED)

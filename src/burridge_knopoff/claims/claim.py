@@ -32,6 +32,11 @@ from burridge_knopoff.model.ranges import Named, Number, OneOf, Several, Text
 from burridge_knopoff.provenance.files import display_path
 from burridge_knopoff.study.yaml_file import ConfigError, read_yaml
 
+#: Summaries that the ledger itself reads: for rounded initial states, other tolerances, and the depth of the search.
+OWN = ("attractors", "agreement", "lyapunov", "mean_distance", "runs", "two_blocks", "refined")
+#: Summaries on which the ledger depends: a change of any other leaves it up to date.
+READS = tuple(sorted({*OWN, *(name for judge in JUDGES.values() for name in judge.reads)}))
+
 #: The statements of the paper.
 FILE = Path(__file__).with_name("claims.yaml")
 

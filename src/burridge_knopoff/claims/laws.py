@@ -27,9 +27,9 @@ from burridge_knopoff.claims.verdict import (
     judge_value,
 )
 from burridge_knopoff.dataset.variables import Answer
-from burridge_knopoff.motion.kind import merge_chaos
+from burridge_knopoff.motion.kind import SYNCHRONOUS, merge_chaos
 from burridge_knopoff.study.paper import PAPER_LAWS
-from burridge_knopoff.summaries.judgement import same_mean
+from burridge_knopoff.summaries.judgement import excess, same_mean
 
 if TYPE_CHECKING:
     import xarray
@@ -52,12 +52,12 @@ def laws_agree(evidence: Evidence, initial: Sequence[str], a: Range, loose_share
     readings: dict[str, Answers] = {"of the largest value": {}, "of the value at each a": {}}
     measured = [Measured("largest ⟨J⟩", scale)]
     for state, one in found.items():
-        values = {name: one[name].values for name in ("mean_distance", "kind", "difference", "difference_error")}
-        largest = {**values, "mean_distance": np.full_like(values["mean_distance"], scale)}
-        for answers, of_scale in zip(readings.values(), (largest, values), strict=True):
-            answers[state] = one["a"].values, same_mean(of_scale, about["synchronization_threshold"], about)
-        _, same = next(iter(readings.values()))[state]
-        difference = np.abs(values["difference"][same == Answer.YES])
+        beyond = excess(one["difference"], scale, about["synchronization_threshold"], about)
+        synchronous = one["kind"].isin(SYNCHRONOUS).all("law")
+        of_largest = same_mean(beyond, one["difference_error"], synchronous, about)
+        for answers, same in zip(readings.values(), (of_largest, one["same_mean_distance"]), strict=True):
+            answers[state] = one["a"].values, same.values
+        difference = np.abs(one["difference"].values[of_largest.values == Answer.YES])
         if np.isfinite(difference).any():
             quantity = f"largest |Δ⟨J⟩| where they agree on the scale of the largest, {state}"
             measured.append(Measured(quantity, float(np.nanmax(difference))))

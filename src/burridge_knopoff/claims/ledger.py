@@ -14,16 +14,10 @@ from burridge_knopoff.claims.choices import other_tolerances
 from burridge_knopoff.claims.claim import Claim
 from burridge_knopoff.claims.conventions import rounded_state_changes
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.judge import JUDGES
 from burridge_knopoff.claims.margins import changing_choices
 from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.paper import PAPER_LAWS
-
-#: Summaries that the ledger itself reads: for rounded initial states, other tolerances, and the depth of the search.
-OWN = ("attractors", "agreement", "lyapunov", "mean_distance", "two_blocks", "refined")
-#: Summaries on which the ledger depends: a change of any other leaves it up to date.
-READS = tuple(sorted({*OWN, *(name for judge in JUDGES.values() for name in judge.reads)}))
 
 
 def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None = None) -> Verdict:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -26,36 +26,39 @@ from burridge_knopoff.provenance.opening import open_whole
 AXES: dict[str, Variable] = {
     "law": Variable(("law",), "O", "friction law", coordinate=True),
     "initial": Variable(("initial",), "O", "initial state", coordinate=True),
+    "other_law": Variable(("other_law",), "O", "other friction law: compared with the first one", coordinate=True),
     "a": Variable(("a",), "f8", "friction parameter a", coordinate=True),
+    "block": Variable(("block",), "i4", "block number: 1 to N along the chain", coordinate=True),
+    "state": Variable(("state",), "i4", "number of the sampled initial state", coordinate=True),
+    "part": Variable(("part",), "O", "part of a complex number", coordinate=True),
 }
 
-STATE = Variable(("state",), "i4", "number of the sampled initial state", coordinate=True)
 
+def axes(further: Mapping[str, Variable] | None = None, /, **values: Any) -> dict[str, Any]:
+    """Return coordinates of a summary by name, each with its values: those of AXES, `further` ones, and parameters.
 
-def axes(**values: Sequence[Any]) -> dict[str, Any]:
-    """Return the coordinates of a summary over law, initial, a or other parameters, given by name.
-
-    The coordinate of `mass[3]` is `mass_3`: names in netCDF files have letters, digits and underscores only.
+    The coordinate of the parameter `mass[3]` is `mass_3`: netCDF names have letters, digits and underscores only.
     """
-    made = {}
-    for name, each in values.items():
+    coordinates, known = {}, {**AXES, **(further or {})}
+    for name, along in values.items():
         plain = plain_name(name)
-        item = AXES.get(name, Variable((plain,), "f8", f"parameter {name}", coordinate=True))
-        made[plain] = plain, np.array(each, dtype=item.dtype), item.all_attributes()
-    return made
+        item = known.get(name, Variable((plain,), "f8", f"parameter {name}", coordinate=True))
+        coordinates[plain] = item.dimensions, np.array(along, dtype=item.dtype), item.all_attributes()
+    return coordinates
 
 
 def summary(
     title: str,
     variables: Mapping[str, Variable],
-    values: Mapping[str, np.ndarray],
-    coordinates: Mapping[str, Any],
+    values: Mapping[Any, Any],
+    coordinates: Mapping[Any, Any],
     attributes: Mapping[str, Any],
     *,
     module: str,
 ) -> xarray.Dataset:
     """Return a Dataset of variables with the values of the same names.
 
+    values : arrays with the dimensions of the variables, or a Dataset, whose variables keep their own dimensions
     module : name of the module that computes the values
     """
     head = global_attributes(title, {"history": "snakemake, from the point files", **attributes}, module=module)

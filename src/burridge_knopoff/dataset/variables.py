@@ -29,14 +29,16 @@ COMPRESSED_FROM = 64
 
 @dataclass(frozen=True)
 class Variable:
-    """One netCDF variable: its dimensions, type, long name (with the paper's symbol) and further attributes.
+    """One netCDF variable: its dimensions, type, description and further attributes.
 
+    description : its name with the paper's symbol, short enough for the axis of a figure; then, if it is not the whole
+        description, a colon and the rest, as in "stop rate: stops per unit of time tau in the window"
     nothing : the missing value; by default NaN for numbers, −1 for whole numbers, "" for texts
     """
 
     dimensions: tuple[str, ...]
     dtype: str
-    long_name: str
+    description: str
     attributes: Mapping[str, Any] = field(default_factory=dict)
     coordinate: bool = False
     nothing: Any = None
@@ -48,12 +50,15 @@ class Variable:
         return default if self.nothing is None else self.nothing
 
     def all_attributes(self) -> dict[str, Any]:
-        """Return the attributes in the order in which they are written."""
-        attributes: dict[str, Any] = {"long_name": self.long_name}
+        """Return the attributes in the order in which they are written; `comment` has the rest of the description."""
+        name, _, rest = self.description.partition(": ")
+        attributes: dict[str, Any] = {"long_name": name}
         # Neither flags nor texts have a unit.
         if "flag_values" not in self.attributes and self.dtype not in TEXT:
             attributes["units"] = "1"
         attributes.update(self.attributes)
+        if comment := "; ".join(filter(None, [rest, attributes.get("comment")])):
+            attributes["comment"] = comment
         return attributes
 
 
@@ -93,9 +98,9 @@ YES_OR_NO = flag("i1", {0: "no", 1: "yes"})
 KIND = flag("i1", {0: "stop", 1: "start"})
 DIRECTION = flag("i1", {-1: "downward", 1: "upward"})
 
-#: Long name and attributes of the period of a motion.
+#: Description and attributes of the period of a motion.
 PERIOD = (
-    "period of the periodic orbit on which the motion lies or to which it is locked, NaN if none was found",
+    "period: of the periodic orbit on which the motion lies or to which it is locked, NaN if none was found",
     {"comment": "inf if the exponents are those of an attracting periodic orbit but the motion has not repeated"},
 )
 
@@ -103,10 +108,17 @@ PERIOD = (
 TIMES = {"sample": "time", "event": "event_time", "earlier_event": "earlier_event_time", "crossing": "crossing_time"}
 
 
-def xarray_variables(variables: Mapping[str, Variable], values: Mapping[str, Any]) -> dict[str, Any]:
-    """Return variables with the values of the same names, in the form that an xarray Dataset expects."""
+def xarray_variables(variables: Mapping[str, Variable], values: Mapping[Any, Any]) -> dict[str, Any]:
+    """Return variables with the values of the same names, in the form that an xarray Dataset expects.
+
+    values : arrays with the dimensions of the variables, or DataArrays, which have dimensions of their own
+    """
     return {
-        name: (item.dimensions, np.asarray(values[name], dtype=item.dtype), item.all_attributes())
+        name: (
+            getattr(values[name], "dims", item.dimensions),
+            np.asarray(values[name], dtype=item.dtype),
+            item.all_attributes(),
+        )
         for name, item in variables.items()
     }
 

@@ -6,8 +6,9 @@ plain constants:
 
 TITLE, CATEGORY : for a reader; PAPER : figures of the paper that it reproduces, as "Fig. 2"
 CAPTION : what is seen; {initial} stands for an initial state
-INPUTS : names of the summaries that `draw` takes, in order; or `runs` alone, the point files of single runs by state
+INPUTS : names of the summaries that `draw` takes, in order; or `points` alone, the point files of single runs by state
 FROM_STUDY : names of properties of `Study` that it takes as well
+OVER : the studies that have it: over `a` alone, the default, over `several` parameters, or over `any`
 CONDITION : property of `Study` that decides whether the figure exists
 FILE : name of the picture, if it is not that of the module
 """
@@ -32,14 +33,15 @@ class Description:
     caption: str
     inputs: tuple[str, ...]
     from_study: tuple[str, ...] = ()
+    over: str = "a"
     condition: str = ""
     paper: str = ""
     file: str = ""
 
     @property
-    def of_runs(self) -> bool:
+    def of_points(self) -> bool:
         """Whether it shows single runs rather than summaries."""
-        return self.inputs == ("runs",)
+        return self.inputs == ("points",)
 
     def caption_of(self, wildcards: Mapping[str, str]) -> str:
         """Return the caption of a picture as one paragraph, with a reference to the paper's figure."""
@@ -88,7 +90,7 @@ def _description(path: Path) -> Description | None:
             constants[node.targets[0].id] = node.value
     if "CAPTION" not in constants:
         return None
-    names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "FROM_STUDY", "CONDITION", "PAPER", "FILE")
+    names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "FROM_STUDY", "OVER", "CONDITION", "PAPER", "FILE")
     given = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
     headline = (ast.get_docstring(module) or "").partition("\n")[0]
     return Description(path.stem, headline[:1].lower() + headline[1:], **{"file": path.stem, **given})

@@ -13,7 +13,7 @@ from burridge_knopoff.figures.style import label_panels, panel_table, say, scale
 TITLE = "J versus time"
 CATEGORY = "Runs"
 PAPER = "Figs. 5a, 5b"
-INPUTS = ("runs",)
+INPUTS = ("points",)
 CAPTION = """\
 The phase-space distance J between the end blocks versus time τ in single runs from each initial state, on a linear and
 on a logarithmic scale; the latter leaves out values below 10⁻¹⁵, which are rounding. If the initial relaxation, in the

@@ -12,7 +12,8 @@ from burridge_knopoff.figures.style import begin_at_zero, say, styled
 
 TITLE = "⟨J⟩ over the parameters"
 CATEGORY = "Synchronization"
-INPUTS = ("grid",)
+INPUTS = ("mean_distance",)
+OVER = "several"
 CAPTION = """\
 The time average ⟨J⟩ of the phase-space distance between the end blocks over the parameters of the study, for each law
 and initial state. A curve over one parameter has bars of three standard errors. White: the run did not complete.
@@ -20,13 +21,18 @@ and initial state. A curve over one parameter has bars of three standard errors.
 
 
 @styled
-def draw(grid: xarray.Dataset) -> Figure:
+def draw(mean_distance: xarray.Dataset) -> Figure:
     """Draw ⟨J⟩ as a map over two parameters, in panels for each value of further ones, or as a curve over one."""
-    highest = np.nanmax(grid["mean_distance"].values, initial=0.0)
+    highest = np.nanmax(mean_distance["mean_distance"].values, initial=0.0)
     figure, panels, drawn = draw_panels(
-        grid, r"$\langle J\rangle$", _curve, lambda one: one["mean_distance"].values, vmin=0.0, vmax=highest or 1.0
+        mean_distance,
+        r"$\langle J\rangle$",
+        _curve,
+        lambda one: one["mean_distance"].values,
+        vmin=0.0,
+        vmax=highest or 1.0,
     )
-    if not np.isfinite(grid["mean_distance"].values).any():
+    if not np.isfinite(mean_distance["mean_distance"].values).any():
         for panel in panels:
             say(panel, "no run completed")
     elif drawn is None:

@@ -12,7 +12,8 @@ from burridge_knopoff.figures.style import say, styled
 
 TITLE = "Largest Lyapunov exponent over the parameters"
 CATEGORY = "Synchronization"
-INPUTS = ("grid",)
+INPUTS = ("lyapunov",)
+OVER = "several"
 CAPTION = """\
 The largest Lyapunov exponent in the window over the parameters of the study, for each law and initial state. A curve
 over one parameter has bars of three times the error. White on a map: about 0, as in regular motion, or not computed.
@@ -20,11 +21,13 @@ over one parameter has bars of three times the error. White on a map: about 0, a
 
 
 @styled
-def draw(grid: xarray.Dataset) -> Figure:
+def draw(lyapunov: xarray.Dataset) -> Figure:
     """Draw the exponent as a map over two parameters, in panels for each value of further ones, or a curve over one."""
-    scale = float(np.max(np.abs(_largest(grid)), initial=0.0, where=np.isfinite(_largest(grid)))) or 1.0
-    figure, panels, drawn = draw_panels(grid, r"$\lambda_1$", _curve, _largest, cmap="RdBu_r", vmin=-scale, vmax=scale)
-    if not np.isfinite(_largest(grid)).any():
+    scale = float(np.max(np.abs(_largest(lyapunov)), initial=0.0, where=np.isfinite(_largest(lyapunov)))) or 1.0
+    figure, panels, drawn = draw_panels(
+        lyapunov, r"$\lambda_1$", _curve, _largest, cmap="RdBu_r", vmin=-scale, vmax=scale
+    )
+    if not np.isfinite(_largest(lyapunov)).any():
         for panel in panels:
             say(panel, "no exponents were computed")
     elif drawn is not None:

@@ -16,7 +16,8 @@ from burridge_knopoff.motion.kind import MotionKind
 
 TITLE = "Kinds of motion over the parameters"
 CATEGORY = "Synchronization"
-INPUTS = ("grid",)
+INPUTS = ("lyapunov",)
+OVER = "several"
 CAPTION = """\
 The kind of motion of each run over the parameters of the study, for each law and initial state, from the Lyapunov
 exponents and the section points of the run. White: undetermined, or the run did not complete.
@@ -24,14 +25,14 @@ exponents and the section points of the run. White: undetermined, or the run did
 
 
 @styled
-def draw(grid: xarray.Dataset) -> Figure:
+def draw(lyapunov: xarray.Dataset) -> Figure:
     """Draw the kinds as a map over two parameters, in panels for each value of others, or as a strip over one."""
-    figure, _, _ = draw_panels(grid, "", _strip, _colors)
+    figure, _, _ = draw_panels(lyapunov, "", _strip, _colors)
     legend_below(
         figure,
         [
             Patch(facecolor=KINDS[kind], edgecolor="0.4", label=MotionKind(kind).words)
-            for kind in np.unique(grid["run_kind"].values).tolist()
+            for kind in np.unique(lyapunov["run_kind"].values).tolist()
         ],
     )
     return figure

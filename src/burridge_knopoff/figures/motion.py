@@ -19,7 +19,7 @@ TITLE = "Motion from {initial}"
 CATEGORY = "Runs"
 PAPER = "Figs. 6, 7"
 FILE = "motion_{initial}"
-INPUTS = ("runs",)
+INPUTS = ("points",)
 CAPTION = """\
 The run from the state {initial}. (a) Velocities U_i' and (b) positions U_i − vτ of all blocks versus time τ at the end
 of the run. (c) The return map of the section W = 0, where W is the sum of the positions relative to uniform sliding: W'

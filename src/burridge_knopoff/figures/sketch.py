@@ -20,6 +20,7 @@ CATEGORY = "Model"
 PAPER = "Fig. 1"
 CONDITION = "has_one_chain"
 INPUTS = ()
+OVER = "any"
 FROM_STUDY = ("chain_description",)
 CAPTION = """\
 The chain of the study. Springs couple neighbouring blocks, and others connect blocks to a driver that moves with

@@ -7,15 +7,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from textwrap import shorten
 from threading import RLock
-from typing import Any
 
 import netCDF4
-import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.point import POINT_VARIABLES
-from burridge_knopoff.dataset.run import open_run
-from burridge_knopoff.dataset.summary import axes
 from burridge_knopoff.messages import refusal
 from burridge_knopoff.study.damage import check_file
 from burridge_knopoff.study.recorded import recorded_study
@@ -23,9 +18,6 @@ from burridge_knopoff.study.study import all_points
 
 # HDF5 is not thread-safe, and xarray's own lock does not cover everything that is read when a file is opened.
 _LOCK = RLock()
-
-#: Scalar variables of a point.
-SCALARS = tuple(name for name, item in POINT_VARIABLES.items() if not item.dimensions and not item.coordinate)
 
 #: Length of a title in a list of summaries.
 LONGEST = 70
@@ -37,10 +29,10 @@ def open_study(results: str | Path) -> StudyResults:
     results : results folder of a study, results/<study>
 
     `study["summary/<name>"]` is a summary, `study["points/<law>/<initial>/a<value>"]` a point, each as an
-    `xarray.DataTree` with one Dataset, whose arrays are read on demand. `study["grid"]` contains all scalar variables
-    of the points over (law, initial, a), or over all parameters of the study's `grid` in place of a: NaN, or −1 for
-    whole numbers, where a point is missing. `study["summary"]`, `study["points/<law>"]` and so on are trees of all
-    files in a group, and `study["/"]` contains everything. The paths of all files are the keys of the mapping `study`;
+    `xarray.DataTree` with one Dataset, whose arrays are read on demand. `study["summary/runs"]` contains all scalar
+    variables of the points over (law, initial, a), or over all parameters of the study's `grid` in place of a.
+    `study["summary"]`, `study["points/<law>"]` and so on are trees of all files in a group, and `study["/"]` contains
+    everything. The paths of all files are the keys of the mapping `study`;
     `study.config` is the config with all defaults. docs/data.md describes all variables.
 
     Leftover files, such as summaries of a stage that is now left out, are not included. Other sources than the current
@@ -53,7 +45,7 @@ def open_study(results: str | Path) -> StudyResults:
 
     >>> from burridge_knopoff import open_study
     >>> study = open_study("results/paper")
-    >>> study["grid"].mean_distance.dims
+    >>> study["summary/runs"].mean_distance.dims
     ('law', 'initial', 'a')
     >>> study["points/linearized/plus/a0.0800"].velocity.dims
     ('trajectory_time', 'block')
@@ -74,14 +66,11 @@ class StudyResults(Mapping[str, xarray.DataTree]):
         }
         files = (name.removesuffix(".nc") for name in self._record["files"] if name.endswith(".nc"))
         self._summaries = sorted(name for name in files if name.startswith("summary/"))
-        self._grid: xarray.Dataset | None = None
         self.config = dict(self._study.config)
 
     def __iter__(self) -> Iterator[str]:
-        points = [name for name in self._points if self._has(name)]
-        yield from ["grid"] * bool(points)
         yield from (name for name in self._summaries if self._has(name))
-        yield from points
+        yield from (name for name in self._points if self._has(name))
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
@@ -92,8 +81,8 @@ class StudyResults(Mapping[str, xarray.DataTree]):
     def __getitem__(self, path: str) -> xarray.DataTree:
         path = path.strip("/")
         with _LOCK:
-            if path in self._points or path in self._summaries or path == "grid":
-                if path == "grid" or self._has(path):
+            if path in self._points or path in self._summaries:
+                if self._has(path):
                     return xarray.DataTree(self._open(path), name=path.rpartition("/")[2])
             elif names := [name for name in self if not path or name.startswith(f"{path}/")]:
                 parts = {name.removeprefix(path).strip("/"): self._open(name) for name in names}
@@ -105,16 +94,16 @@ class StudyResults(Mapping[str, xarray.DataTree]):
         sizes = ", ".join(f"{name} {len(values)}" for name, values in self._study.parameters.items())
         count = sum(map(self._has, self._points))
         form = re.sub(r"\{(\w+)\}", r"<\1>", self._study.point_file).removesuffix(".nc")
-        scalars = f"scalars of the points over law {len(self._study.laws)}, initial {len(self._study.initial)}, {sizes}"
-        points = f"{count} of {len(self._points)} points, such as {next(iter(self._points))}"
-        rows = [("grid", scalars), (f"points/{form}", points)]
+        over = f"over law {len(self._study.laws)}, initial {len(self._study.initial)}, {sizes}"
+        points = f"{count} of {len(self._points)} points {over}, such as {next(iter(self._points))}"
+        rows = [(f"points/{form}", points)]
         rows += [(name, self._title(name)) for name in self._summaries if self._has(name)]
         width = max(len(name) for name, _ in rows)
         return "\n".join(
             [
                 f"<study {self._study.name} in {self._results}>",
                 *(f"{name:{width}}  {text}" for name, text in rows),
-                'Open a part by its path, such as study["grid"]; study.config is the config.',
+                'Open a part by its path, such as study["summary/runs"]; study.config is the config.',
             ]
         )
 
@@ -129,32 +118,6 @@ class StudyResults(Mapping[str, xarray.DataTree]):
             return "cannot be read"
 
     def _open(self, name: str) -> xarray.Dataset:
-        if name == "grid":
-            if self._grid is None:
-                self._grid = self._read_grid()
-            return self._grid
         # Raises ValueError, one line, if the file is damaged or not the expected one of the study.
         check_file(self._study, self._results, f"{name}.nc", self._record, self._points.get(name))
         return xarray.open_dataset(self._results / f"{name}.nc")
-
-    def _read_grid(self) -> xarray.Dataset:
-        study = self._study
-        shape = len(study.laws), len(study.initial), *map(len, study.parameters.values())
-        scalars = {name: np.full(shape, _missing_value(name)) for name in SCALARS}
-        for index, name in zip(np.ndindex(shape), self._points, strict=True):
-            if self._has(name):
-                with open_run(self._results / f"{name}.nc", study.command(**self._points[name])) as point:
-                    for scalar, everywhere in scalars.items():
-                        everywhere[index] = point[scalar][...]
-        dimensions = ("law", "initial", *study.wildcards)
-        values = {name: list(values.values()) for name, values in study.parameters.items()}
-        return xarray.Dataset(
-            {name: (dimensions, scalars[name], POINT_VARIABLES[name].all_attributes()) for name in SCALARS},
-            axes(law=study.laws, initial=study.initial, **values),
-        )
-
-
-def _missing_value(name: str) -> Any:
-    """Return the value of a scalar variable where a point is missing."""
-    kind = np.dtype(POINT_VARIABLES[name].dtype)
-    return kind.type(np.nan if kind.kind == "f" else -1)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from burridge_knopoff.motion.period import repetition_of
+from burridge_knopoff.motion.period import Repetition, repetition_of
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.status import Status
 
@@ -150,11 +150,17 @@ def motion_of_completed_run(run: Mapping[str, Any], mean_distance: float, settin
       attracting uniform sliding, which has no exponent 0 and whose section points are rounding.
     """
     exponents = run["lyapunov_exponent"], run["lyapunov_error"]
-    repetition = repetition_of(run, settings)
-    is_zero = not len(exponents[0]) or not exponents[0][0] > settings.zero_exponent
+    return motion_of_repetition(repetition_of(run, settings), mean_distance, *exponents, settings)
+
+
+def motion_of_repetition(
+    repetition: Repetition, mean_distance: float, exponent: np.ndarray, error: np.ndarray, settings: MotionSettings
+) -> Motion:
+    """Return the kind of motion of a completed run from the repetition of its state; see `motion_of_completed_run`."""
+    is_zero = not len(exponent) or not exponent[0] > settings.zero_exponent
     if repetition.divergence <= (DIVERGENCE if is_zero else 1.0):
-        return motion_from_period(repetition.points, repetition.period, mean_distance, *exponents, settings)
-    motion = motion_from_period(0, math.nan, mean_distance, *exponents, settings)
+        return motion_from_period(repetition.points, repetition.period, mean_distance, exponent, error, settings)
+    motion = motion_from_period(0, math.nan, mean_distance, exponent, error, settings)
     return motion if motion.kind in CHAOS else Motion(MotionKind.UNDETERMINED)
 
 

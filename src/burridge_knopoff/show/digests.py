@@ -41,10 +41,13 @@ def values_where(holds: np.ndarray, a: np.ndarray) -> str:
     return f"up to a = {a[last]:g}" if holds[: last + 1].all() else format_values(a, holds)
 
 
-def _largest(name: str, values: np.ndarray, a: np.ndarray) -> Iterator[str]:
-    if np.isfinite(values).any():
-        place = np.nanargmax(np.where(np.isfinite(values), values, np.nan))
-        yield f"largest {name} {values[place]:.4g} at a = {a[place]:g}"
+def _largest(name: str, values: xarray.DataArray) -> Iterator[str]:
+    """Yield the largest finite value and where it is, over a or other parameters, if there is one."""
+    finite = values.where(np.isfinite(values))
+    if finite.notnull().any():
+        place = finite.isel(finite.argmax(...))
+        where = ", ".join(f"{dimension} = {place[dimension].item():g}" for dimension in values.dims)
+        yield f"largest {name} {place.item():.4g} at {where}"
 
 
 def _incomplete(completed: np.ndarray) -> Iterator[str]:
@@ -53,36 +56,55 @@ def _incomplete(completed: np.ndarray) -> Iterator[str]:
         yield f"{np.count_nonzero(~completed)} of {format_count(completed.size, 'run')} did not complete"
 
 
+def runs(data: xarray.Dataset) -> str:
+    """Return how many runs of each law and initial state completed."""
+
+    def sentence(part: xarray.Dataset) -> str:
+        completed = part["status"].values == Status.COMPLETED
+        return next(_incomplete(completed), f"all {completed.size} runs completed")
+
+    return lines_of(data, RUN, sentence)
+
+
 def mean_distance(data: xarray.Dataset) -> str:
     """Return where each law and initial state is synchronized, and its largest ⟨J⟩."""
 
-    def sentence(one: xarray.Dataset) -> str:
-        a = one["a"].values
-        is_synchronized = decode_flags(one["synchronized"]).values == "yes"
-        where = f"synchronized {values_where(is_synchronized, a)}"
-        return "; ".join([where, *_largest("<J>", one["mean_distance"].values, a)])
+    def sentence(part: xarray.Dataset) -> str:
+        is_synchronized = decode_flags(part["synchronized"]).values == "yes"
+        where = f"at {np.count_nonzero(is_synchronized)} of {format_count(is_synchronized.size, 'point')}"
+        if is_synchronized.ndim == 1:
+            where = values_where(is_synchronized, part["a"].values)
+        return "; ".join([f"synchronized {where}", *_largest("<J>", part["mean_distance"])])
 
     return lines_of(data, RUN, sentence)
 
 
 def lyapunov(data: xarray.Dataset) -> str:
-    """Return where the runs of each law and initial state are chaotic or undetermined, and the largest exponent."""
+    """Return where the runs of each law and initial state are chaotic or undetermined, and the largest exponent.
 
-    def sentence(one: xarray.Dataset) -> str:
-        a = one["a"].values
-        kind = one["run_kind"].values
-        is_chaotic = np.isin(kind, CHAOS)
-        first = f", first at a = {a[is_chaotic.argmax()]:g}" if is_chaotic.any() else ""
-        unclear = int((kind == MotionKind.UNDETERMINED).sum())
-        return "; ".join(
-            [
-                f"chaotic at {is_chaotic.sum()} of {len(a)} values of a{first}",
-                *([_UNCLEAR.format(format_count(unclear, "value"))] if unclear else []),
-                *_largest("exponent", one["lyapunov_exponent"].values.max(axis=-1, initial=-np.inf), a),
-            ]
-        )
+    Over several parameters all kinds of motion are counted.
+    """
+
+    def sentence(part: xarray.Dataset) -> str:
+        kind = part["run_kind"]
+        largest = _largest("exponent", part["lyapunov_exponent"].max("exponent")) if part.sizes["exponent"] else []
+        words = _chaotic_values(kind) if kind.ndim == 1 else [_kind_counts(kind.values)]
+        return "; ".join([*words, *largest])
 
     return lines_of(data, RUN, sentence)
+
+
+def _chaotic_values(kind: xarray.DataArray) -> Iterator[str]:
+    is_chaotic = kind.isin(CHAOS).values
+    first = f", first at a = {kind['a'].values[is_chaotic.argmax()]:g}" if is_chaotic.any() else ""
+    yield f"chaotic at {is_chaotic.sum()} of {kind.size} values of a{first}"
+    if unclear := int((kind == MotionKind.UNDETERMINED).sum()):
+        yield _UNCLEAR.format(format_count(unclear, "value"))
+
+
+def _kind_counts(kinds: np.ndarray) -> str:
+    counts = [f"{kind.words} {count}" for kind in MotionKind if (count := np.count_nonzero(kinds == kind))]
+    return f"{format_count(kinds.size, 'point')}: {', '.join(counts)}"
 
 
 def bifurcation_diagram(data: xarray.Dataset) -> str:
@@ -152,23 +174,6 @@ def solvers(data: xarray.Dataset) -> str:
     return "\n".join(lines)
 
 
-def grid(data: xarray.Dataset) -> str:
-    """Return at how many points of several parameters each law and initial state is synchronized or chaotic."""
-
-    def sentence(one: xarray.Dataset) -> str:
-        kinds, mean = one["run_kind"].values, one["mean_distance"].values
-        counts = [f"{kind.words} {count}" for kind in MotionKind if (count := np.count_nonzero(kinds == kind))]
-        words = f"{format_count(kinds.size, 'point')}: {', '.join(counts)}"
-        if np.isfinite(mean).any():
-            place = np.unravel_index(np.nanargmax(mean), mean.shape)
-            where = zip(one["mean_distance"].dims, place, strict=True)
-            at = ", ".join(f"{name} = {one[name].values[k]:g}" for name, k in where)
-            words += f"; largest <J> {mean[place]:.4g} at {at}"
-        return words
-
-    return lines_of(data, RUN, sentence)
-
-
 def catalogue(data: xarray.Dataset) -> str:
     """Return the number of slip events under each law, the range of their slopes, and how many catalogues are empty."""
 
@@ -200,7 +205,7 @@ def slip_events(data: xarray.Dataset) -> str:
 DIGESTS: dict[str, Callable[[xarray.Dataset], str]] = {
     function.__name__: function
     for function in (
-        *(mean_distance, lyapunov, bifurcation_diagram, stick_slip, solvers, grid),
+        *(runs, mean_distance, lyapunov, bifurcation_diagram, stick_slip, solvers),
         *(catalogue, slip_events),
     )
 }

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import scipy
 import xarray
 
-from burridge_knopoff.attractors.lookup import reached_values
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.attractors.lookup import reached_attractors
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import ANSWER, PERIOD, Answer, Variable, flag
 from burridge_knopoff.motion.kind import (
     CHAOS,
@@ -23,13 +23,13 @@ from burridge_knopoff.motion.kind import (
 )
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import compare
+from burridge_knopoff.summaries.judgement import compare_laws
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
+from burridge_knopoff.summaries.runs import RUN, over_runs
 
 # Significant digits: the last bits of a product of vectors depend on their alignment in memory.
 DIGITS = 12
 
-_POINT = ("law", "initial", "a")
 _PAIR = ("other_law", "initial", "a")
 # Relative difference of ⟨J⟩ that is allowed between a run and its attractor even if their errors are smaller.
 MEAN_TOLERANCE = 0.01
@@ -38,47 +38,67 @@ KIND_COMMENT = (
     "synchrony counts as synchronized; if the run has reached no known attractor, the kind that the run alone shows"
 )
 POINT_VARIABLES = {
-    "mean_distance": Variable(_POINT, "f8", "time average <J> of the phase-space distance between the end blocks"),
-    "mean_distance_error": Variable(_POINT, "f8", "standard error of <J> from the batch means"),
-    "kind": Variable(_POINT, "i1", "kind of motion", flag("i1", MotionKind) | {"comment": KIND_COMMENT}),
+    "mean_distance": Variable(
+        RUN, "f8", "mean distance <J>: time average of the phase-space distance between the end blocks"
+    ),
+    "mean_distance_error": Variable(RUN, "f8", "standard error of <J>: from the batch means"),
+    "kind": Variable(RUN, "i1", "kind of motion", flag("i1", MotionKind) | {"comment": KIND_COMMENT}),
 }
 RUN_VARIABLES = {
-    "period": Variable(_POINT, "f8", *PERIOD),
+    "period": Variable(RUN, "f8", *PERIOD),
     "settled": Variable(
-        _POINT,
+        RUN,
         "i1",
-        "whether the run ended on the attractor that its initial state reaches",
+        "on the attractor: whether the run ended on the attractor that its initial state reaches",
         ANSWER | {"comment": "no: the transient was too short, or the chaos ended within the window"},
     ),
 }
-PAIR_VARIABLES = {
-    "difference": Variable(_PAIR, "f8", "<J> of the other law minus <J> of the first law"),
-    "difference_error": Variable(_PAIR, "f8", "standard error of the difference of <J>"),
+EVENT_VARIABLES = {
     "section_distance": Variable(
-        _PAIR, "f8", "Wasserstein distance between the distributions of W' on upward crossings of both laws"
+        _PAIR,
+        "f8",
+        "distance of the section points: Wasserstein distance between the distributions of W' on upward "
+        "crossings of both laws",
     ),
-    "event_order_time": Variable(_PAIR, "f8", "time tau until which the order of events is the same under both laws"),
-    "event_order_count": Variable(_PAIR, "i8", "number of events that occur in the same order under both laws"),
+    "event_order_time": Variable(
+        _PAIR, "f8", "time of equal event order: time tau until which the order of events is the same under both laws"
+    ),
+    "event_order_count": Variable(
+        _PAIR, "i8", "events in equal order: number of events that occur in the same order under both laws"
+    ),
+}
+PAIR_VARIABLES = {
+    "difference": Variable(_PAIR, "f8", "difference of <J>: that of the other law minus that of the first law"),
+    "difference_error": Variable(_PAIR, "f8", "standard error of the difference of <J>"),
+    **EVENT_VARIABLES,
     "same_kind": Variable(
         _PAIR,
         "i1",
-        "whether both laws lead to the same kind of motion, periodic and quasiperiodic motion being one",
+        "same kind of motion: whether both laws lead to the same kind of motion, periodic and "
+        "quasiperiodic motion being one",
         ANSWER,
     ),
-    "agrees": Variable(_PAIR, "i1", "whether the kind of motion and <J> agree", ANSWER),
-    "parting_a": Variable(_PAIR[:2], "f8", "smallest a of the grid at which the laws disagree, NaN if there is none"),
+    "same_mean_distance": Variable(
+        _PAIR,
+        "i1",
+        "same <J>: whether <J> agrees within the tolerance",
+        ANSWER | {"comment": "two synchronized motions agree"},
+    ),
+    "agrees": Variable(_PAIR, "i1", "agreement: whether the kind of motion and <J> agree", ANSWER),
+    "parting_a": Variable(
+        _PAIR[:2],
+        "f8",
+        "smallest a with disagreement: smallest a of the grid at which the laws disagree, NaN if there is none",
+    ),
 }
 VARIABLES = {**POINT_VARIABLES, **RUN_VARIABLES, **PAIR_VARIABLES}
-OTHER_LAW = Variable(("other_law",), "O", "friction law compared with the first one", coordinate=True)
-_READ = [
-    *("end_time", "mean_distance", "mean_distance_error", "crossing_velocity", "crossing_direction"),
-    *EVENTS,
-]
+_EVENTS_READ = ["end_time", "crossing_velocity", "crossing_direction", *EVENTS]
 
 
 def summarize(
-    grid: Grid,
+    runs: xarray.Dataset,
     lyapunov: xarray.Dataset,
+    events: xarray.Dataset,
     attractors: xarray.Dataset | None = None,
     *,
     synchronization_threshold: float,
@@ -86,86 +106,83 @@ def summarize(
 ) -> xarray.Dataset:
     """Compare each law with the first one at every grid point.
 
-    lyapunov : the summary of that name, for the kinds of motion of runs
+    runs, lyapunov : the summaries of these names, for ⟨J⟩ and the kinds of motion of runs
+    events : see `compare_events`
     attractors : the summary of that name, for the attractors that the initial states reach; without it `settled` is
         undetermined
     agreement : the config's section of that name: relative_tolerance, standard_errors
     """
-    sizes = dict(zip(_POINT, grid.shape, strict=True), other_law=len(grid.laws) - 1)
-    values = {name: np.zeros([sizes[key] for key in item.dimensions], item.dtype) for name, item in VARIABLES.items()}
-    for j, initial in enumerate(grid.initial):
-        for k, a in enumerate(grid.a):
-            runs = [read_point(grid, (law, initial, a), _READ) for law in grid.laws]
-            for i, run in enumerate(runs):
-                values["mean_distance"][i, j, k] = run["mean_distance"]
-                values["mean_distance_error"][i, j, k] = run["mean_distance_error"]
-            for i, run in enumerate(runs[1:]):
-                values["section_distance"][i, j, k] = _section_distance(
-                    _upward_crossings(runs[0]), _upward_crossings(run)
-                )
-                count, until = common_order(all_events(runs[0]), all_events(run))
-                values["event_order_count"][i, j, k] = count
-                values["event_order_time"][i, j, k] = min(until, float(runs[0]["end_time"]), float(run["end_time"]))
-    of_runs = lyapunov.sel(law=list(grid.laws))
-    values["kind"][...], values["period"][...] = of_runs["run_kind"].values, of_runs["period"].values
-    values["settled"][...] = Answer.UNDETERMINED
-    if attractors is not None:
-        _fill_settled(values, attractors, agreement, synchronization_threshold)
-    for i in range(sizes["other_law"]):
-        pair = {name: values[name][[0, i + 1]] for name in POINT_VARIABLES}
-        compared = {name: values[name][i] for name in PAIR_VARIABLES}
-        compare({**pair, **compared}, np.array(list(grid.a.values())), synchronization_threshold, agreement)
-    shared = grid.axes()
-    others = ("other_law", np.array(grid.laws[1:], dtype=object), OTHER_LAW.all_attributes())
+    with xarray.set_options(arithmetic_join="exact"):
+        motion = runs[["mean_distance", "mean_distance_error"]].assign(
+            kind=lyapunov["run_kind"],
+            period=lyapunov["period"],
+            settled=xarray.full_like(lyapunov["run_kind"], Answer.UNDETERMINED),
+        )
+        if attractors is not None:
+            reached = reached_attractors(attractors)
+            motion = motion.assign(settle(motion, reached, synchronization_threshold, agreement))
+        comparison = compare_laws(motion, synchronization_threshold, agreement)
+    values = motion.assign({**comparison, **events})
     return summary(
         "Agreement of each friction law with the first one",
         VARIABLES,
         values,
-        {"law": shared["law"], "other_law": others, **shared},
+        axes(law=runs["law"], other_law=runs["law"][1:], initial=runs["initial"], a=runs["a"]),
         {"synchronization_threshold": synchronization_threshold, **agreement},
         module=__name__,
     )
 
 
-def _fill_settled(
-    values: Mapping[str, np.ndarray], attractors: xarray.Dataset, agreement: Mapping[str, Any], threshold: float
-) -> None:
-    """Fill in whether each run has the ⟨J⟩ and the kind of motion of the attractor that its initial state reaches.
+def settle(
+    motion: xarray.Dataset, reached: xarray.Dataset, threshold: float, agreement: Mapping[str, Any]
+) -> dict[str, xarray.DataArray]:
+    """Return kind, period and whether each run has the ⟨J⟩ and kind of motion of the attractor that its state reaches.
 
     If ⟨J⟩ agrees, the run is given the kind of the attractor, which was followed for longer, so that all runs on one
     attractor have the same kind.
+
+    motion : mean_distance, its error, kind and period of the runs; reached : see `reached_attractors`
     """
-    relative_tolerance, standard_errors = agreement["relative_tolerance"], agreement["standard_errors"]
-    own = attractors.sel(contact=attractors.attrs["contact"], start=attractors.attrs["start"])
-    for law, initial in np.ndindex(values["settled"].shape[:2]):
-        names = str(own["initial"].values[initial]), str(own["law"].values[law])
-        known, mean = reached_values(own, *names, "mean_distance")
-        _, error = reached_values(own, *names, "mean_distance_error")
-        mine, my_error = (values[name][law, initial] for name in ("mean_distance", "mean_distance_error"))
-        allowed = np.maximum(
-            standard_errors * np.hypot(error, my_error), np.maximum(MEAN_TOLERANCE * np.maximum(mean, mine), threshold)
-        )
-        there = known & (np.abs(mean - mine) <= allowed)
-        kind, (_, finer), (_, period) = (
-            values["kind"][law, initial],
-            *(reached_values(own, *names, k) for k in ("kind", "period")),
-        )
-        # Transient chaos that outlasts the run is chaos in the run.
-        lasting = np.where(mean < threshold, MotionKind.SYNCHRONIZED_CHAOS, MotionKind.CHAOTIC)
-        finer = np.where(finer == MotionKind.TRANSIENT_CHAOS, lasting, finer)
-        replaced = (
-            there & np.isin(finer, (*REGULAR, *CHAOS)) & (np.isin(kind, UNDECIDED_KINDS) | is_same_result(kind, finer))
-        )
-        replaced |= (
-            known & np.isin(finer, SYNCHRONOUS) & (mine < attractors.attrs["resolution"] * attractors.attrs["v"] / 0.1)
-        )
-        kind[...] = np.where(replaced, finer, kind)
-        values["period"][law, initial] = np.where(replaced, period, values["period"][law, initial])
-        there &= (finer == MotionKind.UNDETERMINED) | is_same_result(kind, finer)
-        # If the errors exceed the tolerance between laws, agreement of ⟨J⟩ does not show that the motions are the same.
-        is_accurate = allowed <= np.maximum(relative_tolerance * np.maximum(mean, mine), threshold)
-        known &= np.isfinite(mine) & (kind != MotionKind.UNDETERMINED) & (is_accurate | ~there)
-        values["settled"][law, initial] = np.where(known, there, Answer.UNDETERMINED)
+    mean, known = motion["mean_distance"], reached["known"]
+    larger = np.maximum(reached["mean_distance"], mean)
+    error = xarray.apply_ufunc(np.hypot, reached["mean_distance_error"], motion["mean_distance_error"])
+    allowed = np.maximum(agreement["standard_errors"] * error, np.maximum(MEAN_TOLERANCE * larger, threshold))
+    there = known & (np.abs(reached["mean_distance"] - mean) <= allowed)
+    # Transient chaos that outlasts the run is chaos in the run.
+    lasting = xarray.where(reached["mean_distance"] < threshold, MotionKind.SYNCHRONIZED_CHAOS, MotionKind.CHAOTIC)
+    finer = xarray.where(reached["kind"] == MotionKind.TRANSIENT_CHAOS, lasting, reached["kind"])
+    same = xarray.apply_ufunc(is_same_result, motion["kind"], finer)
+    replaced = there & finer.isin((*REGULAR, *CHAOS)) & (motion["kind"].isin(UNDECIDED_KINDS) | same)
+    replaced |= known & finer.isin(SYNCHRONOUS) & (mean < reached.attrs["resolution"] * reached.attrs["v"] / 0.1)
+    kind = xarray.where(replaced, finer, motion["kind"])
+    there &= (finer == MotionKind.UNDETERMINED) | xarray.apply_ufunc(is_same_result, kind, finer)
+    # If the errors exceed the tolerance between laws, agreement of ⟨J⟩ does not show that the motions are the same.
+    is_accurate = allowed <= np.maximum(agreement["relative_tolerance"] * larger, threshold)
+    decided = known & np.isfinite(mean) & (kind != MotionKind.UNDETERMINED) & (is_accurate | ~there)
+    return {
+        "kind": kind,
+        "period": xarray.where(replaced, reached["period"], motion["period"]),
+        "settled": xarray.where(decided, there, Answer.UNDETERMINED),
+    }
+
+
+def compare_events(grid: Grid) -> xarray.Dataset:
+    """Return the variables of EVENT_VARIABLES, from the point files of each other law and of the first law."""
+
+    def compare(run: Mapping[str, np.ndarray], point: Sequence[str]) -> dict[str, float]:
+        first = read_point(grid, (grid.laws[0], *point[1:]), _EVENTS_READ)
+        count, until = common_order(all_events(first), all_events(run))
+        return {
+            "section_distance": _section_distance(_upward_crossings(first), _upward_crossings(run)),
+            "event_order_count": count,
+            "event_order_time": min(until, float(first["end_time"]), float(run["end_time"])),
+        }
+
+    others = grid.of_laws(grid.laws[1:])
+    values = over_runs(others, EVENT_VARIABLES, _EVENTS_READ, compare)
+    coordinates = {**grid.axes(), **axes(other_law=others.laws)}
+    del coordinates["law"]
+    return xarray.Dataset({name: (_PAIR, array) for name, array in values.items()}, coordinates)
 
 
 def _upward_crossings(run: Mapping[str, np.ndarray]) -> np.ndarray:

@@ -16,7 +16,7 @@ import xarray
 from burridge_knopoff.attractors.attractor import Attractor
 from burridge_knopoff.attractors.labels import UNDETERMINED, label
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.attractors.table import NOTHING, slot_coordinates, slot_values, slot_variables
+from burridge_knopoff.attractors.table import NOTHING, slot_values, slot_variables
 from burridge_knopoff.continuation.along_a import Continuation
 from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.summary import axes, summary
@@ -40,52 +40,80 @@ _V = Variable
 ALONG_COMMENT = {"comment": "known for attractors that an initial state of the study reaches under some convention"}
 VARIABLES = {
     **slot_variables("a"),
-    "upward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next larger a of the grid", NOTHING),
-    "downward_branch": _V(_SLOT, "i2", "branch reached from the attractor at the next smaller a of the grid", NOTHING),
-    "basin_count": _V(_SLOT, "i4", "sampled initial states that reach the attractor", nothing=0),
+    "upward_branch": _V(
+        _SLOT,
+        "i2",
+        "branch reached at the next larger a: from the attractor, at the next larger a of the grid",
+        NOTHING,
+    ),
+    "downward_branch": _V(
+        _SLOT,
+        "i2",
+        "branch reached at the next smaller a: from the attractor, at the next smaller a of the grid",
+        NOTHING,
+    ),
+    "basin_count": _V(
+        _SLOT, "i4", "states in the basin: number of sampled initial states that reach the attractor", nothing=0
+    ),
     "basin_fraction": _V(
         _SLOT,
         "f8",
-        "fraction of the sampled initial states that reach the attractor",
+        "basin fraction: fraction of the sampled initial states that reach the attractor",
         {"comment": "if chaos is transient, the fraction of its successor grows with the time states are followed"},
     ),
-    "basin_fraction_low": _V(_SLOT, "f8", "lower end of the 95 % Wilson interval of the basin fraction"),
-    "basin_fraction_high": _V(_SLOT, "f8", "upper end of the 95 % Wilson interval of the basin fraction"),
-    "sample_count": _V(("a",), "i4", "initial states drawn for the basin fractions", nothing=0),
-    "undetermined_count": _V(("a",), "i4", "sampled initial states that reach no attractor by label_limit", nothing=0),
+    "basin_fraction_low": _V(_SLOT, "f8", "lower end of the basin fraction: of its 95 % Wilson interval"),
+    "basin_fraction_high": _V(_SLOT, "f8", "upper end of the basin fraction: of its 95 % Wilson interval"),
+    "sample_count": _V(
+        ("a",), "i4", "number of sampled states: initial states drawn for the basin fractions", nothing=0
+    ),
+    "undetermined_count": _V(
+        ("a",),
+        "i4",
+        "number of undetermined states: sampled initial states that reach no attractor by label_limit",
+        nothing=0,
+    ),
     "sliding_attracts": _V(
         ("a",),
         "i1",
-        "whether uniform sliding, which has no stops and is not searched for, attracts",
+        "uniform sliding attracts: whether uniform sliding, which has no stops and is not searched for, attracts",
         YES_OR_NO,
     ),
-    "initial_branch": _V(_REACHED, "i2", "branch reached by an initial state under each convention", NOTHING),
+    "initial_branch": _V(_REACHED, "i2", "branch reached: by an initial state under each convention", NOTHING),
     "initial_side": _V(_REACHED, "i1", "side of that branch", nothing=0),
     "section_count": _V(
         _SLOT,
         "i4",
-        "number of distinct W' at upward crossings of the section W = 0 along an attractor",
+        "number of section points: distinct W' at upward crossings of the section W = 0 along an attractor",
         ALONG_COMMENT,
     ),
-    "section_velocity_mean": _V(_SLOT, "f8", "mean of W' over these crossings, NaN if there are none", ALONG_COMMENT),
+    "section_velocity_mean": _V(
+        _SLOT, "f8", "mean of W' at the section: over these crossings, NaN if there are none", ALONG_COMMENT
+    ),
     "velocity_correlation": _V(
-        _SLOT, "f8", "Pearson correlation of the velocities U' of the end blocks", ALONG_COMMENT
+        _SLOT, "f8", "velocity correlation: Pearson correlation of the velocities U' of the end blocks", ALONG_COMMENT
     ),
     "velocity_frequency": _V(
         (*_SLOT, "block"),
         "f8",
-        "frequency, in cycles per unit time, of the highest peak of the spectrum of U', or of short slips",
+        "frequency of U': in cycles per unit time, of the highest peak of the spectrum of U', or of short slips",
         ALONG_COMMENT,
     ),
     "rounded_branch": _V(
         ("initial", "a", "corner"),
         "i2",
-        "branch reached, under the study's convention, by states whose positions and velocities are each 0.0005 above "
-        "or below those of an initial state; for a state that follows v, 0.0005 v/0.1",
+        "branch reached by rounded states: under the study's convention, by states whose positions and "
+        "velocities are each 0.0005 above or below those of an initial state; for a state that follows "
+        "v, 0.0005 v/0.1",
         NOTHING,
     ),
-    "sweep_branch": _V(_SWEEP, "i2", "branch that a sweep of a follows", NOTHING),
-    "sweep_mean_distance": _V(_SWEEP, "f8", "<J> of the attractor that a sweep of a follows"),
+    "sweep_branch": _V(_SWEEP, "i2", "branch in a sweep: that a sweep of a follows", NOTHING),
+    "sweep_mean_distance": _V(_SWEEP, "f8", "<J> in a sweep: of the attractor that a sweep of a follows"),
+}
+
+COORDINATES = {
+    "contact": Variable(("contact",), "O", "convention of contact", coordinate=True),
+    "start": Variable(("start",), "O", "convention of start", coordinate=True),
+    "direction": Variable(("direction",), "O", "direction in which a is swept", coordinate=True),
 }
 
 
@@ -111,11 +139,15 @@ def one_law(
     values.update(_observables(found, values["initial_branch"], values["initial_side"], motion.section))
     values.update(_rounded_branches(found, initial, settings.label_limit, start))
     values.update(_sweeps(found))
-    coordinates = axes(initial=[state.name for state in initial], a=[model.a for model in models])
-    coordinates.update(slot_coordinates(models[0].blocks))
-    for name, names in (("contact", CONTACTS), ("start", STARTS), ("direction", DIRECTIONS)):
-        coordinates[name] = (name, np.array(names, dtype=object), {"long_name": f"convention of {name}"})
-    coordinates["direction"][2]["long_name"] = "direction in which a is swept"
+    coordinates = axes(
+        COORDINATES,
+        initial=[state.name for state in initial],
+        a=[model.a for model in models],
+        block=range(1, models[0].blocks + 1),
+        contact=CONTACTS,
+        start=STARTS,
+        direction=DIRECTIONS,
+    )
     law = models[0].law.name
     attributes = search_attributes(models[0], settings, motion, start)
     return summary(f"Attractors, {law} friction law", VARIABLES, values, coordinates, attributes, module=__name__)

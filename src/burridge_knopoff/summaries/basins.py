@@ -17,7 +17,7 @@ from burridge_knopoff.basins.pair_separation import SEPARATIONS, follow_pairs
 from burridge_knopoff.basins.plane import pixel_centres, plane, states
 from burridge_knopoff.basins.settings import BasinSettings
 from burridge_knopoff.basins.uncertainty import ExponentKind, uncertainty_exponent
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.summary import AXES, axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import initial_state
@@ -29,50 +29,60 @@ from burridge_knopoff.summaries.map_rows import map_rows
 _PLANE = ("last_position", "first_position")
 _V = Variable
 TILE_VARIABLES = {
-    "branch": _V(_PLANE, "i2", "branch of the attractor that the state reaches, -1 if undetermined"),
+    "branch": _V(_PLANE, "i2", "branch reached: branch of the attractor that the state reaches, -1 if undetermined"),
     "side": _V(_PLANE, "i1", "side of that branch: 1 and -1 for mirror images, 0 for its own mirror image"),
-    "decision_time": _V(_PLANE, "f4", "time tau at which the attractor was determined"),
+    "decision_time": _V(_PLANE, "f4", "decision time: time tau at which the attractor was determined"),
 }
 PAIR_VARIABLES = {
-    "uncertain_count": _V(("separation",), "i4", "number of pairs of states that reach different attractors"),
-    "pair_count": _V(("separation",), "i4", "number of pairs of states of which both reach an attractor"),
+    "uncertain_count": _V(
+        ("separation",), "i4", "number of uncertain pairs: pairs of states that reach different attractors"
+    ),
+    "pair_count": _V(("separation",), "i4", "number of pairs: pairs of states of which both reach an attractor"),
     "uncertain_fraction": _V(
         ("separation",),
         "f8",
-        "fraction f of all pairs of states of the plane that reach different attractors",
+        "uncertain fraction f: fraction of all pairs of states of the plane that reach different attractors",
         {"ancillary_variables": "uncertain_fraction_error"},
     ),
-    "uncertain_fraction_error": _V(("separation",), "f8", "standard error of f, from a jackknife"),
+    "uncertain_fraction_error": _V(("separation",), "f8", "standard error of f: from a jackknife"),
     "local_exponent": _V(
         ("separation_step",),
         "f8",
-        "slope of log f against log separation, from each separation to the next",
+        "local exponent: slope of log f against log separation, from each separation to the next",
         {"ancillary_variables": "local_exponent_error"},
     ),
-    "local_exponent_error": _V(("separation_step",), "f8", "standard error of the slope, from a jackknife"),
+    "local_exponent_error": _V(("separation_step",), "f8", "standard error of the slope: from a jackknife"),
     "uncertainty_exponent": _V(
         (),
         "f8",
-        "uncertainty exponent alpha of the basin boundary, NaN if it is undetermined or not a single one",
+        "uncertainty exponent alpha: of the basin boundary, NaN if it is undetermined or not a single one",
         {"ancillary_variables": "uncertainty_exponent_error"},
     ),
-    "uncertainty_exponent_error": _V((), "f8", "standard error of alpha, from a jackknife"),
+    "uncertainty_exponent_error": _V((), "f8", "standard error of alpha: from a jackknife"),
     "exponent_change": _V(
-        (), "f8", "change of the local exponent over the fitted separations, from a fit of a parabola"
+        (), "f8", "change of the local exponent: over the fitted separations, from a fit of a parabola"
     ),
-    "exponent_change_error": _V((), "f8", "standard error of this change, from a jackknife"),
-    "exponent_kind": _V((), "i1", "whether the boundary has a single exponent", flag("i1", ExponentKind)),
+    "exponent_change_error": _V((), "f8", "standard error of this change: from a jackknife"),
+    "exponent_kind": _V(
+        (), "i1", "kind of exponent: whether the boundary has a single exponent", flag("i1", ExponentKind)
+    ),
 }
 MAP_VARIABLES = {
-    **{name: _V(("map", *_PLANE), item.dtype, item.long_name) for name, item in TILE_VARIABLES.items()},
-    "undetermined_count": _V(("map",), "i4", "number of states that reach no attractor by label_limit"),
+    **{name: _V(("map", *_PLANE), item.dtype, item.description) for name, item in TILE_VARIABLES.items()},
+    "undetermined_count": _V(
+        ("map",), "i4", "number of undetermined states: states that reach no attractor by label_limit"
+    ),
     **{name: replace(item, dimensions=("map", *item.dimensions)) for name, item in PAIR_VARIABLES.items()},
     **NAMES,
 }
 COORDINATES = {
-    "first_position": "initial position U_1(0) of the first block",
-    "last_position": "initial position U_N(0) of the last block",
+    "first_position": _V(("first_position",), "f8", "initial position U_1(0): of the first block", coordinate=True),
+    "last_position": _V(("last_position",), "f8", "initial position U_N(0): of the last block", coordinate=True),
+    "separation": _V(
+        ("separation",), "f8", "separation: distance between the two states of a pair in the plane", coordinate=True
+    ),
 }
+OF_MAP = {name: replace(AXES[name], dimensions=("map",)) for name in ("law", "a")}
 
 
 def tile_of_map(
@@ -142,7 +152,7 @@ def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit
     }
     values["decision_time"] = np.where(labels == UNDETERMINED, np.nan, times).reshape(shape)
     attributes = {"law": known.model.law.name, "a": known.model.a, "history": "snakemake, from attractors.nc"}
-    coordinates = _coordinates(first, last)
+    coordinates = axes(COORDINATES, first_position=first, last_position=last)
     return summary("Tile of a map of basins", TILE_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
@@ -168,7 +178,8 @@ def pairs(known: KnownAttractors, basins: BasinSettings, label_limit: float, see
         values[name], values[f"{name}_error"] = pair
     values["exponent_kind"] = exponent.kind
     attributes = {"law": known.model.law.name, "a": known.model.a, "history": "snakemake, from attractors.nc"}
-    coordinates = {"separation": _separation(basins)}
+    width = basins.first_position[1] - basins.first_position[0]
+    coordinates = axes(COORDINATES, separation=np.array(SEPARATIONS) * width)
     return summary("Pairs of nearby states", PAIR_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
@@ -191,12 +202,6 @@ def _labels(
     )
 
 
-def _separation(basins: BasinSettings) -> tuple[str, np.ndarray, dict[str, str]]:
-    width = basins.first_position[1] - basins.first_position[0]
-    text = "distance between the two states of a pair in the plane"
-    return "separation", np.array(SEPARATIONS) * width, {"long_name": text, "units": "1"}
-
-
 def merge(
     maps: Sequence[tuple[Model, Sequence[xarray.Dataset], xarray.Dataset]],
     attractors: xarray.Dataset,
@@ -210,17 +215,18 @@ def merge(
     basins, label_limit, start : settings of the maps
     """
     wholes = [xarray.concat(tiles, "last_position", combine_attrs="drop_conflicts") for _, tiles, _ in maps]
-    values: dict[str, Any] = {name: np.stack([whole[name].values for whole in wholes]) for name in TILE_VARIABLES}
-    values["undetermined_count"] = [np.count_nonzero(whole["branch"] == UNDETERMINED) for whole in wholes]
-    values |= {name: np.stack([near[name].values for *_, near in maps]) for name in PAIR_VARIABLES}
-    values |= {name: attractors[name].values for name in NAMES}
-    coordinates = _coordinates(wholes[0]["first_position"].values, wholes[0]["last_position"].values)
-    coordinates["separation"] = _separation(basins)
+    values = xarray.merge(
+        [
+            xarray.concat(wholes, "map", join="exact", combine_attrs="drop"),
+            xarray.concat([near for *_, near in maps], "map", join="exact", combine_attrs="drop"),
+            attractors[list(NAMES)],
+        ],
+        combine_attrs="drop",
+    )
+    values["undetermined_count"] = (values["branch"] == UNDETERMINED).sum(["first_position", "last_position"])
     models = [model for model, *_ in maps]
-    names = np.array([model.law.name for model in models], dtype=object)
-    coordinates["law"] = ("map", names, {"long_name": "friction law"})
-    a = {"long_name": "friction parameter a", "units": "1"}
-    coordinates["a"] = ("map", np.array([model.a for model in models]), a)
+    of_map = axes(OF_MAP, law=[model.law.name for model in models], a=[model.a for model in models])
+    coordinates = {**axes(COORDINATES, **{name: values[name] for name in COORDINATES}), **of_map}
     u, w = models[0].initial_coordinates(basins.initial)
     attributes = {
         "history": "snakemake, from attractors.nc",
@@ -266,8 +272,3 @@ def exponent_text(one: xarray.Dataset) -> str:
         f"precisely, the fraction of them whose attractor is uncertain is divided by {10.0**alpha:.2g} (by 10 if the "
         "basin boundary is smooth)"
     )
-
-
-def _coordinates(first: np.ndarray, last: np.ndarray) -> dict[str, Any]:
-    values = {"first_position": first, "last_position": last}
-    return {name: (name, values[name], {"long_name": text, "units": "1"}) for name, text in COORDINATES.items()}

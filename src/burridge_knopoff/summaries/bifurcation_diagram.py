@@ -5,10 +5,12 @@ The file is a contiguous ragged array of the CF conventions.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.summary import AXES, axes, summary
 from burridge_knopoff.dataset.variables import DIRECTION, Variable
 from burridge_knopoff.summaries.points import Grid, read_point
 
@@ -25,6 +27,7 @@ VARIABLES = {
     "crossing_direction": Variable(("crossing",), "i1", "direction in which W crosses 0", DIRECTION),
     "crossing_count": Variable(("point",), "i4", "number of crossings of the point", {"sample_dimension": "crossing"}),
 }
+OF_POINT = {name: replace(AXES[name], dimensions=("point",)) for name in ("law", "initial", "a")}
 
 
 def summarize(grid: Grid) -> xarray.Dataset:
@@ -42,11 +45,6 @@ def summarize(grid: Grid) -> xarray.Dataset:
         law.append(point[0])
         initial.append(point[1])
         a.append(grid.a[point[2]])
-    coordinates = {
-        "law": ("point", np.array(law, dtype=object), {"long_name": "friction law"}),
-        "initial": ("point", np.array(initial, dtype=object), {"long_name": "initial state"}),
-        "a": ("point", np.array(a), {"long_name": "friction parameter a", "units": "1"}),
-    }
     values = {
         "crossing_velocity": np.concatenate(velocity),
         "crossing_direction": np.concatenate(direction),
@@ -56,7 +54,7 @@ def summarize(grid: Grid) -> xarray.Dataset:
         "Section points W' at W = 0",
         VARIABLES,
         values,
-        coordinates,
+        axes(OF_POINT, law=law, initial=initial, a=a),
         {"section": str(grid.section)},
         module=__name__,
     )

@@ -19,7 +19,7 @@ from burridge_knopoff.continuation.bifurcations import LEAST_ERROR, Entry, entri
 from burridge_knopoff.continuation.branch_changes import Change, branch_changes
 from burridge_knopoff.continuation.followed_orbits import FollowedOrbits, follow_orbits
 from burridge_knopoff.dataset.columns import Column, column_values
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import ANSWER, Variable, flag
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.kind import MotionKind
@@ -51,17 +51,18 @@ def _multiplier(point: BranchOrbit | None) -> tuple[float, float] | None:
 
 _NONE, _MOTION = {"comment": "-1 undetermined"}, flag("i1", MotionKind)
 _BELOW, _ABOVE = (
-    "branch at smaller a, or to which the branch at larger a leads",
-    "branch at larger a, or to which the branch at smaller a leads",
+    "branch at smaller a: or to which the branch at larger a leads",
+    "branch at larger a: or to which the branch at smaller a leads",
 )
-_TURNS = "whether the bifurcation is a turning point: the orbits before and after it exist on the same side in a"
-_LIFE = "lower end of the 95 % interval of the mean lifetime of chaos at grid_low or grid_high"
-_LONGER = "upper end of that interval; if both are chaotic, of the shorter lifetime"
-_SADDLE = "period of the saddle orbit on the basin boundary that the attractor meets at a crisis, NaN if none is known"
-_LARGEST = "Floquet multiplier of largest modulus at the bifurcation"
+_TURNS = "turning point: whether the orbits before and after the bifurcation exist on the same side in a"
+_LIFE = "lower end of the lifetime: 95 % interval of the mean lifetime of chaos at grid_low or grid_high"
+_LONGER = "upper end of the lifetime: if both are chaotic, of the shorter lifetime"
+_SADDLE = "period of the saddle orbit: on the basin boundary that the attractor meets at a crisis, NaN if "
+"none is known"
+_LARGEST = "largest multiplier: Floquet multiplier of largest modulus at the bifurcation"
 #: Columns of a bifurcation, from its `Entry`.
 BIFURCATIONS = {
-    "a": Column(_AT, "f8", "friction parameter a of the bifurcation", value=lambda one: one.a),
+    "a": Column(_AT, "f8", "friction parameter a: of the bifurcation", value=lambda one: one.a),
     "a_error": Column(
         _AT,
         "f8",
@@ -75,13 +76,13 @@ BIFURCATIONS = {
     "grid_low": Column(
         _AT,
         "f8",
-        "largest a of refined.nc at which the branch is unchanged, NaN if there is none",
+        "largest a below: largest a of refined.nc at which the branch is unchanged, NaN if there is none",
         value=lambda one: one.low,
     ),
     "grid_high": Column(
         _AT,
         "f8",
-        "smallest a of refined.nc at which the branch has changed, NaN if there is none",
+        "smallest a above: smallest a of refined.nc at which the branch has changed, NaN if there is none",
         value=lambda one: one.high,
     ),
     "motion_before": Column(_AT, "i1", "kind of motion at grid_low", _MOTION, value=lambda one: one.motion[0]),
@@ -91,54 +92,58 @@ BIFURCATIONS = {
     "stops": Column(
         (*_AT, "block"),
         "i4",
-        "stops of each block in a period of the stable orbits",
+        "stops in a period: of each block, in a period of the stable orbits",
         value=_of_bifurcation(lambda at: at.before.orbit.stop_counts),
     ),
     "stops_beyond": Column(
         (*_AT, "block"),
         "i4",
-        "stops of each block in a period of the orbits beyond the bifurcation",
+        "stops in a period beyond: of each block, in a period of the orbits beyond the bifurcation",
         value=_of_bifurcation(lambda at: at.after.orbit.stop_counts if at.after else None),
     ),
     "multiplier": Column((*_AT, "part"), "f8", _LARGEST, value=_of_bifurcation(lambda at: _multiplier(at.at))),
     "multiplier_beyond": Column(
         (*_AT, "part"),
         "f8",
-        "Floquet multiplier of largest modulus of the orbits beyond the bifurcation",
+        "largest multiplier beyond: Floquet multiplier of largest modulus of the orbits beyond the bifurcation",
         value=_of_bifurcation(lambda at: _multiplier(at.after)),
     ),
     "mean_distance": Column(
         _AT,
         "f8",
-        "<J> over a period of the orbit at the bifurcation",
+        "<J> of the orbit: over a period of the orbit at the bifurcation",
         value=_of_bifurcation(lambda at: at.mean_distance),
     ),
     "stick_time": Column(
         _AT,
         "f8",
-        "shortest stick of the orbit at the bifurcation, 0 if its duration vanishes there",
+        "shortest stick: of the orbit at the bifurcation, 0 if its duration vanishes there",
         value=_of_bifurcation(lambda at: at.stick_time),
     ),
     "lifetime_low": Column(_AT, "f8", _LIFE, value=lambda one: one.lifetime[0]),
     "lifetime_high": Column(_AT, "f8", _LONGER, value=lambda one: one.lifetime[1]),
     # Filled in from the edge states.
     "saddle_period": Column(_AT, "f8", _SADDLE),
-    "saddle_stops": Column((*_AT, "block"), "i4", "stops of each block in a period of the saddle orbit"),
-    "saddle_distance": Column(_AT, "f8", "distance of the attractor from the saddle orbit before the crisis"),
+    "saddle_stops": Column(
+        (*_AT, "block"), "i4", "stops in a period of the saddle: of each block, in a period of the saddle orbit"
+    ),
+    "saddle_distance": Column(
+        _AT, "f8", "distance from the saddle: distance of the attractor from the saddle orbit before the crisis"
+    ),
 }
-_SEGMENT = "number of the segment of a branch, whose orbits are in the order in which they were continued"
-_STABLE = "whether the orbit is stable: all multipliers except that of the flow lie inside the unit circle"
+_SEGMENT = "number of the segment: of a branch, whose orbits are in the order in which they were continued"
+_STABLE = "stable: whether all multipliers except that of the flow lie inside the unit circle"
 #: Columns of an orbit, from (number of its segment, branch of the segment, orbit).
 ORBITS = {
     "orbit_segment": Column(_ORBIT, "i4", _SEGMENT, value=lambda one: one[0]),
     "orbit_branch": Column(_ORBIT, "i2", "branch of most attractors on the segment", value=lambda one: one[1]),
-    "orbit_a": Column(_ORBIT, "f8", "friction parameter a of the periodic orbit", value=lambda one: one[2].orbit.a),
+    "orbit_a": Column(_ORBIT, "f8", "friction parameter a: of the periodic orbit", value=lambda one: one[2].orbit.a),
     "orbit_stable": Column(_ORBIT, "i1", _STABLE, ANSWER, value=lambda one: one[2].multipliers.unstable_count == 0),
     "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda one: one[2].orbit.period),
     "orbit_stops": Column(
         (*_ORBIT, "block"),
         "i4",
-        "stops of each block in a period of the orbit",
+        "stops in a period: of each block, in a period of the orbit",
         value=lambda one: one[2].orbit.stop_counts,
     ),
     "orbit_mean_distance": Column(
@@ -277,10 +282,7 @@ def _dataset(
     names: Sequence[str], values: Mapping[str, np.ndarray], block: xarray.Variable, head: Mapping[str, Any]
 ) -> xarray.Dataset:
     """Return the bifurcations of the laws of these names as a Dataset."""
-    coordinates = {
-        "part": ("part", np.array(PARTS, dtype=object), {"long_name": "part of a complex number"}),
-        "block": block,
-    }
+    coordinates = {**axes(part=PARTS), "block": block}
     about = {
         "laws": " ".join(names),
         **head,

@@ -43,34 +43,37 @@ VARIABLES = {
     "slope_p_value": _V(
         _RUN,
         "f8",
-        "probability that a catalogue drawn from the fit deviates from its own fit by at least as much",
+        "p value: probability that a catalogue drawn from the fit deviates from its own fit by at least as much",
         {"comment": "Kolmogorov-Smirnov distance, parametric bootstrap"},
     ),
     "magnitude_count": _V(_MAGNITUDE, "i8", "number of events per bin of magnitude"),
-    "magnitude_rate": _V(_MAGNITUDE, "f8", "events per unit of time tau and of magnitude"),
-    "mean_extent": _V(_MAGNITUDE, "f8", "mean number of slipping blocks of the events in a bin of magnitude"),
+    "magnitude_rate": _V(_MAGNITUDE, "f8", "rate per magnitude: events per unit of time tau and of magnitude"),
+    "mean_extent": _V(
+        _MAGNITUDE, "f8", "mean extent: mean number of slipping blocks of the events in a bin of magnitude"
+    ),
     "interval_count": _V(_INTERVAL, "i8", "number of events per bin of interval"),
     "block_event_count": _V(_BLOCK, "i8", "number of events that contain a block", {"comment": "-1 unknown"}),
-    "recurrence": _V(_BLOCK, "f8", "mean time tau between events that contain a block"),
+    "recurrence": _V(_BLOCK, "f8", "recurrence time: mean time tau between events that contain a block"),
     "recurrence_spread": _V(_BLOCK, "f8", "standard deviation of this time"),
-    "shown_time": _V(_SHOWN, "f8", "time tau of one of the last events of the run, NaN if there are fewer"),
+    "shown_time": _V(
+        _SHOWN, "f8", "time tau of a shown event: of one of the last events of the run, NaN if there are fewer"
+    ),
     "shown_magnitude": _V(_SHOWN, "f8", "magnitude of this event"),
     "bar_event": _V(
         _BAR,
         "i4",
-        "number, from 1, of the shown event in which a range of consecutive blocks slips, 0 if there are fewer",
+        "number of the shown event: from 1, in which a range of consecutive blocks slips, 0 if there are fewer",
     ),
     "bar_first_block": _V(_BAR, "i4", "first block of this range"),
     "bar_last_block": _V(_BAR, "i4", "last block of this range"),
 }
 COORDINATES = {
-    "magnitude": _V(("magnitude",), "f8", "magnitude, natural logarithm of the moment, at the middle of a bin"),
+    "magnitude": _V(("magnitude",), "f8", "magnitude: natural logarithm of the moment, at the middle of a bin"),
     "interval": _V(
         ("interval",),
         "f8",
-        "time tau since the start of the last event in which the epicentre slipped, at the middle of a bin",
+        "interval: time tau since the start of the last event in which the epicentre slipped, at the middle of a bin",
     ),
-    "block": _V(("block",), "i4", "block number, 1 to N along the chain"),
 }
 #: Attributes that all catalogue files have in common.
 SHARED = ("contact", "loading", "start", "begin_time", "end_time")
@@ -108,14 +111,9 @@ def summarize(
         name: np.reshape([run[name] for run in runs], (len(laws), len(grid), *np.shape(runs[0][name])))
         for name in VARIABLES
     }
-    middle = {
-        "magnitude": EDGES[:-1] + WIDTH / 2,
-        "interval": np.exp(EDGES[:-1] + WIDTH / 2),
-        "block": np.arange(1, values["recurrence"].shape[-1] + 1),
-    }
-    coordinates = axes(law=laws, a=grid) | {
-        name: (name, middle[name].astype(item.dtype), item.all_attributes()) for name, item in COORDINATES.items()
-    }
+    middle = EDGES[:-1] + WIDTH / 2
+    blocks = range(1, values["recurrence"].shape[-1] + 1)
+    coordinates = axes(COORDINATES, law=laws, a=grid, magnitude=middle, interval=np.exp(middle), block=blocks)
     head = {"history": "snakemake, from the catalogue files", "bin_width": WIDTH, **attributes}
     whole = summary(TITLE, VARIABLES, values, coordinates, head, module=__name__)
     there = {

@@ -9,11 +9,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-import numpy as np
 import xarray
-from numpy.typing import ArrayLike
 
-from burridge_knopoff.dataset.summary import STATE, axes, summary
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag, global_attributes
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.model import Model
@@ -32,44 +30,56 @@ _POINT = ("law", "a")
 _OWN_ATTRIBUTES = ("blocks", *global_attributes("", {}, module=__name__))
 _STATE = (*_POINT, "state")
 _SYMMETRIC = (*_POINT, "symmetric_state")
+BLOCKS = Variable(("blocks",), "i4", "number N of blocks", coordinate=True)
+SYMMETRIC_STATE = Variable(
+    _SYMMETRIC[2:], "i4", "number of the symmetric state: of the sampled state that was made symmetric", coordinate=True
+)
 CHAIN_VARIABLES = {
     "outcome": Variable(_STATE, "i1", "outcome: whether the mirror blocks synchronize", flag("i1", Outcome)),
     "time": Variable(
-        _STATE, "f8", "time tau at which the synchronization distance was reached, NaN if it was not reached"
+        _STATE,
+        "f8",
+        "synchronization time: time tau at which the synchronization distance was reached, NaN if it was not reached",
     ),
     "distance": Variable(
-        _STATE, "f8", "largest mirror distance in the last quarter of the time limit, or at that time"
+        _STATE, "f8", "largest mirror distance: in the last quarter of the time limit, or at that time"
     ),
     "mean_distance": Variable(
-        _STATE, "f8", "mean mirror distance in the last quarter of the time limit, or at that time"
+        _STATE, "f8", "mean mirror distance: in the last quarter of the time limit, or at that time"
     ),
     "pairs": Variable(
-        _STATE, "i2", "number of pairs of mirror blocks that stay synchronized in the last quarter of the time limit"
+        _STATE,
+        "i2",
+        "number of synchronized pairs: pairs of mirror blocks that stay synchronized in the last quarter "
+        "of the time limit",
     ),
     "transverse_exponent": Variable(
         _STATE,
         "f8",
-        "largest transverse Lyapunov exponent of the symmetric motion that was reached or is nearby, otherwise NaN",
+        "largest transverse exponent: Lyapunov exponent of the symmetric motion that was reached or is "
+        "nearby, otherwise NaN",
     ),
-    "symmetric_exponent": Variable(_SYMMETRIC, "f8", "largest transverse Lyapunov exponent of symmetric motion"),
-    "symmetric_error": Variable(_SYMMETRIC, "f8", "standard error of this exponent from batches"),
-    "lyapunov_exponent": Variable(_POINT, "f8", "largest Lyapunov exponent of the first state"),
-    "lyapunov_error": Variable(_POINT, "f8", "error of this exponent, from batches and from the length of the window"),
+    "symmetric_exponent": Variable(
+        _SYMMETRIC, "f8", "largest transverse exponent: Lyapunov exponent of symmetric motion"
+    ),
+    "symmetric_error": Variable(_SYMMETRIC, "f8", "standard error of this exponent: from batches"),
+    "lyapunov_exponent": Variable(_POINT, "f8", "largest Lyapunov exponent: of the first state"),
+    "lyapunov_error": Variable(_POINT, "f8", "error of this exponent: from batches and from the length of the window"),
 }
 VARIABLES = {
     **{
-        name: Variable(("blocks", *item.dimensions), item.dtype, item.long_name, item.attributes)
+        name: Variable(("blocks", *item.dimensions), item.dtype, item.description, item.attributes)
         for name, item in CHAIN_VARIABLES.items()
     },
     **{
-        name: Variable(("blocks", *_POINT), "f8", long_name)
-        for name, long_name in {
-            "synchronized_fraction": "fraction of the states that synchronize",
+        name: Variable(("blocks", *_POINT), "f8", description)
+        for name, description in {
+            "synchronized_fraction": "synchronized fraction: fraction of the states that synchronize",
             "synchronized_low": "lower end of its confidence interval",
-            "synchronized_high": "upper end of its confidence interval, undetermined states counted as synchronized",
-            "undetermined_fraction": "fraction of the states that are undetermined",
-            "partial_fraction": "fraction of the states in which some but not all pairs of mirror blocks synchronize",
-            "mean_mirror_distance": "mean over the states of the mean mirror distance; synchronized states count as 0",
+            "synchronized_high": "upper end of its confidence interval: undetermined states counted as synchronized",
+            "undetermined_fraction": "undetermined fraction: fraction of the states that are undetermined",
+            "partial_fraction": "partial fraction: states in which some but not all pairs of mirror blocks synchronize",
+            "mean_mirror_distance": "mean mirror distance: over the states; synchronized states count as 0",
         }.items()
     },
 }
@@ -91,7 +101,13 @@ def chain_dataset(models: Sequence[Model], grid: Sequence[float], sample: Sample
         f"Mirror synchrony of sampled initial states, {first.blocks} blocks",
         CHAIN_VARIABLES,
         values,
-        _coordinates([model.law.name for model in models], grid, sample.samples, sample.symmetric_samples),
+        axes(
+            {"symmetric_state": SYMMETRIC_STATE},
+            law=[model.law.name for model in models],
+            a=grid,
+            state=range(1, sample.samples + 1),
+            symmetric_state=range(1, sample.symmetric_samples + 1),
+        ),
         {
             "history": "snakemake chains",
             "blocks": first.blocks,
@@ -110,51 +126,34 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     """Combine chain files in the order of their numbers of blocks, and count outcomes."""
     chains = sorted(parts, key=lambda chain: chain.attrs["blocks"])
     first = chains[0]
-    values = {name: np.stack([chain[name].values for chain in chains]) for name in CHAIN_VARIABLES}
-    values.update(_fractions(values["outcome"], values["pairs"], values["mean_distance"]))
-    coordinates = {
-        "blocks": (
-            "blocks",
-            np.array([chain.attrs["blocks"] for chain in chains], dtype="i4"),
-            {"long_name": "number N of blocks", "units": "1"},
-        ),
-        **_coordinates(first["law"].values, first["a"].values, first.sizes["state"], first.sizes["symmetric_state"]),
-    }
+    values = xarray.concat([chain[list(CHAIN_VARIABLES)] for chain in chains], "blocks", join="exact")
+    lengths = axes({"blocks": BLOCKS}, blocks=[chain.attrs["blocks"] for chain in chains])
     kept = {name: value for name, value in first.attrs.items() if name not in _OWN_ATTRIBUTES}
     return summary(
         "Mirror synchrony of longer chains",
         VARIABLES,
-        values,
-        coordinates,
+        values.assign(_fractions(values)),
+        {**lengths, **first.coords},
         {"confidence": CONFIDENCE, **kept},
         module=__name__,
     )
 
 
-def _coordinates(laws: ArrayLike, grid: ArrayLike, states: int, symmetric_states: int) -> dict[str, Any]:
-    symmetric = {"long_name": "number of the sampled initial state that was made symmetric", "units": "1"}
-    return {
-        **axes(law=np.asarray(laws).tolist(), a=np.asarray(grid).tolist()),
-        "state": ("state", np.arange(1, states + 1, dtype="i4"), STATE.all_attributes()),
-        "symmetric_state": ("symmetric_state", np.arange(1, symmetric_states + 1, dtype="i4"), symmetric),
-    }
+def _fractions(chains: xarray.Dataset) -> dict[str, xarray.DataArray]:
+    """Return the counted variables over (blocks, law, a)."""
+    outcome, states = chains["outcome"], chains.sizes["state"]
+    synchronized, undetermined = outcome == Outcome.SYNCHRONIZED, outcome == Outcome.UNDETERMINED
+    partial = (outcome == Outcome.NOT_SYNCHRONIZED) & (chains["pairs"] > 0)
 
+    def end_of_interval(holds: xarray.DataArray, end: int) -> xarray.DataArray:
+        counts = holds.sum("state")
+        return xarray.apply_ufunc(lambda count: fraction_interval(int(count), states)[end], counts, vectorize=True)
 
-def _fractions(outcome: np.ndarray, pairs: np.ndarray, mean_distance: np.ndarray) -> dict[str, np.ndarray]:
-    """Return the counted variables, shape (blocks, laws, a)."""
-    synchronized = outcome == Outcome.SYNCHRONIZED
-    undetermined = outcome == Outcome.UNDETERMINED
-    states = outcome.shape[-1]
-    low, high = np.zeros(outcome.shape[:-1]), np.zeros(outcome.shape[:-1])
-    for index in np.ndindex(low.shape):
-        certain, possible = synchronized[index].sum(), (synchronized | undetermined)[index].sum()
-        low[index] = fraction_interval(int(certain), states)[1]
-        high[index] = fraction_interval(int(possible), states)[2]
     return {
-        "synchronized_fraction": synchronized.mean(axis=-1),
-        "synchronized_low": low,
-        "synchronized_high": high,
-        "undetermined_fraction": undetermined.mean(axis=-1),
-        "partial_fraction": ((outcome == Outcome.NOT_SYNCHRONIZED) & (pairs > 0)).mean(axis=-1),
-        "mean_mirror_distance": np.where(synchronized, 0.0, mean_distance).mean(axis=-1),
+        "synchronized_fraction": synchronized.mean("state"),
+        "synchronized_low": end_of_interval(synchronized, 1),
+        "synchronized_high": end_of_interval(synchronized | undetermined, 2),
+        "undetermined_fraction": undetermined.mean("state"),
+        "partial_fraction": partial.mean("state"),
+        "mean_mirror_distance": chains["mean_distance"].where(~synchronized, 0.0).mean("state", skipna=False),
     }

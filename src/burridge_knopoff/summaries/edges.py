@@ -24,7 +24,7 @@ from burridge_knopoff.continuation.edges import (
     edge_between,
 )
 from burridge_knopoff.dataset.columns import Column, column_values
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.model import Model
@@ -41,7 +41,7 @@ TITLE = "Edge states on the boundaries between basins"
 
 _EDGE, _ORBIT, _CRISIS = ("edge",), ("orbit",), ("crisis",)
 _BANKS = (*_EDGE, "bank")
-_LIFE = "mean time for which trajectories stay near the edge state"
+_LIFE = "lifetime: mean time for which trajectories stay near the edge state"
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,15 +73,15 @@ EDGES = {
     "has_crossing": Column(
         _EDGE,
         "i1",
-        "whether states displaced to one side cross the boundary and its part there leads back to this edge state: the "
-        "boundary is then fractal",
+        "boundary is crossed: whether states displaced to one side cross the boundary and its part there "
+        "leads back to this edge state; the boundary is then fractal",
         YES_OR_NO,
         value=lambda one: one.edge.state.has_crossing,
     ),
     "branch": Column(
         _BANKS,
         "i2",
-        "branch of attractors reached by most states displaced to this side",
+        "branch reached: by most states displaced to this side",
         value=lambda one: one.edge.branch,
     ),
     "side": Column(
@@ -94,28 +94,32 @@ EDGES = {
     "reached_count": Column(
         (*_BANKS, "attractor"),
         "i4",
-        "displaced states that reach this attractor, by its number in attractors.nc; -1 where there is none",
+        "number of states: displaced states that reach this attractor, by its number in attractors.nc; "
+        "-1 where there is none",
         value=lambda one: one.edge.reached_count,
     ),
     "period": Column(
         _EDGE,
         "f8",
-        "period of the saddle orbit; NaN for other edge states",
+        "period of the saddle orbit: NaN for other edge states",
         value=lambda one: one.edge.state.orbit and one.edge.state.orbit.period,
     ),
     "stops": Column(
-        (*_EDGE, "block"), "i4", "stops of each block in a period of the saddle orbit", value=lambda one: one.stops
+        (*_EDGE, "block"),
+        "i4",
+        "stops in a period of the saddle: of each block, in a period of the saddle orbit",
+        value=lambda one: one.stops,
     ),
     "multiplier": Column(
         _EDGE,
         "f8",
-        "modulus of the one Floquet multiplier of the saddle orbit outside the unit circle",
+        "modulus of the unstable multiplier: of the one Floquet multiplier of the saddle orbit outside the unit circle",
         value=lambda one: abs(one.edge.state.multiplier[0]) if one.edge.state.orbit else None,
     ),
     "lyapunov_exponent": Column(
         (*_EDGE, "exponent"),
         "f8",
-        "Lyapunov exponents along the boundary, the largest first",
+        "Lyapunov exponent: along the boundary, the largest first",
         value=lambda one: one.edge.state.exponent,
     ),
     "lyapunov_error": Column(
@@ -135,16 +139,16 @@ EDGES = {
     "segment": Column(
         _EDGE,
         "i4",
-        "number of the segment of orbits on which the edge state lies, -1 for none",
+        "number of the segment: of orbits on which the edge state lies, -1 for none",
         value=lambda one: one.segment,
     ),
 }
 #: Columns of an orbit, from (number of its segment, orbit).
 ORBITS = {
     "orbit_segment": Column(
-        _ORBIT, "i4", "number of the segment of a branch of saddle orbits", value=lambda one: one[0]
+        _ORBIT, "i4", "number of the segment: of a branch of saddle orbits", value=lambda one: one[0]
     ),
-    "orbit_a": Column(_ORBIT, "f8", "friction parameter a of the orbit", value=lambda one: one[1].orbit.a),
+    "orbit_a": Column(_ORBIT, "f8", "friction parameter a: of the orbit", value=lambda one: one[1].orbit.a),
     "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda one: one[1].orbit.period),
     "orbit_mean_distance": Column(
         _ORBIT, "f8", "<J> over a period of the orbit", value=lambda one: one[1].orbit.mean_distance
@@ -152,36 +156,38 @@ ORBITS = {
     "orbit_multiplier": Column(
         _ORBIT,
         "f8",
-        "largest modulus of the Floquet multipliers of the orbit",
+        "largest modulus of a multiplier: of the Floquet multipliers of the orbit",
         value=lambda one: abs(one[1].multipliers.whole[0]),
     ),
     "orbit_unstable_count": Column(
         _ORBIT,
         "i4",
-        "number of multipliers outside the unit circle: 1 except at the ends of a segment",
+        "number of unstable multipliers: outside the unit circle; 1 except at the ends of a segment",
         value=lambda one: one[1].multipliers.unstable_count,
     ),
 }
 #: Columns of a crisis, from its a and branch in bifurcations.nc and its `Approach`.
 CRISES = {
-    "crisis_a": Column(_CRISIS, "f8", "friction parameter a of the crisis", value=lambda one: one[0]),
+    "crisis_a": Column(_CRISIS, "f8", "friction parameter a: of the crisis", value=lambda one: one[0]),
     "crisis_branch": Column(_CRISIS, "i2", "branch of the chaotic attractor", value=lambda one: one[1]),
     "crisis_edge": Column(
         _CRISIS,
         "i4",
-        "index along the dimension edge of the edge state closest to this attractor, -1 for none",
+        "index of the edge state: along the dimension edge, of the edge state closest to this attractor, -1 for none",
         value=lambda one: one[2].edge,
     ),
     "crisis_distance": Column(
         _CRISIS,
         "f8",
-        "smallest distance of the attractor from that orbit at the value of refined.nc next to the crisis",
+        "distance from the saddle: smallest distance of the attractor from that orbit at the value of "
+        "refined.nc next to the crisis",
         value=lambda one: one[2].distance,
     ),
     "crisis_size": Column(
-        _CRISIS, "f8", "extent of the section returns of the attractor", value=lambda one: one[2].size
+        _CRISIS, "f8", "size of the attractor: extent of its section returns", value=lambda one: one[2].size
     ),
 }
+BANK = Variable(("bank",), "O", "side of the boundary", coordinate=True)
 LAWS = {"law": _EDGE, "orbit_law": _ORBIT, "crisis_law": _CRISIS}
 VARIABLES: dict[str, Variable] = {
     **{name: Variable(dimension, "U", "friction law") for name, dimension in LAWS.items()},
@@ -301,10 +307,7 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
 
 def _dataset(names: Sequence[str], values: Mapping[str, np.ndarray], head: Mapping[str, Any]) -> xarray.Dataset:
     blocks = values["stops"].shape[1]
-    coordinates = {
-        "block": ("block", np.arange(1, blocks + 1, dtype="i4"), {"long_name": "block number", "units": "1"}),
-        "bank": ("bank", np.array(["first", "second"], dtype=object), {"long_name": "side of the boundary"}),
-    }
+    coordinates = axes({"bank": BANK}, block=range(1, blocks + 1), bank=["first", "second"])
     about = {"laws": " ".join(names), **head, "history": "snakemake, from attractors.nc and the equations of motion"}
     return summary(TITLE, VARIABLES, values, coordinates, about, module=__name__)
 

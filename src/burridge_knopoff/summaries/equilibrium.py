@@ -46,32 +46,30 @@ VARIABLES = {
     "equilibrium_position": Variable(
         (*_CURVE, "block"),
         "f8",
-        "position e = U - v*tau of a block in uniform sliding",
+        "position e in uniform sliding: e = U - v*tau",
         {"comment": "K e = -Phi(v) threshold"},
     ),
     "equilibrium_drift": Variable(
-        _CURVE, "f8", "largest distance of a block from uniform sliding at the end of a simulation that starts there"
+        _CURVE,
+        "f8",
+        "drift from uniform sliding: largest distance of a block from uniform sliding at the end of a "
+        "simulation that starts there",
     ),
     "eigenvalue": Variable(
-        (*_CURVE, "mode", "part"), "f8", "eigenvalues lambda of the Jacobian at uniform sliding, in pairs"
+        (*_CURVE, "mode", "part"), "f8", "eigenvalue lambda: of the Jacobian at uniform sliding, in pairs"
     ),
     "growth_rate": Variable(
-        _CURVE, "f8", "growth rate of the fastest-growing perturbation, from the tangent flow of the simulation"
+        _CURVE, "f8", "growth rate: of the fastest-growing perturbation, from the tangent flow of the simulation"
     ),
     "strengthening_growth_rate": Variable(
         _CURVE,
         "f8",
-        "the same growth rate if friction increases with velocity, under the law reflected at the driver velocity",
+        "growth rate with strengthening: if friction increases with velocity, under the law reflected at "
+        "the driver velocity",
         {"comment": "2 Phi(v) - Phi(U'); NaN where this is not a friction law"},
     ),
 }
-_COORDINATES = {
-    "block": Variable(("block",), "i4", "block number, 1 to N along the chain", coordinate=True),
-    "mode": Variable(
-        ("mode",), "i4", "number of the eigenvalue, starting with the slowest oscillation", coordinate=True
-    ),
-    "part": Variable(("part",), "O", "part of a complex number", coordinate=True),
-}
+MODE = Variable(("mode",), "i4", "number of the eigenvalue: starting with the slowest oscillation", coordinate=True)
 
 
 def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
@@ -97,10 +95,14 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
             except ValueError:
                 continue
             values["strengthening_growth_rate"][i, k] = simulate_sliding(reverse, position)[1]
-    coordinates = axes(law=[model.law.name for model in models], a=grid)
-    labels = {"block": np.arange(1, blocks + 1), "mode": np.arange(1, 2 * blocks + 1), "part": PARTS}
-    for name, item in _COORDINATES.items():
-        coordinates[name] = (name, np.array(labels[name], dtype=item.dtype), item.all_attributes())
+    coordinates = axes(
+        {"mode": MODE},
+        law=[model.law.name for model in models],
+        a=grid,
+        block=range(1, blocks + 1),
+        mode=range(1, 2 * blocks + 1),
+        part=PARTS,
+    )
     return summary(
         "Uniform sliding and the growth of its perturbations",
         VARIABLES,

@@ -6,54 +6,101 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+import xarray
+from numpy.typing import ArrayLike
 
 from burridge_knopoff.dataset.variables import Answer
+from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.kind import SYNCHRONOUS, MotionKind, is_same_result
 
 
-def compare(
-    values: dict[str, np.ndarray],
-    a: np.ndarray,
-    threshold: float,
-    agreement: Mapping[str, Any],
-) -> None:
-    """Fill in differences and verdicts: the laws agree if the kind of motion is the same and ⟨J⟩ within a tolerance.
+def compare_laws(motion: xarray.Dataset, threshold: float, agreement: Mapping[str, Any]) -> xarray.Dataset:
+    """Return differences and verdicts: laws agree if the kind of motion is the same and ⟨J⟩ within a tolerance.
 
     Periodic and quasiperiodic motion count as the same kind, because they alternate along a (`motion.REGULAR`). If one
     kind is undetermined, the verdict can only be that the laws disagree, namely if ⟨J⟩ differs by more than the
     tolerance. If the difference of ⟨J⟩ lies within its error of the tolerance, the verdict is undetermined, except that
     two synchronized motions always agree.
 
-    values : mean_distance, its error and kind under the first and the other law, shape (2, …, a); the other variables
-        are filled in
-    a : ascending, shape (a,)
+    motion : mean_distance, its error and kind over (law, …, a); each further law is compared with the first
+
+    Returned are difference, difference_error, same_kind, same_mean_distance, agrees and the excess of the difference
+    over the tolerance, over (other_law, …, a), and parting_a, the smallest a at which the laws disagree.
     """
-    first, other = values["mean_distance"]
-    kind = values["kind"]
-    values["difference"][...] = other - first
-    values["difference_error"][...] = np.hypot(*values["mean_distance_error"])
-    determined = (kind != MotionKind.UNDETERMINED).all(axis=0)
-    values["same_kind"][...] = np.where(determined, is_same_result(*kind), Answer.UNDETERMINED)
-    same = same_mean(values, threshold, agreement)
-    disagree = (values["same_kind"] == Answer.NO) | (same == Answer.NO)
+    first, other = law_pairs(motion[["mean_distance", "mean_distance_error", "kind"]])
+    difference = other["mean_distance"] - first["mean_distance"]
+    error = xarray.apply_ufunc(np.hypot, other["mean_distance_error"], first["mean_distance_error"])
+    scale = np.maximum(other["mean_distance"], first["mean_distance"])
+    synchronous = other["kind"].isin(SYNCHRONOUS) & first["kind"].isin(SYNCHRONOUS)
+    determined = (other["kind"] != MotionKind.UNDETERMINED) & (first["kind"] != MotionKind.UNDETERMINED)
+    same_kind = xarray.apply_ufunc(is_same_result, other["kind"], first["kind"])
+    same_kind = xarray.where(determined, same_kind, Answer.UNDETERMINED)
+    margin = excess(difference, scale, threshold, agreement)
+    same = same_mean(margin, error, synchronous, agreement)
+    disagree = (same_kind == Answer.NO) | (same == Answer.NO)
     agree = determined & (same == Answer.YES)
-    values["agrees"][...] = np.select([disagree, agree], [Answer.NO, Answer.YES], Answer.UNDETERMINED)
-    for j, agrees in enumerate(values["agrees"]):
-        different = a[agrees == Answer.NO]
-        values["parting_a"][j] = different[0] if len(different) else np.nan
+    agrees = xarray.where(disagree, Answer.NO, xarray.where(agree, Answer.YES, Answer.UNDETERMINED))
+    return xarray.Dataset(
+        {
+            "difference": difference,
+            "difference_error": error,
+            "same_kind": same_kind,
+            "same_mean_distance": same,
+            "agrees": agrees,
+            "parting_a": motion["a"].where(agrees == Answer.NO).min("a"),
+            "excess": margin,
+        }
+    )
 
 
-def same_mean(values: Mapping[str, np.ndarray], threshold: float, agreement: Mapping[str, Any]) -> np.ndarray:
-    """Return an Answer to whether ⟨J⟩ agrees, shape (…, a); values as in `compare`, with difference and its error.
+def compare_states(motion: xarray.Dataset, threshold: float, agreement: Mapping[str, Any]) -> xarray.Dataset:
+    """Return what `compare_laws` does, the margin of ⟨J⟩ in errors, and the fractions of the states that agree.
+
+    motion : mean_distance, its error and kind over (…, law, state, a)
+    """
+    comparison = compare_laws(motion, threshold, agreement)
+    fraction, low, high = xarray.apply_ufunc(
+        agreeing_fraction,
+        comparison["agrees"],
+        input_core_dims=[["state"]],
+        output_core_dims=[[], [], []],
+        vectorize=True,
+        output_dtypes=3 * [float],
+    )
+    margin = comparison["excess"] / comparison["difference_error"]
+    return comparison.assign(margin=margin, agreeing_fraction=fraction, agreeing_low=low, agreeing_high=high)
+
+
+def agreeing_fraction(agrees: np.ndarray) -> tuple[float, float, float]:
+    """Return the fraction of the states for which the laws are known to agree, and its confidence interval.
+
+    agrees : Answer for each state, shape (states,)
+
+    Undetermined states count as disagreeing at the lower end of the interval and as agreeing at the upper end.
+    """
+    known, possible = (int(np.count_nonzero(such)) for such in (agrees == Answer.YES, agrees != Answer.NO))
+    fraction, low, _ = fraction_interval(known, len(agrees))
+    return fraction, low, fraction_interval(possible, len(agrees))[2]
+
+
+def law_pairs(dataset: xarray.Dataset) -> tuple[xarray.Dataset, xarray.Dataset]:
+    """Return the part of a Dataset under the first law, and those under each other law, over other_law."""
+    first, other = dataset.isel(law=0, drop=True), dataset.isel(law=slice(1, None))
+    return first, other.rename(law="other_law")
+
+
+def excess(difference: ArrayLike, scale: ArrayLike, threshold: float, agreement: Mapping[str, Any]) -> Any:
+    """Return by how much differences of ⟨J⟩ exceed the tolerance: a fraction of a scale, at least the threshold."""
+    return np.abs(difference) - np.maximum(agreement["relative_tolerance"] * scale, threshold)
+
+
+def same_mean(excess: ArrayLike, error: ArrayLike, synchronous: ArrayLike, agreement: Mapping[str, Any]) -> Any:
+    """Return an Answer to whether ⟨J⟩ agrees.
 
     It agrees for two synchronized motions. It is undetermined if the difference lies within its error of the tolerance.
+
+    excess : as `excess` returns it; error : of the difference; synchronous : whether both motions are synchronized
     """
-    beyond, margin = excess(values, threshold, agreement), agreement["standard_errors"] * values["difference_error"]
-    within = (beyond <= -margin) | np.isin(values["kind"], SYNCHRONOUS).all(axis=0)
-    return np.select([beyond > margin, within], [Answer.NO, Answer.YES], Answer.UNDETERMINED)
-
-
-def excess(values: Mapping[str, np.ndarray], threshold: float, agreement: Mapping[str, Any]) -> np.ndarray:
-    """Return by how much differences of ⟨J⟩ exceed the tolerance, shape (…, a); values as in `compare`."""
-    tolerance = np.maximum(agreement["relative_tolerance"] * np.maximum(*values["mean_distance"]), threshold)
-    return np.abs(values["difference"]) - tolerance
+    margin = agreement["standard_errors"] * error
+    within = (excess <= -margin) | synchronous
+    return xarray.where(excess > margin, Answer.NO, xarray.where(within, Answer.YES, Answer.UNDETERMINED))

@@ -1,80 +1,107 @@
-"""Lyapunov exponents over (law, initial, a), and the kind of motion that follows from them and the section points."""
+"""Lyapunov exponents over (law, initial, a), or the study's parameters in place of a, and the kind of motion.
+
+The kind follows from the exponents, the repetition of the state, and ⟨J⟩.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Any
+from functools import partial
 
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import PERIOD, YES_OR_NO, Variable, flag
-from burridge_knopoff.motion.kind import MotionKind, is_zero_exponent, motion_of_run
-from burridge_knopoff.motion.period import SECTION
+from burridge_knopoff.motion.kind import (
+    Motion,
+    MotionKind,
+    is_zero_exponent,
+    motion_of_repetition,
+    synchronization_distance,
+)
+from burridge_knopoff.motion.period import Repetition
 from burridge_knopoff.motion.settings import MotionSettings
-from burridge_knopoff.summaries.points import Grid, read_point
+from burridge_knopoff.running.status import Status
+from burridge_knopoff.summaries import runs as all_runs
+from burridge_knopoff.summaries.runs import RUN
 
-_AXES = ("law", "initial", "a")
-VARIABLES = {
-    "lyapunov_exponent": Variable(
-        (*_AXES, "exponent"),
-        "f8",
-        "Lyapunov exponents in the window, in descending order",
-        {"ancillary_variables": "lyapunov_error status"},
-    ),
-    "lyapunov_error": Variable(
-        (*_AXES, "exponent"), "f8", "error of a Lyapunov exponent, from batches and from the length of the window"
-    ),
-    "lyapunov_infinite_count": Variable(_AXES, "i4", "number of Lyapunov exponents known to be -infinity"),
+_OF_RUNS = ("lyapunov_exponent", "lyapunov_error", "lyapunov_infinite_count", "mean_distance", "status")
+#: The variables that follow from the kind of motion.
+MOTION_VARIABLES = {
     "run_kind": Variable(
-        _AXES,
+        RUN,
         "i1",
         "kind of motion that the run alone shows",
         flag("i1", MotionKind) | {"comment": "agreement.nc has the kind of the attractor that the run has reached"},
     ),
-    "zero_exponent_count": Variable(_AXES, "i2", "number of computed exponents that cannot be distinguished from 0"),
-    "unstable": Variable(_AXES, "i1", "whether the run has stayed on an unstable periodic orbit", YES_OR_NO),
+    "unstable": Variable(RUN, "i1", "unstable: whether the run has stayed on an unstable periodic orbit", YES_OR_NO),
     "section_period": Variable(
-        _AXES, "i2", "number of upward section points after which the state of all blocks repeats, 0 if it does not"
+        RUN,
+        "i2",
+        "period in section points: number of upward section points after which the state of all blocks "
+        "repeats, 0 if it does not",
     ),
-    "period": Variable(_AXES, "f8", *PERIOD),
-    "mean_distance": Variable(_AXES, "f8", "time average <J> of the phase-space distance between the end blocks"),
-    "status": Variable(_AXES, "i1", "how the run ended", STATUS_FLAG),
+    "period": Variable(RUN, "f8", *PERIOD),
+    "zero_exponent_count": Variable(
+        RUN, "i2", "number of exponents of 0: computed exponents that cannot be distinguished from 0"
+    ),
 }
-_COPIED = ("lyapunov_exponent", "lyapunov_error", "lyapunov_infinite_count", "mean_distance", "status")
+VARIABLES = {**{name: all_runs.VARIABLES[name] for name in _OF_RUNS}, **MOTION_VARIABLES}
+
+#: Variables of `runs` from which the kind of motion follows.
+_EVIDENCE = (
+    *("status", "mirror_symmetric", "v", "mean_distance"),
+    *("repetition_points", "repetition_period", "repetition_divergence"),
+    *("lyapunov_exponent", "lyapunov_error"),
+)
 
 
-def summarize(
-    grid: Grid, lyapunov_exponents: int, synchronization_threshold: float, motion: Mapping[str, Any]
-) -> xarray.Dataset:
+def summarize(runs: xarray.Dataset, settings: MotionSettings) -> xarray.Dataset:
     """Return Lyapunov exponents and kinds of motion with the evidence for them.
 
-    lyapunov_exponents : number of exponents computed in each run
-    motion : the config's section of that name: thresholds of the kinds of motion
+    runs : the summary of that name
     """
-    chosen = {**motion, "synchronization_threshold": synchronization_threshold, "section": grid.section}
-    settings = MotionSettings(**chosen).scaled_to_velocity(grid.models["v"])
-    symmetric = grid.is_mirror_symmetric
-    values = {}
-    for name, item in VARIABLES.items():
-        shape = (*grid.shape, lyapunov_exponents) if "exponent" in item.dimensions else grid.shape
-        values[name] = np.zeros(shape, dtype=item.dtype)
-    for index, point in grid:
-        read = read_point(grid, point, [*_COPIED, *SECTION])
-        for name in _COPIED:
-            values[name][index] = read[name]
-        found = motion_of_run(read, symmetric, settings)
-        values["run_kind"][index], values["unstable"][index] = found.kind, found.unstable
-        values["section_period"][index], values["period"][index] = found.section_period, found.period
-        exponents = read["lyapunov_exponent"], read["lyapunov_error"]
-        values["zero_exponent_count"][index] = np.count_nonzero(is_zero_exponent(*exponents, settings))
+    about = settings if runs["v"].ndim else settings.scaled_to_velocity(runs["v"].item())
     return summary(
         "Lyapunov exponents and kinds of motion",
         VARIABLES,
-        values,
-        grid.axes(),
-        settings.attributes,
+        runs.assign(motion_of_runs(runs, settings)),
+        runs.drop_dims("level").coords,
+        {"history": "snakemake, from runs.nc", **about.attributes},
         module=__name__,
     )
+
+
+def motion_of_runs(runs: xarray.Dataset, settings: MotionSettings) -> dict[str, xarray.DataArray]:
+    """Return the variables of MOTION_VARIABLES for all runs; runs : the summary of that name."""
+    values = xarray.apply_ufunc(
+        partial(_motion_of_run, settings=settings),
+        *(runs[name] for name in _EVIDENCE),
+        input_core_dims=[["exponent"] if name.startswith("lyapunov") else [] for name in _EVIDENCE],
+        output_core_dims=[[] for _ in MOTION_VARIABLES],
+        vectorize=True,
+    )
+    return dict(zip(MOTION_VARIABLES, values, strict=True))
+
+
+def _motion_of_run(
+    status: int,
+    symmetric: int,
+    v: float,
+    mean_distance: float,
+    points: int,
+    period: float,
+    divergence: float,
+    exponent: np.ndarray,
+    error: np.ndarray,
+    settings: MotionSettings,
+) -> tuple[int, bool, int, float, int]:
+    """Return the values of MOTION_VARIABLES for one run."""
+    scaled = settings.scaled_to_velocity(float(v))
+    motion = Motion(MotionKind.UNDETERMINED)
+    if status == Status.COMPLETED:
+        repetition = Repetition(int(points), float(period), float(divergence))
+        distance = synchronization_distance(float(mean_distance), bool(symmetric))
+        motion = motion_of_repetition(repetition, distance, exponent, error, scaled)
+    zeros = int(np.count_nonzero(is_zero_exponent(exponent, error, scaled)))
+    return motion.kind, motion.unstable, motion.section_period, motion.period, zeros

@@ -48,56 +48,67 @@ _BRANCH = ("law", "branch_asymmetry")
 VARIABLES = {
     "status": Variable(_CURVE, "i1", "whether the synchronized orbit was found", flag("i1", OrbitStatus)),
     "period": Variable(_CURVE, "f8", "period T of the synchronized orbit"),
-    "residual": Variable(_CURVE, "f8", "largest difference between the state and its return after one period"),
-    "lateral_slip_time": Variable(_CURVE, "f8", "time T_s for which blocks 1 and 3 slip in a period"),
-    "center_stick_time": Variable(_CURVE, "f8", "time for which block 2 sticks in a period"),
+    "residual": Variable(
+        _CURVE, "f8", "residual: largest difference between the state and its return after one period"
+    ),
+    "lateral_slip_time": Variable(_CURVE, "f8", "slip time T_s of blocks 1 and 3: in a period"),
+    "center_stick_time": Variable(_CURVE, "f8", "stick time of block 2: in a period"),
     "transverse_multiplier": Variable(_CURVE, "f8", "Floquet multiplier mu of x_1 - x_3"),
     "multiplier": Variable((*_CURVE, "mode", "part"), "f8", "Floquet multipliers"),
     "critical_a": Variable(("law",), "f8", "a_c, at which |mu| reaches 1"),
-    "critical_a_error": Variable(("law",), "f8", "change of a_c if mu is computed from finite differences of the flow"),
+    "critical_a_error": Variable(
+        ("law",), "f8", "error of a_c: change if mu is computed from finite differences of the flow"
+    ),
     "grazing_a": Variable(("law",), "f8", "a at which block 2 begins to stick"),
     "symmetric_period_doubling_a": Variable(
-        ("law",), "f8", "a at which a multiplier of symmetric perturbations reaches -1"
+        ("law",), "f8", "a of symmetric period doubling: at which a multiplier of symmetric perturbations reaches -1"
     ),
     "bifurcation_kind": Variable(
-        ("law",), "i1", "bifurcation at a_c, from the sign of mu there", flag("i1", BifurcationKind)
+        ("law",), "i1", "bifurcation at a_c: from the sign of mu there", flag("i1", BifurcationKind)
     ),
-    "bifurcation_side": Variable(
-        ("law",), "i1", "side of a_c on which the branching orbits exist", flag("i1", BifurcationSide)
-    ),
-    "branch_offset": Variable(_BRANCH, "f8", "a - a_c at which the asymmetric orbit exists"),
+    "bifurcation_side": Variable(("law",), "i1", "side of a_c with branching orbits", flag("i1", BifurcationSide)),
+    "branch_offset": Variable(_BRANCH, "f8", "offset a - a_c: at which the asymmetric orbit exists"),
     "branch_period": Variable(_BRANCH, "f8", "period of the asymmetric orbit"),
-    "branch_residual": Variable(_BRANCH, "f8", "largest difference between the state and its return after one period"),
-    "branch_multiplier": Variable(_BRANCH, "f8", "largest modulus of the multipliers of the asymmetric orbit"),
-    "branch_mean_distance": Variable(_BRANCH, "f8", "<J> over a period of the asymmetric orbit"),
-    "amplitude_exponent": Variable(("law",), "f8", "exponent of a power law fitted to |x_1 - x_3| over a - a_c"),
+    "branch_residual": Variable(
+        _BRANCH, "f8", "residual: largest difference between the state and its return after one period"
+    ),
+    "branch_multiplier": Variable(_BRANCH, "f8", "largest modulus of a multiplier: of the asymmetric orbit"),
+    "branch_mean_distance": Variable(_BRANCH, "f8", "<J> of the asymmetric orbit: over a period"),
+    "amplitude_exponent": Variable(
+        ("law",), "f8", "exponent of the amplitude: of a power law fitted to |x_1 - x_3| over a - a_c"
+    ),
     "amplitude_exponent_error": Variable(("law",), "f8", "standard error of the exponent"),
     "amplitude_coefficient": Variable(("law",), "f8", "coefficient of that power law"),
     "sweep_asymmetry": Variable(
-        ("law", "direction", "sweep_offset"), "f8", "|x_1 - x_3| in the runs of a sweep of a through a_c"
+        ("law", "direction", "sweep_offset"), "f8", "|x_1 - x_3| in a sweep: in the runs of a sweep of a through a_c"
     ),
-    "hysteresis": Variable(("law",), "f8", "largest difference of |x_1 - x_3| between the upward and downward sweeps"),
+    "hysteresis": Variable(
+        ("law",), "f8", "hysteresis: largest difference of |x_1 - x_3| between the upward and downward sweeps"
+    ),
 }
 
 #: Differences between the paper's second law at a and the first law at the same slope; only in studies with both.
 COMPARISON = {
     "effective_a": Variable(
-        ("a",), "f8", "minus the slope of the nonlinear law at the driver velocity, a / (1 + a v)^2"
+        ("a",), "f8", "effective a: minus the slope of the nonlinear law at the driver velocity, a / (1 + a v)^2"
     ),
     "effective_period_difference": Variable(
-        ("a",), "f8", "period of the nonlinear law at a minus that of the linearized law at effective_a"
+        ("a",),
+        "f8",
+        "difference of the periods: that of the nonlinear law at a minus that of the linearized law at effective_a",
     ),
     "effective_multiplier_difference": Variable(
-        ("a",), "f8", "mu of the nonlinear law at a minus that of the linearized law at effective_a"
+        ("a",), "f8", "difference of mu: that of the nonlinear law at a minus that of the linearized law at effective_a"
     ),
-    "effective_critical_a_difference": Variable((), "f8", "effective_a of the nonlinear a_c minus the linearized a_c"),
+    "effective_critical_a_difference": Variable(
+        (), "f8", "difference of a_c: effective_a of the nonlinear a_c minus the linearized a_c"
+    ),
     "effective_grazing_a_difference": Variable(
-        (), "f8", "effective_a of the nonlinear grazing_a minus the linearized grazing_a"
+        (), "f8", "difference of grazing_a: effective_a of the nonlinear grazing_a minus the linearized grazing_a"
     ),
 }
 _COORDINATES = {
     "mode": Variable(("mode",), "O", "Floquet mode", coordinate=True),
-    "part": Variable(("part",), "O", "part of a complex number", coordinate=True),
     "branch_asymmetry": Variable(_BRANCH[1:], "f8", "x_1 - x_3 while both stick", coordinate=True),
     "direction": Variable(("direction",), "O", "direction of the sweep of a", coordinate=True),
     "sweep_offset": Variable(("sweep_offset",), "f8", "a - a_c of the runs of a sweep", coordinate=True),
@@ -139,17 +150,16 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
 
 
 def _coordinates(laws: Sequence[str], grid: Sequence[float], asymmetry: np.ndarray) -> dict[str, Any]:
-    values = {
-        "mode": MODES,
-        "part": PARTS,
-        "branch_asymmetry": asymmetry,
-        "direction": DIRECTIONS,
-        "sweep_offset": OFFSETS,
-    }
-    named = axes(law=laws, a=grid)
-    for name, item in _COORDINATES.items():
-        named[name] = (name, np.array(values[name], dtype=item.dtype), item.all_attributes())
-    return named
+    return axes(
+        _COORDINATES,
+        law=laws,
+        a=grid,
+        mode=MODES,
+        part=PARTS,
+        branch_asymmetry=asymmetry,
+        direction=DIRECTIONS,
+        sweep_offset=OFFSETS,
+    )
 
 
 def _orbits_of_model(model: Model) -> KnownOrbits | None:

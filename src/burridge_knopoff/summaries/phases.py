@@ -6,7 +6,6 @@ See `basins.initial_phases` for the initial states.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -18,7 +17,7 @@ from burridge_knopoff.attractors.settings import SearchSettings
 from burridge_knopoff.attractors.stored_returns import KnownAttractors, known_attractors
 from burridge_knopoff.basins.initial_phases import common_phases, inner_phases, oscillating_states, slipping_amplitude
 from burridge_knopoff.basins.settings import PhaseSettings
-from burridge_knopoff.dataset.summary import AXES, STATE, axes, summary
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.sampling import fraction_interval
@@ -36,42 +35,49 @@ _PHASE = ("a", "amplitude", "phase_difference", "state")
 _DEGREE = {"units": "degree"}
 #: Variables that differ between the laws.
 VARIABLES = {
-    "branch": _V(_STATE, "i2", "branch of the attractor that the state reaches, -1 if undetermined"),
+    "branch": _V(_STATE, "i2", "branch reached: branch of the attractor that the state reaches, -1 if undetermined"),
     "side": _V(_STATE, "i1", "side of that branch: 1 and -1 for mirror images, 0 for its own mirror image"),
     "velocity_correlation": _V(
-        _STATE, "f8", "Pearson correlation of the velocities of the end blocks on that attractor, NaN if undetermined"
+        _STATE,
+        "f8",
+        "velocity correlation: Pearson correlation of the velocities of the end blocks on that "
+        "attractor, NaN if undetermined",
     ),
-    "synchronized_fraction": _V(_CELL, "f8", "fraction of the states that synchronize"),
-    "synchronized_low": _V(_CELL, "f8", "lower end of its 95 % Wilson interval"),
+    "synchronized_fraction": _V(_CELL, "f8", "synchronized fraction: fraction of the states that synchronize"),
+    "synchronized_low": _V(_CELL, "f8", "lower end of its interval: 95 % Wilson interval"),
     "synchronized_high": _V(
-        _CELL, "f8", "upper end of its 95 % Wilson interval, undetermined states counted as synchronized"
+        _CELL, "f8", "upper end of its interval: 95 % Wilson interval, undetermined states counted as synchronized"
     ),
-    "undetermined_count": _V(_CELL, "i4", "number of states that reach no attractor by label_limit"),
+    "undetermined_count": _V(
+        _CELL, "i4", "number of undetermined states: states that reach no attractor by label_limit"
+    ),
 }
 #: Variables that are the same under all laws.
 COMMON_VARIABLES = {
-    "common_phase": _V(_PHASE, "f8", "phase theta of the first block at tau = 0", _DEGREE),
+    "common_phase": _V(_PHASE, "f8", "phase theta of the first block: at tau = 0", _DEGREE),
     "inner_phase": _V((*_PHASE, "inner_block"), "f8", "phase of an inner block at tau = 0", _DEGREE),
-    "standing_count": _V(
-        _CELL, "i4", "number of states in which a block is at rest because its velocity would be negative"
-    ),
+    "standing_count": _V(_CELL, "i4", "number of states with a block at rest: because its velocity would be negative"),
     "slipping_amplitude": _V(
-        ("inner_share",), "f8", "largest amplitude A for which all velocities are positive at all phases"
+        ("inner_share",), "f8", "largest amplitude A of slip: for which all velocities are positive at all phases"
     ),
 }
 COORDINATES = {
+    "inner_block": _V(("inner_block",), "i4", "block number: 2 to N - 1 along the chain", coordinate=True),
     "inner_share": _V(
         ("inner_share",),
         "f8",
-        "amplitude of the inner blocks relative to A; at 0 they slide uniformly",
+        "share of the inner blocks: their amplitude relative to A; at 0 they slide uniformly",
         coordinate=True,
     ),
-    "amplitude": _V(("amplitude",), "f8", "amplitude A of both end blocks about uniform sliding", coordinate=True),
+    "amplitude": _V(("amplitude",), "f8", "amplitude A: of both end blocks about uniform sliding", coordinate=True),
     "phase_difference": _V(
-        ("phase_difference",), "f8", "phase of the last block minus phase of the first", _DEGREE, coordinate=True
+        ("phase_difference",),
+        "f8",
+        "phase difference: phase of the last block minus phase of the first",
+        _DEGREE,
+        coordinate=True,
     ),
 }
-INNER_BLOCK = {"long_name": "block number, 2 to N - 1 along the chain", "units": "1"}
 ATTRIBUTES = ("history", "v", "contact", "seed", "label_limit")
 
 
@@ -101,11 +107,13 @@ def one_law(
         found = each("phases", partial(_values_at, phases=phases, label_limit=label_limit), known, span=(0.0, 1.0))
     model, grid = known[0].model, [item.model.a for item in known]
     inner = model.chain.blocks - 2
-    coordinates: dict[str, Any] = {"a": ("a", np.array(grid, dtype=float), AXES["a"].all_attributes())}
-    for name, item in COORDINATES.items():
-        coordinates[name] = (name, np.array(getattr(phases, name)), item.all_attributes())
-    coordinates["state"] = ("state", np.arange(1, phases.samples + 1, dtype=STATE.dtype), STATE.all_attributes())
-    coordinates["inner_block"] = ("inner_block", np.arange(2, inner + 2, dtype="i4"), INNER_BLOCK)
+    coordinates = axes(
+        COORDINATES,
+        a=grid,
+        **{name: getattr(phases, name) for name in ("inner_share", "amplitude", "phase_difference")},
+        state=range(1, phases.samples + 1),
+        inner_block=range(2, inner + 2),
+    )
     attributes = {
         "law": model.law.name,
         "history": "snakemake, from attractors.nc",
@@ -143,13 +151,11 @@ def _values_at(known: KnownAttractors, phases: PhaseSettings, label_limit: float
 
 def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     """Return the files of all laws in one Dataset with the dimension law."""
-    values = {name: np.stack([part[name].values for part in parts]) for name in VARIABLES}
-    values |= {name: parts[0][name].values for name in COMMON_VARIABLES}
-    variables = {name: replace(item, dimensions=("law", *item.dimensions)) for name, item in VARIABLES.items()}
-    coordinates: dict[str, Any] = {str(name): parts[0][name].variable for name in parts[0].coords}
-    coordinates["law"] = axes(law=[part.attrs["law"] for part in parts])["law"]
+    of_laws = xarray.concat([part[list(VARIABLES)] for part in parts], "law", join="exact")
+    values = of_laws.assign(parts[0][list(COMMON_VARIABLES)])
+    coordinates: dict[Any, Any] = {**parts[0].coords, **axes(law=[part.attrs["law"] for part in parts])}
     attributes = {name: parts[0].attrs[name] for name in ATTRIBUTES}
-    return summary(TITLE, {**variables, **COMMON_VARIABLES}, values, coordinates, attributes, module=__name__)
+    return summary(TITLE, {**VARIABLES, **COMMON_VARIABLES}, values, coordinates, attributes, module=__name__)
 
 
 def _outcomes(known: KnownAttractors, correlations: Sequence[float], labels: np.ndarray) -> dict[str, np.ndarray]:

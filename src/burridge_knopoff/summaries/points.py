@@ -67,6 +67,10 @@ class Grid:
         """Return the grid of the same points in another folder, run with other settings, {law: settings}."""
         return replace(self, folder=folder, settings=settings)
 
+    def of_laws(self, laws: Sequence[str]) -> Grid:
+        """Return the grid of the points under some of its laws."""
+        return replace(self, models={**self.models, "laws": {law: self.models["laws"][law] for law in laws}})
+
     @property
     def a(self) -> Mapping[str, float]:
         """The values of a, by their names in file names."""
@@ -78,15 +82,9 @@ class Grid:
         return tuple(self.models["laws"])
 
     @property
-    def blocks(self) -> int:
-        """Number of blocks."""
-        return Chain(**self.models["chain"]).blocks
-
-    @property
-    def is_mirror_symmetric(self) -> bool:
-        """Whether the chain is its own mirror image: only then can its end blocks synchronize."""
-        first = {name: next(iter(values.values())) for name, values in self.parameters.items()}
-        return self.model(self.laws[0], **first).chain.is_mirror_symmetric
+    def chain(self) -> Chain:
+        """The chain, before parameters of the grid change it."""
+        return Chain(**self.models["chain"])
 
     @property
     def section(self) -> Section:

@@ -13,7 +13,7 @@ import numpy as np
 import xarray
 from flint import arb, fmpq
 
-from burridge_knopoff.dataset.summary import AXES, summary
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.synchronized_orbit import synchronized_orbits
@@ -55,35 +55,40 @@ ASSUMPTIONS = (
 
 _LAW, _ORBIT = ("law", "end"), ("law", "orbit", "end")
 VARIABLES = {
-    "critical_a": Variable(_LAW, "f8", "a_c, at which the transverse multiplier mu is 1"),
+    "critical_a": Variable(_LAW, "f8", "a_c: at which the transverse multiplier mu is 1"),
     "critical_a_digits": Variable(("law",), "O", "a_c with all digits and its error bound"),
-    "critical_a_width": Variable(("law",), "f8", "width of the interval of a_c with all digits"),
-    "only_between": Variable(_LAW, "f8", "range of a in which a_c is the only a with mu = 1, for orbits near this one"),
-    "family_between": Variable(_LAW, "f8", "range of a in which the orbit exists at every a and mu increases with a"),
-    "pieces": Variable(("law",), "i4", "number of balls of a that cover that range"),
+    "critical_a_width": Variable(("law",), "f8", "width of the interval of a_c: with all digits"),
+    "only_between": Variable(
+        _LAW,
+        "f8",
+        "range without another a_c: range of a in which a_c is the only a with mu = 1, for orbits near this one",
+    ),
+    "family_between": Variable(
+        _LAW, "f8", "range with growing mu: range of a in which the orbit exists at every a and mu increases with a"
+    ),
+    "pieces": Variable(("law",), "i4", "number of balls: balls of a that cover that range"),
     "a": Variable(_ORBIT, "f8", "friction parameter a of an orbit"),
     "period": Variable(_ORBIT, "f8", "period T"),
     "event_time": Variable(
         ("law", "orbit", "event", "end"),
         "f8",
-        "time of an event after the start of block 2, the first event of the period",
+        "time of an event: after the start of block 2, the first event of the period",
     ),
     "position": Variable(
-        ("law", "orbit", "block", "end"), "f8", "position U - v tau - e of blocks 1 and 2 at this start"
+        ("law", "orbit", "block", "end"), "f8", "position of blocks 1 and 2: U - v tau - e at this start"
     ),
     "multiplier": Variable(
-        ("law", "orbit", "mode", "end"), "f8", "Floquet multipliers, except those that are 0 and that of the flow"
+        ("law", "orbit", "mode", "end"), "f8", "Floquet multipliers: except those that are 0 and that of the flow"
     ),
-    "multiplier_slope": Variable(_ORBIT, "f8", "derivative d mu/d a of the transverse multiplier"),
-    "least_friction": Variable(("law", "orbit"), "f8", "lower bound of the friction on slipping blocks"),
-    "least_spring_force": Variable(("law", "orbit"), "f8", "lower bound of the spring force on stuck blocks"),
+    "multiplier_slope": Variable(_ORBIT, "f8", "derivative d mu/d a: of the transverse multiplier"),
+    "least_friction": Variable(("law", "orbit"), "f8", "lower bound of friction: on slipping blocks"),
+    "least_spring_force": Variable(("law", "orbit"), "f8", "lower bound of spring force: on stuck blocks"),
 }
 _COORDINATES = {
-    "orbit": (ORBITS, "O", "orbit: at the given a, or at a_c"),
-    "end": (END, "O", "end of the interval that contains the number"),
-    "event": (tuple(EVENTS), "O", "event of a period: blocks 1 and 3 are lateral, block 2 is the center"),
-    "mode": (MODES, "O", "Floquet mode"),
-    "block": (BLOCKS, "i4", "number of the block"),
+    "orbit": Variable(("orbit",), "O", "orbit: at the given a, or at a_c"),
+    "end": Variable(("end",), "O", "end of the interval: that contains the number"),
+    "event": Variable(("event",), "O", "event of a period: blocks 1 and 3 are lateral, block 2 is the center"),
+    "mode": Variable(("mode",), "O", "Floquet mode"),
 }
 
 
@@ -98,17 +103,19 @@ def summarize(models: Sequence[Model]) -> xarray.Dataset:
     Raises ProofError, one line, for a model that is not covered, and if a proof fails.
     """
     each = [_of_law(model) for model in models]
-    coordinates = {
-        "law": ("law", np.array([model.law.name for model in models], dtype=object), AXES["law"].all_attributes())
-    }
-    for name, (named, dtype, long_name) in _COORDINATES.items():
-        attributes = Variable((name,), dtype, long_name).all_attributes()
-        coordinates[name] = (name, np.array(named, dtype=dtype), attributes)
     return summary(
         "Proved statements on the synchronized orbit of three blocks, as intervals that contain the true numbers",
         VARIABLES,
         {name: np.array([one[name] for one in each], dtype=item.dtype) for name, item in VARIABLES.items()},
-        coordinates,
+        axes(
+            _COORDINATES,
+            law=[model.law.name for model in models],
+            orbit=ORBITS,
+            end=END,
+            event=list(EVENTS),
+            mode=MODES,
+            block=BLOCKS,
+        ),
         {
             "history": "snakemake, from the equations of motion",
             "v": models[0].v,

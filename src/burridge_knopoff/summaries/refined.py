@@ -11,10 +11,10 @@ import xarray
 
 from burridge_knopoff.attractors.lookup import CROSSINGS
 from burridge_knopoff.attractors.settings import SearchSettings
-from burridge_knopoff.attractors.table import slot_coordinates, slot_values, slot_variables
+from burridge_knopoff.attractors.table import slot_values, slot_variables
 from burridge_knopoff.continuation.along_a import Continuation
 from burridge_knopoff.continuation.settings import RefinementSettings
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.section import Section
@@ -23,13 +23,14 @@ from burridge_knopoff.running.simulation import run
 from burridge_knopoff.summaries import attractors
 
 VARIABLES = {
-    "a": Variable(("value",), "f8", "friction parameter a, ascending; NaN beyond the last value of a law"),
+    "a": Variable(("value",), "f8", "friction parameter a: ascending; NaN beyond the last value of a law"),
     "in_grid": Variable(("value",), "i1", "whether a is in the grid of the study", YES_OR_NO, nothing=0),
     **slot_variables("value"),
     "section_velocity": Variable(
         ("value", "attractor", "crossing"),
         "f8",
-        "W' at successive crossings of the section W = 0 on the attractor, positive if upward, negative if downward",
+        "W' at a section crossing: at successive crossings of the section W = 0 on the attractor, "
+        "positive if upward, negative if downward",
         {"comment": "for mirror images, of one side only, since W is the same for both; NaN beyond the last crossing"},
     ),
 }
@@ -48,7 +49,7 @@ def one_law(
     about = {**attractors.search_attributes(model, settings, motion, start), "refine_resolution": refine.resolution}
     about["refine_longest_period"] = refine.longest_period
     title = f"Attractors at refined values of a, {model.law.name} friction law"
-    return summary(title, VARIABLES, values, slot_coordinates(model.blocks), about, module=__name__)
+    return summary(title, VARIABLES, values, axes(block=range(1, model.blocks + 1)), about, module=__name__)
 
 
 def _sections(found: Continuation, window: float, section: Section) -> np.ndarray:

@@ -14,7 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable, flag
 from burridge_knopoff.model.model import ChainState, Model
 from burridge_knopoff.motion.kind import REGULAR, MotionKind
@@ -41,50 +41,62 @@ _VALUE = ("law", "value")
 _DETUNED = (*_VALUE, "branch", "detuning")
 _MODE = ("detuning", "mode")
 VARIABLES = {
-    "a": Variable(_VALUE, "f8", "friction parameter a, ascending; NaN beyond the last value of a law"),
+    "a": Variable(_VALUE, "f8", "friction parameter a: ascending; NaN beyond the last value of a law"),
     "in_grid": Variable(_VALUE, "i1", "whether a is in the grid of the study", YES_OR_NO),
     "rotation_number": Variable(
         _VALUE,
         "f8",
-        "oscillations of the end blocks against each other per oscillation of the middle block",
+        "rotation number: oscillations of the end blocks against each other per oscillation of the middle block",
         {"comment": "NaN where there is no such motion, or the phase of an oscillation is undefined"},
     ),
-    "rotation_error": Variable(_VALUE, "f8", "difference of the rotation number between the two halves of the time"),
+    "rotation_error": Variable(
+        _VALUE, "f8", "error of the rotation number: its difference between the two halves of the time"
+    ),
     "locked": Variable(
-        _VALUE, "i1", "whether the motion is a periodic orbit", flag("i1", {-1: "unknown", 0: "no", 1: "yes"})
+        _VALUE, "i1", "locked: whether the motion is a periodic orbit", flag("i1", {-1: "unknown", 0: "no", 1: "yes"})
     ),
     "detuned_frequency": Variable(
         (*_DETUNED, "block"),
         "f8",
-        "frequency of a block after detuning, in cycles per unit time",
+        "frequency after detuning: of a block, in cycles per unit time",
         {"ancillary_variables": "detuned_frequency_error", "comment": _WHERE},
     ),
-    "detuned_frequency_error": Variable((*_DETUNED, "block"), "f8", "error of this frequency, from parts of the time"),
+    "detuned_frequency_error": Variable((*_DETUNED, "block"), "f8", "error of this frequency: from parts of the time"),
     "detuned_exponent": Variable(
         (*_DETUNED, "exponent"),
         "f8",
-        "Lyapunov exponents after detuning, in descending order",
+        "Lyapunov exponent after detuning: in descending order",
         {"ancillary_variables": "detuned_exponent_error", "comment": _WHERE},
     ),
     "detuned_exponent_error": Variable((*_DETUNED, "exponent"), "f8", "standard error of this exponent"),
     "detuned_mode_share": Variable(
         (*_DETUNED, "mode"),
         "f8",
-        "share of a normal mode in the kinetic energy of the oscillation with the frequency of block 1",
+        "share of a normal mode: in the kinetic energy of the oscillation with the frequency of block 1",
         {"comment": _WHERE},
     ),
     "detuned_end_ratio": Variable(
-        _DETUNED, "f8", "amplitude of the last block over that of block 1 in this oscillation", {"comment": _WHERE}
+        _DETUNED,
+        "f8",
+        "amplitude ratio of the end blocks: last block over block 1, in this oscillation",
+        {"comment": _WHERE},
     ),
     "detuned_end_phase": Variable(
-        _DETUNED, "f8", "phase of the last block minus that of block 1 in this oscillation", {"units": "degree"}
+        _DETUNED,
+        "f8",
+        "phase difference of the end blocks: last block minus block 1, in this oscillation",
+        {"units": "degree"},
     ),
-    "mode_frequency": Variable(_MODE, "f8", "frequency of a normal mode, in cycles per unit time, ascending"),
-    "mode_end_ratio": Variable(_MODE, "f8", "displacement of the last block over that of block 1 in a normal mode"),
+    "mode_frequency": Variable(_MODE, "f8", "frequency of a normal mode: in cycles per unit time, ascending"),
+    "mode_end_ratio": Variable(
+        _MODE, "f8", "displacement ratio of the end blocks: last block over block 1, in a normal mode"
+    ),
 }
 COORDINATES = {
     "branch": Variable(("branch",), "i2", "number of the branch", coordinate=True),
-    "detuning": Variable(("detuning",), "f8", "relative increase of the mass of the last block", coordinate=True),
+    "detuning": Variable(
+        ("detuning",), "f8", "detuning: relative increase of the mass of the last block", coordinate=True
+    ),
 }
 
 
@@ -137,8 +149,7 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
     }
     coordinates = {
         "law": refined["law"].variable,
-        "branch": ("branch", np.array(DETUNED_BRANCHES, "i2"), COORDINATES["branch"].all_attributes()),
-        "detuning": ("detuning", np.array(DETUNINGS), COORDINATES["detuning"].all_attributes()),
+        **axes(COORDINATES, branch=DETUNED_BRANCHES, detuning=DETUNINGS),
         "block": refined["block"].variable,
     }
     return summary(

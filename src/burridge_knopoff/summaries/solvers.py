@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.settings import SOLVERS
 from burridge_knopoff.running.status import STATUS_WORDS
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
+from burridge_knopoff.summaries.runs import RUN, over_runs
 
 NO_RUN = -1
 
@@ -24,28 +26,37 @@ VARIABLES = {
     "mean_distance": Variable(
         _AXES,
         "f8",
-        "time average <J> of the phase-space distance between the end blocks",
+        "mean distance <J>: time average of the phase-space distance between the end blocks",
         {"ancillary_variables": "mean_distance_error status"},
     ),
-    "mean_distance_error": Variable(_AXES, "f8", "standard error of <J> from the batch means"),
+    "mean_distance_error": Variable(_AXES, "f8", "standard error of <J>: from the batch means"),
     "status": Variable(_AXES, "i1", "how the run ended", flag("i1", {NO_RUN: "no_such_solver", **STATUS_WORDS})),
-    "step_count": Variable(_AXES, "i8", "number of solver steps in the whole run, -1 if there is no run"),
+    "step_count": Variable(_AXES, "i8", "number of steps: solver steps in the whole run, -1 if there is no run"),
     "end_time": Variable(_AXES, "f8", "time tau at which the run ended"),
-    "difference": Variable(_AXES, "f8", "<J> minus <J> of the solver of the study's points"),
+    "difference": Variable(_AXES, "f8", "difference of <J>: from <J> of the solver of the study's points"),
     "difference_error": Variable(
         _AXES,
         "f8",
-        "standard error of the difference of <J>, for two independent runs; 0 for the solver of the study's points",
+        "standard error of the difference of <J>: for two independent runs; 0 for the solver of the study's points",
     ),
     "event_order_time": Variable(
-        _AXES, "f8", "time tau until which the order of events agrees with the solver of the study's points"
+        _AXES,
+        "f8",
+        "time of equal event order: time tau until which the order of events agrees with the solver of "
+        "the study's points",
     ),
     "event_order_count": Variable(
         _AXES,
         "i8",
-        "number of events in the same order as with the solver of the study's points, -1 if there is no run",
+        "events in equal order: number of events in the same order as with the solver of the study's "
+        "points, -1 if there is no run",
     ),
 }
+#: Variables of single runs, compared with the solver of the study's points.
+RUN_VARIABLES = {
+    name: replace(item, dimensions=RUN) for name, item in VARIABLES.items() if not name.startswith("difference")
+}
+_MISSING = {name: item.missing for name, item in RUN_VARIABLES.items()}
 SOLVER = Variable(("solver",), "O", "solver", coordinate=True)
 _COPIED = ("mean_distance", "mean_distance_error", "status", "step_count", "end_time")
 _READ = [*_COPIED, *EVENTS]
@@ -73,30 +84,42 @@ def summarize(grid: Grid, others: Mapping[str, Grid], step: float) -> xarray.Dat
     others : {solver: its runs of the same points, with settings for each law whose points another solver computes}
     step : of rk4 in these runs, unless rk4 computes the study's points
     """
-    shape = (grid.shape[0], len(SOLVERS), *grid.shape[1:])
-    values = {name: np.full(shape, NO_RUN if item.dtype[0] == "i" else np.nan) for name, item in VARIABLES.items()}
-    for (i, j, k), (law, initial, a) in grid:
-        reference: dict[str, np.ndarray] = {}
-        known = {solver: runs for solver, runs in others.items() if law in runs.settings}
-        for solver, runs in {grid.settings[law].solver: grid, **known}.items():
-            run = read_point(runs, (law, initial, a), _READ)
-            reference = reference or run
-            index = (i, SOLVERS.index(solver), j, k)
-            for name in _COPIED:
-                values[name][index] = run[name]
-            values["difference"][index] = run["mean_distance"] - reference["mean_distance"]
-            error = np.hypot(run["mean_distance_error"], reference["mean_distance_error"])
-            values["difference_error"][index] = error if run is not reference else 0.0 * error
-            count, until = common_order(all_events(run), all_events(reference))
-            values["event_order_count"][index] = count
-            values["event_order_time"][index] = min(until, float(run["end_time"]), float(reference["end_time"]))
-    shared = grid.axes()
-    names = ("solver", np.array(SOLVERS, dtype=object), SOLVER.all_attributes())
+    solver_of_law = {law: grid.settings[law].solver for law in grid.laws}
+    parts = []
+    for solver in SOLVERS:
+        of_solver = [_runs_by(solver, runs, grid) for runs in (grid, others.get(solver)) if runs]
+        parts.append(xarray.concat(of_solver, "law").reindex(law=list(grid.laws), fill_value=_MISSING))
+    runs = xarray.concat(parts, "solver").assign_coords(axes({"solver": SOLVER}, solver=SOLVERS))
+    own = xarray.DataArray(list(solver_of_law.values()), {"law": list(grid.laws)}, "law")
+    reference = runs.sel(solver=own).drop_vars("solver")
+    error = xarray.apply_ufunc(np.hypot, runs["mean_distance_error"], reference["mean_distance_error"])
+    values = runs.assign(
+        difference=runs["mean_distance"] - reference["mean_distance"],
+        # A run does not differ from itself.
+        difference_error=error * (runs["solver"] != own),
+    ).transpose("law", "solver", "initial", "a")
     return summary(
         "Independent solvers of the same equations",
         VARIABLES,
         values,
-        {"law": shared["law"], "solver": names, **shared},
-        {**{f"solver_{law}": grid.settings[law].solver for law in grid.laws}, "step": step},
+        {"law": values["law"], "solver": values["solver"], **grid.axes()},
+        {**{f"solver_{law}": solver for law, solver in solver_of_law.items()}, "step": step},
         module=__name__,
     )
+
+
+def _runs_by(solver: str, runs: Grid, reference: Grid) -> xarray.Dataset:
+    """Return RUN_VARIABLES for the laws whose runs in a grid are by one solver, over (law, initial, a).
+
+    reference : the study's points
+    """
+
+    def compare(run: Mapping[str, np.ndarray], point: Sequence[str]) -> dict[str, Any]:
+        own = read_point(reference, point, _READ)
+        count, until = common_order(all_events(run), all_events(own))
+        until = min(until, float(run["end_time"]), float(own["end_time"]))
+        return {**{name: run[name] for name in _COPIED}, "event_order_count": count, "event_order_time": until}
+
+    chosen = runs.of_laws([law for law, settings in runs.settings.items() if settings.solver == solver])
+    values = over_runs(chosen, RUN_VARIABLES, _READ, compare)
+    return xarray.Dataset({name: (RUN, array) for name, array in values.items()}, chosen.axes())

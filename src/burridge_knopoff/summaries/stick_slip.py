@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 import xarray
 
-from burridge_knopoff.dataset.summary import summary
+from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.frequency import leading_frequency
@@ -16,46 +17,48 @@ from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.correlation import correlation
-from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
+from burridge_knopoff.summaries.points import EVENTS, Grid, all_events
+from burridge_knopoff.summaries.runs import RUN, over_runs
 
 STOP, START = 0, 1
 
 RECOMPUTED = "recomputed from the first stop: in chaos, this soon diverges from the trajectory of the run"
 
-_POINT = ("law", "initial", "a")
-_BLOCK = (*_POINT, "block")
+_BLOCK = (*RUN, "block")
 VARIABLES = {
-    "stop_rate": Variable(_BLOCK, "f8", "stops per unit of time tau in the window"),
+    "stop_rate": Variable(_BLOCK, "f8", "stop rate: stops per unit of time tau in the window"),
     "cycle_time": Variable(
         _BLOCK,
         "f8",
-        "mean time between successive stops of a block in the window",
+        "cycle time: mean time between successive stops of a block in the window",
         {"ancillary_variables": "cycle_time_error"},
     ),
-    "cycle_time_error": Variable(_BLOCK, "f8", "standard error of the mean time between stops, from batches of cycles"),
-    "stick_fraction": Variable(_BLOCK, "f8", "fraction of the window in which a block sticks"),
+    "cycle_time_error": Variable(_BLOCK, "f8", "standard error of the cycle time: from batches of cycles"),
+    "stick_fraction": Variable(_BLOCK, "f8", "stick fraction: fraction of the window in which a block sticks"),
     "velocity_frequency": Variable(
         _BLOCK,
         "f8",
-        "frequency, in cycles per unit time, of the highest peak of the spectrum of U', or of short slips, over the "
-        "time of events with states",
+        "frequency of U': in cycles per unit time, of the highest peak of the spectrum of U', or of "
+        "short slips, over the time of events with states",
         {"ancillary_variables": "velocity_frequency_error", "comment": RECOMPUTED},
     ),
     "velocity_frequency_error": Variable(
-        _BLOCK, "f8", "half the resolution of this spectrum, 1/(2 T) for a duration T"
+        _BLOCK, "f8", "error of this frequency: half the resolution of the spectrum, 1/(2 T) for a duration T"
     ),
     "velocity_correlation": Variable(
-        _POINT,
+        RUN,
         "f8",
-        "Pearson correlation of the velocities U' of the end blocks over the time of events with states",
+        "velocity correlation: Pearson correlation of the velocities U' of the end blocks over the time "
+        "of events with states",
         {"comment": RECOMPUTED},
     ),
-    "least_velocity": Variable(_BLOCK, "f8", "smallest U' among the samples of the stored trajectory"),
+    "least_velocity": Variable(_BLOCK, "f8", "smallest velocity U': among the samples of the stored trajectory"),
     "position_amplitude": Variable(
-        _BLOCK, "f8", "half the range of the position relative to the driver among the samples of the stored trajectory"
+        _BLOCK,
+        "f8",
+        "amplitude of the position: half its range relative to the driver among the samples of the stored trajectory",
     ),
 }
-BLOCK = Variable(("block",), "i4", "block number, 1 to N along the chain", coordinate=True)
 _READ = ["status", "position", "velocity", "trajectory_time", "event_position", "event_velocity", *EVENTS]
 
 
@@ -64,43 +67,55 @@ def summarize(grid: Grid, transient: float, window: float, batches: int) -> xarr
 
     transient, window, batches : of the runs; stops are counted from transient to transient + window
     """
-    blocks = grid.blocks
-    sizes = dict(zip(_POINT, grid.shape, strict=True), block=blocks)
-    values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
-    for index, point in grid:
-        read = read_point(grid, point, _READ)
-        if read["status"] != Status.COMPLETED:
-            continue
-        time, block, kind = all_events(read)
-        velocity = read["velocity"]
-        law, _, a = point
-        record, duration = long_velocity(read, grid.model(law, grid.a[a]), transient)
-        for n in range(blocks):
-            own = block == n + 1
-            stops = time[own & (kind == STOP) & (time >= transient)]
-            values["stop_rate"][index][n] = len(stops) / window
-            values["cycle_time"][index][n], values["cycle_time_error"][index][n] = cycle_time(stops, batches)
-            ends_stuck = bool(velocity[-1, n] == 0.0)
-            values["stick_fraction"][index][n] = stick_fraction(
-                time[own], kind[own], transient, transient + window, ends_stuck
-            )
-            frequency = leading_frequency(record[:, n], duration)
-            values["velocity_frequency"][index][n] = frequency
-            values["velocity_frequency_error"][index][n] = 0.5 / duration if math.isfinite(frequency) else np.nan
-        values["velocity_correlation"][index] = correlation(record[:, 0], record[:, -1])
-        values["least_velocity"][index] = velocity.min(axis=0)
-        values["position_amplitude"][index] = 0.5 * np.ptp(read["position"], axis=0)
+    blocks = grid.chain.blocks
+
+    def cycles(run: Mapping[str, np.ndarray], point: Sequence[str]) -> dict[str, Any]:
+        if run["status"] != Status.COMPLETED:
+            return {}
+        law, _, *names = point
+        return _cycles(run, grid.model_of(law, *names), transient, window, batches)
+
     return summary(
         "Stick-slip cycles of each block, and correlation of the velocities of the end blocks",
         VARIABLES,
-        values,
-        {
-            **grid.axes(),
-            "block": ("block", np.arange(1, blocks + 1, dtype=BLOCK.dtype), BLOCK.all_attributes()),
-        },
+        over_runs(grid, VARIABLES, _READ, cycles, block=blocks),
+        {**grid.axes(), **axes(block=range(1, blocks + 1))},
         {"transient": transient, "window": window, "batches": batches},
         module=__name__,
     )
+
+
+def _cycles(
+    run: Mapping[str, np.ndarray], model: Model, transient: float, window: float, batches: int
+) -> dict[str, Any]:
+    """Return the values of VARIABLES for a completed run of a model."""
+    time, block, kind = all_events(run)
+    record, duration = long_velocity(run, model, transient)
+    blocks = []
+    for number in range(1, model.blocks + 1):
+        of_block = block == number
+        stops = time[of_block & (kind == STOP) & (time >= transient)]
+        ends_stuck = bool(run["velocity"][-1, number - 1] == 0.0)
+        cycle, error = cycle_time(stops, batches)
+        frequency = leading_frequency(record[:, number - 1], duration)
+        blocks.append(
+            {
+                "stop_rate": len(stops) / window,
+                "cycle_time": cycle,
+                "cycle_time_error": error,
+                "stick_fraction": stick_fraction(
+                    time[of_block], kind[of_block], transient, transient + window, ends_stuck
+                ),
+                "velocity_frequency": frequency,
+                "velocity_frequency_error": 0.5 / duration if math.isfinite(frequency) else np.nan,
+            }
+        )
+    return {
+        **{name: [values[name] for values in blocks] for name in blocks[0]},
+        "velocity_correlation": correlation(record[:, 0], record[:, -1]),
+        "least_velocity": run["velocity"].min(axis=0),
+        "position_amplitude": 0.5 * np.ptp(run["position"], axis=0),
+    }
 
 
 def long_velocity(run: Mapping[str, np.ndarray], model: Model, transient: float) -> tuple[np.ndarray, float]:

@@ -31,8 +31,9 @@ class Charts:
 def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
     """Return the charts of a study, one packed after the other: together they would take hundreds of MB."""
     pack = Packer()
-    if "grid" in summaries:
-        return Charts({"grid": {title: pack(one) for title, one in grid.maps(summaries["grid"])}}, {}, pack.dark)
+    if study.is_plane:
+        runs = summaries["runs"].assign(run_kind=summaries["lyapunov"]["run_kind"])
+        return Charts({"grid": {title: pack(panel) for title, panel in grid.maps(runs)}}, {}, pack.dark)
     laws, states = study.laws, study.initial
     packed: dict[str, Any] = {}
     runs, compared, lyapunov = (summaries[name] for name in ("mean_distance", "agreement", "lyapunov"))

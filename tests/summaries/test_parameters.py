@@ -1,4 +1,4 @@
-"""The summary over several parameters, compared with scalings of the equations of motion."""
+"""Summaries over several parameters, compared with scalings of the equations of motion."""
 
 import numpy as np
 import pytest
@@ -9,14 +9,13 @@ from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.settings import Settings
-from burridge_knopoff.summaries.grid import summarize
 from burridge_knopoff.summaries.points import Grid
 from tests.grids import PAPER_MODELS
-from tests.summaries.points import write_points
+from tests.summaries.points import kinds, write_points
 
 RUN = {"transient": 2000.0, "window": 2000.0, "batches": 4}
 PAIR = InitialState("pair", (-0.9, -1.1), (0.1, 0.1))
-SETTINGS = {"lyapunov_exponents": 3, "synchronization_threshold": 1e-6, "motion": {}}
+THRESHOLD = 1e-6
 
 MASSES = {"mass[2]": [0.999999999, 1.0]}
 
@@ -25,7 +24,7 @@ def summary(folder, law, state=PAIR, **parameters):
     named = {name: {f"{value:.9f}": value for value in values} for name, values in parameters.items()}
     models = {**PAPER_MODELS, "laws": {law: {}}, "chain": {**PAPER_MODELS["chain"], "blocks": state.blocks}}
     grid = Grid(folder, {state.name: state}, named, {law: Settings(**RUN)}, models)
-    return summarize(write_points(grid), **SETTINGS).squeeze(("law", "initial"))
+    return kinds(write_points(grid)).squeeze(("law", "initial"))
 
 
 def per_velocity(found):
@@ -50,7 +49,7 @@ def test_only_end_blocks_of_one_mass_synchronize(tmp_path):
     assert found["mean_distance"].dims == ("a", "mass_2")
     assert found["mass_2"].values.tolist() == [0.999999999, 1.0]
     assert found["run_kind"].values[0].tolist() == [MotionKind.PERIODIC, MotionKind.SYNCHRONIZED]
-    assert (found["mean_distance"].values < SETTINGS["synchronization_threshold"]).all()
+    assert (found["mean_distance"].values < THRESHOLD).all()
 
 
 def test_v_is_a_scale_of_the_linearized_law(tmp_path):

@@ -1,0 +1,9 @@
+"""Collect the scalars of all runs."""
+
+from burridge_knopoff.job import Job
+
+job = Job(snakemake)
+
+from burridge_knopoff.summaries.runs import summarize
+
+job.write(summarize(job.points, **job.config["motion"]))
