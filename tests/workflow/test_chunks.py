@@ -61,6 +61,8 @@ def test_the_whole_study_is_computed_and_read(plane):
         "grid_exponents",
         "grid_kinds",
     }
+    told = bk(plane, "show", f"{RESULTS}/summary/lyapunov.nc", "--plot", "exponents.png").stdout
+    assert "exponents.png: Largest Lyapunov exponent over the parameters." in told
     summary = xr.load_dataset(results / "summary/lyapunov.nc")
     assert dict(summary.sizes) == {"law": 2, "initial": 1, "a": 2, "v": 2, "exponent": 3}
     tree = open_study(results)

@@ -74,10 +74,15 @@ def write_picture(result: Result, path: str | Path) -> str:
 
 def _figure_of(result: Result) -> Description:
     """Return the figure of a summary: the one with its name, otherwise the one that needs the fewest other files."""
+    mean = result.data.get("mean_distance")
+    # A study of several parameters has figures of its own for the same summaries.
+    over = "several" if mean is not None and mean.dims[:2] == ("law", "initial") and mean.ndim > 3 else "a"
     figures = [
         figure
         for figure in figure_descriptions()
-        if result.name in figure.inputs and (result.study or set(figure.from_study) <= WITHOUT_STUDY.keys())
+        if result.name in figure.inputs
+        and figure.over in (over, "any")
+        and (result.study or set(figure.from_study) <= WITHOUT_STUDY.keys())
     ]
     if not figures:
         raise ValueError(f"{result.path}: there is no picture of such a file")
