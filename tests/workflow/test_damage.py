@@ -52,12 +52,12 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
     assert run.returncode == 1
     reasons = failures(run.stderr)
     assert reasons.keys() >= {
-        *("mean_distance.log", "bifurcation_diagram.log", "lyapunov.log", "stick_slip.log", "solvers.log"),
+        *("runs.log", "bifurcation_diagram.log", "stick_slip.log", "solvers.log"),
         *("figure_distance.log", "figure_motion_minus.log", "attractors.log"),
     }
     found = [re.fullmatch(r"results/limits/(\S+): [^;]+", reason)[1] for reason in reasons.values()]
     assert {*found} == spoiled.keys()
-    assert not (results / "summary/mean_distance.nc").exists()
+    assert not (results / "summary/runs.nc").exists()
     assert remade(study, run.stderr, *targets) == spoiled.keys()
     check_end(study, limited, *targets)
 

@@ -113,7 +113,7 @@ def test_small_and_large_slip_events_of_a_fault(tmp_path, monkeypatch):
 def test_two_blocks_synchronize_only_where_the_synchronized_orbit_is_stable(tmp_path, monkeypatch):
     monkeypatch.chdir(finished_example("two_parameters", tmp_path))
     check_page("studies.md", "Two parameters")
-    grid = open_result(tmp_path, "grid").sel(law="nonlinear", initial="pair")
+    grid = open_result(tmp_path, "lyapunov").sel(law="nonlinear", initial="pair")
     synchronized = grid["run_kind"] == MotionKind.SYNCHRONIZED
     for coupling in (1.75, 2.5, 3.25, 4.0):
         row = synchronized.sel(coupling=coupling)

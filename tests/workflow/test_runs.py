@@ -44,7 +44,7 @@ def test_the_same_bytes_on_one_core_and_in_a_second_checkout(limited, tmp_path, 
     # The scheduler checks for ready jobs when one has ended, and not more and more often.
     assert 0 < output.count("Resources before job selection") <= output.count("Finished jobid") + 5
     mine, other = (each.files("points", "summary", "figures") for each in (study, limited))
-    assert len(mine) == 8 + 20 + 4
+    assert len(mine) == 8 + 21 + 4
     assert [name for name in mine if mine[name] != other[name]] == []
 
 
