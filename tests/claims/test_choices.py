@@ -66,6 +66,16 @@ def test_a_tolerance_of_motion_decides_what_is_chaos(exponent, name, kind):
     assert (settled["agreement"]["kind"].sel(initial="plus", a=slice(0.01, 0.09)) == of_attractor).all()
 
 
+def test_a_tolerance_of_motion_decides_which_exponents_are_zero():
+    world = paper_world()
+    for summary in ("runs", "lyapunov"):
+        world[summary]["lyapunov_exponent"].loc[{"exponent": 0, "initial": "plus"}] = 4e-4
+    assert judge(CLAIMS["plus_largest_exponent"], evidence(world)).verdict == HOLDS
+    verdicts = {name: judge(CLAIMS["plus_largest_exponent"], other).own for name, other in by_name(world).items()}
+    for name in ("motion.zero_exponent is 0.00025 (here 0.0005)", "motion.chaotic_exponent is 0.0005 (here 0.001)"):
+        assert verdicts[name] == (FAILS if "zero" in name else HOLDS)
+
+
 def test_the_threshold_of_synchrony_decides_which_runs_synchronize():
     world = paper_world()
     for summary in ("runs", "mean_distance"):

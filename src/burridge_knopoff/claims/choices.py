@@ -42,7 +42,10 @@ def other_tolerances(evidence: Evidence) -> Iterator[tuple[str, Evidence]]:
         for name in (*MOTION, *[THRESHOLD] * bool(agreement)):
             value = getattr(motion, name)
             choice = _format_choice(name if name == THRESHOLD else f"motion.{name}", value, factor)
-            yield choice, _with_motion(evidence, replace(motion, **{name: factor * value}), agreement)
+            section = {} if name == THRESHOLD else {name: factor * value}
+            config = {**evidence.config, "motion": {**evidence.config["motion"], **section}}
+            other = replace(evidence, config=config)
+            yield choice, _with_motion(other, replace(motion, **{name: factor * value}), agreement)
 
 
 def _format_choice(name: str, value: float, factor: float) -> str:
