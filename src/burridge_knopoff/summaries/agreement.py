@@ -23,7 +23,7 @@ from burridge_knopoff.motion.kind import (
 )
 from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import compare_laws
+from burridge_knopoff.summaries.judgement import compare_laws, pair_variables
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 from burridge_knopoff.summaries.runs import RUN, over_runs
 
@@ -53,44 +53,15 @@ RUN_VARIABLES = {
         ANSWER | {"comment": "no: the transient was too short, or the chaos ended within the window"},
     ),
 }
-EVENT_VARIABLES = {
-    "section_distance": Variable(
-        _PAIR,
-        "f8",
-        "distance of the section points: Wasserstein distance between the distributions of W' on upward "
-        "crossings of both laws",
-    ),
-    "event_order_time": Variable(
-        _PAIR, "f8", "time of equal event order: time tau until which the order of events is the same under both laws"
-    ),
-    "event_order_count": Variable(
-        _PAIR, "i8", "events in equal order: number of events that occur in the same order under both laws"
-    ),
-}
-PAIR_VARIABLES = {
-    "difference": Variable(_PAIR, "f8", "difference of <J>: that of the other law minus that of the first law"),
-    "difference_error": Variable(_PAIR, "f8", "standard error of the difference of <J>"),
-    **EVENT_VARIABLES,
-    "same_kind": Variable(
-        _PAIR,
-        "i1",
-        "same kind of motion: whether both laws lead to the same kind of motion, periodic and "
-        "quasiperiodic motion being one",
-        ANSWER,
-    ),
-    "same_mean_distance": Variable(
-        _PAIR,
-        "i1",
-        "same <J>: whether <J> agrees within the tolerance",
-        ANSWER | {"comment": "two synchronized motions agree"},
-    ),
-    "agrees": Variable(_PAIR, "i1", "agreement: whether the kind of motion and <J> agree", ANSWER),
-    "parting_a": Variable(
-        _PAIR[:2],
-        "f8",
-        "smallest a with disagreement: smallest a of the grid at which the laws disagree, NaN if there is none",
-    ),
-}
+SECTION_DISTANCE = Variable(
+    _PAIR,
+    "f8",
+    "distance of the section points: Wasserstein distance between the distributions of W' on upward crossings of both "
+    "laws",
+)
+PAIR_VARIABLES = pair_variables(_PAIR, section_distance=SECTION_DISTANCE)
+#: The variables that follow from the events of two runs.
+EVENT_VARIABLES = {name: PAIR_VARIABLES[name] for name in ("section_distance", "event_order_time", "event_order_count")}
 VARIABLES = {**POINT_VARIABLES, **RUN_VARIABLES, **PAIR_VARIABLES}
 _EVENTS_READ = ["end_time", "crossing_velocity", "crossing_direction", *EVENTS]
 

@@ -9,9 +9,48 @@ import numpy as np
 import xarray
 from numpy.typing import ArrayLike
 
-from burridge_knopoff.dataset.variables import Answer
+from burridge_knopoff.dataset.variables import ANSWER, Answer, Variable
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.kind import SYNCHRONOUS, MotionKind, is_same_result
+
+
+def pair_variables(pair: tuple[str, ...], **further: Variable) -> dict[str, Variable]:
+    """Return the variables of a comparison of each other law with the first one.
+
+    pair : their dimensions, of which the last is a; further : variables of one summary only
+    """
+    return {
+        "difference": Variable(pair, "f8", "difference of <J>: that of the other law minus that of the first law"),
+        "difference_error": Variable(pair, "f8", "standard error of the difference of <J>"),
+        **further,
+        "event_order_time": Variable(
+            pair,
+            "f8",
+            "time of equal event order: time tau until which the order of events is the same under both laws",
+        ),
+        "event_order_count": Variable(
+            pair, "i8", "events in equal order: number of events that occur in the same order under both laws"
+        ),
+        "same_kind": Variable(
+            pair,
+            "i1",
+            "same kind of motion: whether both laws lead to the same kind of motion, periodic and quasiperiodic motion "
+            "being one",
+            ANSWER,
+        ),
+        "same_mean_distance": Variable(
+            pair,
+            "i1",
+            "same <J>: whether <J> agrees within the tolerance",
+            ANSWER | {"comment": "two synchronized motions agree"},
+        ),
+        "agrees": Variable(pair, "i1", "agreement: whether the kind of motion and <J> agree", ANSWER),
+        "parting_a": Variable(
+            pair[:-1],
+            "f8",
+            "smallest a with disagreement: smallest a of the grid at which the laws disagree, NaN if there is none",
+        ),
+    }
 
 
 def compare_laws(motion: xarray.Dataset, threshold: float, agreement: Mapping[str, Any]) -> xarray.Dataset:

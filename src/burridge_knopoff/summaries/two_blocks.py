@@ -21,7 +21,7 @@ import xarray
 from burridge_knopoff.attractors.asymptotic_states import asymptotic_states
 from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS, SearchSettings
 from burridge_knopoff.dataset.summary import axes, summary
-from burridge_knopoff.dataset.variables import ANSWER, Variable, flag
+from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import InitialState
@@ -35,7 +35,7 @@ from burridge_knopoff.running.simulation import run
 from burridge_knopoff.running.trajectory import Trajectory
 from burridge_knopoff.study.model import models_of, motion_of
 from burridge_knopoff.summaries.event_order import common_order
-from burridge_knopoff.summaries.judgement import compare_states
+from burridge_knopoff.summaries.judgement import compare_states, pair_variables
 
 BLOCKS = 2
 
@@ -62,33 +62,14 @@ MOTION_VARIABLES = {
         "repeats, 0 if it does not",
     ),
 }
+MARGIN = Variable(
+    _PAIR,
+    "f8",
+    "excess over the tolerance: of |difference| over the tolerance of agreement, in standard errors of the difference",
+    {"comment": "negative within the tolerance; within agreement_standard_errors of 0 the verdict is undetermined"},
+)
 PAIR_VARIABLES = {
-    "difference": Variable(_PAIR, "f8", "difference of <J>: that of the other law minus that of the first law"),
-    "difference_error": Variable(_PAIR, "f8", "standard error of the difference of <J>"),
-    "margin": Variable(
-        _PAIR,
-        "f8",
-        "excess over the tolerance: of |difference| over the tolerance of agreement, in standard errors "
-        "of the difference",
-        {"comment": "negative within the tolerance; within agreement_standard_errors of 0 the verdict is undetermined"},
-    ),
-    "event_order_time": Variable(
-        _PAIR, "f8", "time of equal event order: time tau until which the order of events is the same under both laws"
-    ),
-    "event_order_count": Variable(
-        _PAIR, "i8", "events in equal order: number of events that occur in the same order under both laws"
-    ),
-    "same_kind": Variable(
-        _PAIR, "i1", "same kind of motion: whether both laws lead to the same kind of motion", ANSWER
-    ),
-    "same_mean_distance": Variable(
-        _PAIR,
-        "i1",
-        "same <J>: whether <J> agrees within the tolerance",
-        ANSWER | {"comment": "two synchronized motions agree"},
-    ),
-    "agrees": Variable(_PAIR, "i1", "agreement: whether the kind of motion and <J> agree", ANSWER),
-    "parting_a": Variable(_PAIR[:3], "f8", "smallest a with disagreement: NaN if there is none"),
+    **pair_variables(_PAIR, margin=MARGIN),
     "agreeing_fraction": Variable(
         _FRACTION, "f8", "agreeing fraction: fraction of the initial states for which the laws are known to agree"
     ),
