@@ -75,12 +75,10 @@ for panel, law in zip(panels, laws):
 CLAIM = """
 import numpy as np
 import xarray as xr
-from burridge_knopoff.claims.claim import read_claims
 from burridge_knopoff.claims.ledger import judge
-from burridge_knopoff.figures.description import picture_names
+from burridge_knopoff.claims.paper import CLAIMS
 from tests.claims.worlds import evidence
-claims = read_claims(picture_names(["minus", "plus"]))
-(claim,) = [claim for claim in claims if claim.name == "top_speed"]
+claim = CLAIMS["top_speed"]
 axes = {"law": ["linearized"], "initial": ["plus"], "a": [0.08], "block": [1, 2, 3]}
 for largest, verdict in ((0.234, "holds"), (0.24, "holds loosely"), (0.3, "fails"), (np.nan, "not testable")):
     values = np.reshape([np.nan, 0.2 if largest > 0 else np.nan, largest], (1, 1, 1, 3))
@@ -114,7 +112,7 @@ def extend(folder):
     for name in (".clang-format", "pyproject.toml", "setup.py", "Snakefile"):
         shutil.copy(REPOSITORY / name, folder)
     (folder / "profiles").symlink_to("workflow/profiles")
-    assert len(apply(PAGE, folder)) == 23
+    assert len(apply(PAGE, folder)) == 22
     run(folder, sys.executable, "setup.py", "--quiet", "build_ext", "--inplace")
 
 

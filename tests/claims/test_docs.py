@@ -14,12 +14,12 @@ import xarray
 from PIL import Image
 
 from burridge_knopoff.claims import ledger
-from burridge_knopoff.claims.locking import CLOSED
+from burridge_knopoff.claims.paper import CLAIMS
+from burridge_knopoff.claims.paper.locking import CLOSED
 from burridge_knopoff.figures.palette import BRANCHES
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.config import CONFIG
 from burridge_knopoff.study.yaml_file import read_config
-from tests.claims.verdict_texts import CLAIMS
 
 ROOT = Path(__file__).parents[2]
 SUMMARY = ROOT / "results/paper/summary"

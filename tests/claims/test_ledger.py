@@ -1,4 +1,4 @@
-"""Reading the ledger, and its files."""
+"""Claims, the ledger, and its files."""
 
 from __future__ import annotations
 
@@ -6,93 +6,70 @@ import csv
 import io
 import json
 import math
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import pytest
 import xarray
 
-from burridge_knopoff.claims.claim import OWN, READS, read_claims
+from burridge_knopoff.claims.choice import Along, Tolerance
+from burridge_knopoff.claims.claim import Claim
+from burridge_knopoff.claims.claim import claim as register
 from burridge_knopoff.claims.conventions import rounded_state_changes
+from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
-from burridge_knopoff.claims.judge import JUDGES, Judge
-from burridge_knopoff.claims.ledger import ledger
-from burridge_knopoff.claims.margins import BOUNDS, LISTED
+from burridge_knopoff.claims.ledger import judge, ledger
+from burridge_knopoff.claims.paper import CLAIMS, OWN, READS
+from burridge_knopoff.claims.range import Range
 from burridge_knopoff.claims.verdict import (
+    HOLDS,
     NOT_TESTABLE,
     NotTestableError,
-    Range,
+    Verdict,
     format_values,
     judge_interval,
     judge_value,
 )
-from burridge_knopoff.study.yaml_file import ConfigError
-from tests.claims.alterations import CASES
-from tests.claims.verdict_texts import CLAIMS, PICTURES, judge_claim
+from burridge_knopoff.figures.description import picture_names
+from burridge_knopoff.model.initial import PAPER_STATES
+from tests.claims.alterations import CASES, judge_claim
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
 from tests.refused import refused
 
-EDGE = """
-edge:
-  statement: Synchrony ends at 0.08.
-  place: Fig. 3
-  judge: synchronization.edge_of_synchrony
-  parameters: {initial: minus, claimed: 0.08, tolerance: 0.005, loose: 0.01}
-  figure: orbits
-"""
-RANGED = """
-regular:
-  statement: All is regular.
-  place: Fig. 3
-  judge: kinds.all_of_kind
-  parameters: {initial: [minus], laws: [linearized], kinds: [periodic], a: {above: 0}, loose_share: 0.9}
-  figure: lyapunov
-"""
+PICTURES = picture_names(PAPER_STATES)
 
 
-def read(tmp_path: Path, text: str) -> list:
-    file = tmp_path / "claims.yaml"
-    file.write_text(text, encoding="utf-8")
-    return read_claims(PICTURES, file)
+@pytest.mark.parametrize("claim", CLAIMS.values(), ids=CLAIMS)
+def test_a_claim_says_what_the_paper_says_and_where(claim: Claim) -> None:
+    assert claim.statement.endswith(".")
+    assert claim.place
+    assert claim.figure in PICTURES
+    assert claim.depends_on == tuple(name for name in CLAIMS if name in claim.depends_on) or claim.topic == "history"
+    assert claim.name not in claim.depends_on
+    assert {*claim.depends_on} <= {*CLAIMS}
 
 
-def test_a_claim_has_its_judge_and_its_range(tmp_path: Path) -> None:
-    edge, regular = read(tmp_path, EDGE + RANGED)
-    assert (edge.name, edge.topic) == ("edge", "synchronization")
-    assert edge.judge is JUDGES["synchronization.edge_of_synchrony"]
-    assert regular.parameters["a"] == Range(above=0.0)
+def test_the_parameters_of_a_claim_are_those_of_its_function() -> None:
+    @register("Fig. 1", "orbits", "agreement", depends_on=("minus_periodic",))
+    def speed(evidence: Evidence, *, at: float = 0.08, tolerance: Tolerance = 0.01) -> Verdict:
+        """Blocks move
+        fast.
 
+        Not slow.
+        """
+        return Verdict(HOLDS, f"{evidence.summary('agreement').sizes['a']} values, {at:g}, {tolerance:g}.")
 
-@pytest.mark.parametrize(
-    ("text", "old", "new", "expected"),
-    [
-        (EDGE, "edge_of_synchrony", "worst", "judge: got 'synchronization.worst', expected blocks.two_blocks_agree | "),
-        (EDGE, ", loose: 0.01", "", "parameters: missing a required argument: 'loose', expected initial, claimed, tol"),
-        (EDGE, "loose:", "lose: 1, loose:", "parameters: got an unexpected keyword argument 'lose', expected initial"),
-        (EDGE, "{initial: minus, claimed: 0.08, tolerance: 0.005, loose: 0.01}", "[]", "parameters: got [], expected"),
-        (EDGE, "initial: minus", "initial: middle", "initial: got 'middle', expected minus | plus"),
-        (RANGED, "[minus]", "[minus, middle]", "initial: got 'middle', expected minus | plus"),
-        (EDGE, EDGE, "", ", expected named entries"),
-        (EDGE, "edge:", '"edge\\n":', "got 'edge\\n', expected small letters"),
-        (EDGE, "  place: Fig. 3\n", "", "place: missing"),
-        (EDGE, "figure: orbits", "figure: no_such", "edge.figure: got 'no_such', expected agreement | attractor"),
-        (EDGE, "  figure", "  verdict: holds\n  figure", "verdict: unknown key"),
-        (EDGE, "  figure", "  depends_on: [other]\n  figure", "edge.depends_on: got 'other', expected"),
-        (EDGE, "  figure", "  depends_on: [edge]\n  figure", "edge.depends_on: got 'edge', expected"),
-        (EDGE, "  figure", "  depends_on: edge\n  figure", "edge.depends_on: got 'edge', expected a list"),
-        (RANGED, "{above: 0}", "{over: 0}", "a.over: unknown key"),
-        (RANGED, "{above: 0}", "{above: low}", "a.above: got 'low', expected a finite number"),
-    ],
-)
-def test_invalid_claims_are_refused_in_one_line(tmp_path: Path, text: str, old: str, new: str, expected: str) -> None:
-    assert old in text
-    with refused(expected, "claims.yaml", error=ConfigError):
-        read(tmp_path, text.replace(old, new))
-
-
-def test_a_missing_file_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(ConfigError, match=r"missing.yaml: cannot be read: No such file"):
-        read_claims((), tmp_path / "missing.yaml")
+    try:
+        assert CLAIMS["speed"] is speed
+        assert (speed.name, speed.topic, speed.statement) == ("speed", "test_ledger", "Blocks move fast.")
+        assert (speed.place, speed.figure, speed.reads) == ("Fig. 1", "orbits", ("agreement",))
+        assert speed.depends_on == ("minus_periodic",)
+        assert speed.parameters == {"at": 0.08, "tolerance": 0.01}
+        assert list(speed.choices) == ["tolerance"]
+        assert judge(speed, evidence(paper_world())).reason == "64 values, 0.08, 0.01."
+        assert judge(speed, evidence(paper_world()), {"tolerance": 0.02, "at": 0.1}).reason == "64 values, 0.1, 0.02."
+    finally:
+        del CLAIMS["speed"]
 
 
 @pytest.fixture(scope="module")
@@ -120,41 +97,36 @@ class Recorded(dict):
         return super().get(name, default)
 
 
-@pytest.mark.parametrize("judge", JUDGES.values(), ids=JUDGES)
-def test_a_judge_reads_what_it_declares(judge: Judge) -> None:
+@pytest.mark.parametrize("claim", CLAIMS.values(), ids=CLAIMS)
+def test_a_claim_reads_what_it_declares(claim: Claim) -> None:
     """It can read no others. A declared summary that it does not read would outdate the verdicts needlessly."""
-    names = [name for name, claim in CLAIMS.items() if claim.judge is judge]
-    assert names
-    cases = [(name, lambda world: None) for name in names]
-    cases += [(name, alteration) for name, _, alteration in CASES if name in names]
-    unread = set(judge.reads)
+    cases = [lambda world: None, *(alteration for name, _, alteration in CASES if name == claim.name)]
+    unread = set(claim.reads)
     while unread and cases:
-        name, alteration = cases.pop(0)
         world = paper_world()
-        alteration(world)
+        cases.pop(0)(world)
         summaries = Recorded(world)
-        judge_claim(name, evidence(summaries))
+        judge_claim(claim.name, evidence(summaries))
         unread -= summaries.read
     assert not unread
 
 
-def test_a_summary_that_a_judge_does_not_declare_is_refused() -> None:
+def test_a_summary_that_a_claim_does_not_declare_is_refused() -> None:
     """This includes a summary that the study does not have, since another study may."""
-    expected = "basins: not declared by the judge topic.name"
-    for read in (lambda known: known.summary("basins"), lambda known: "basins" in known.summaries):
-        with refused(expected):
-            Judge("topic.name", read, ("orbits",))(evidence(paper_world()))
+    for read in (lambda data: data.summary("basins"), lambda data: "basins" in data.summaries):
+        with refused("basins: not declared by the claim upper_edge"):
+            replace(CLAIMS["upper_edge"], function=read)(evidence(paper_world()))
 
 
-def test_the_ledger_reads_what_it_and_its_judges_declare() -> None:
+def test_the_ledger_reads_what_it_and_its_claims_declare() -> None:
     summaries = Recorded(paper_world())
     known = evidence(summaries)
     ledger("test", [], known, [])
     rounded_state_changes(known, ["minus"], ["linearized"], Range())
     assert summaries.read == set(OWN)
-    for parameter, (_, summary, *_) in {**LISTED, **BOUNDS}.items():
-        assert all(summary in claim.judge.reads for claim in CLAIMS.values() if parameter in claim.parameters)
-    assert set(READS) == {*OWN, *(name for claim in CLAIMS.values() for name in claim.judge.reads)}
+    for claim in CLAIMS.values():
+        assert {item.summary for item in claim.choices.values() if isinstance(item, Along)} <= {*claim.reads}
+    assert set(READS) == {*OWN, *(name for claim in CLAIMS.values() for name in claim.reads)}
 
 
 def test_json_is_strict_and_complete(content: dict) -> None:
@@ -209,7 +181,7 @@ def test_markdown_has_a_row_and_a_section_for_each_claim(content: dict) -> None:
     independent = sum(not claim.depends_on for claim in CLAIMS.values())
     assert 30 < independent < len(CLAIMS)
     assert text.startswith(
-        f"Of {independent} independent statements, {independent} hold; nine more repeat these or follow from them.\n\n"
+        f"Of {independent} independent statements, {independent} hold; ten more repeat these or follow from them.\n\n"
         "Depth of the search for attractors: 95 % intervals of basin fractions ±2 %, changes along a located within "
         "0.0006,\nperiodic orbits up to a period of 500.\n\n| statement"
     )

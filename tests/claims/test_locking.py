@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 
 from burridge_knopoff import MotionKind
-from burridge_knopoff.claims.locking import _was_chaotic, _was_torus
+from burridge_knopoff.claims.paper.locking import _was_chaotic, _was_torus
 from burridge_knopoff.continuation.branch_changes import Change
 
 PERIODIC, CHAOTIC, TORUS = MotionKind.PERIODIC, MotionKind.CHAOTIC, MotionKind.QUASIPERIODIC

@@ -2,18 +2,41 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import pytest
 import xarray
 
+from burridge_knopoff.claims import choice
+from burridge_knopoff.claims.claim import Claim
 from burridge_knopoff.claims.evidence import Evidence
 from burridge_knopoff.claims.ledger import judge as judge_claim
-from burridge_knopoff.claims.margins import BOUNDS, COUNTS, LISTED, SHARES, STATED, TOLERANCES, changing_choices
+from burridge_knopoff.claims.margins import changing_choices
+from burridge_knopoff.claims.paper import CLAIMS
 from burridge_knopoff.claims.verdict import CONVENTION, FAILS, HOLDS, LOOSELY, NOT_TESTABLE, READING, Verdict
 from tests.claims.alterations import alter, both
-from tests.claims.verdict_texts import CLAIMS
 from tests.claims.worlds import evidence, paper_world
 
 NOTHING = Evidence({}, {})
+KINDS = {
+    "tolerance": choice.Tolerance,
+    "share": choice.StateShare,
+    "near": choice.Near,
+    "points": choice.Points,
+    "samples": choice.Samples,
+    "close": choice.Close,
+    "opposite": choice.Opposite,
+    "inner_share": choice.InnerShare,
+    "level": choice.Level,
+    "part": choice.RunPart,
+}
+
+
+def changes(judge, evidence, parameters, verdict, others=(), reads=()):
+    """Return the choices that would change the verdict of a claim with these parameters."""
+    choices = {name: KINDS[name].__metadata__[0] for name in parameters if name in KINDS}
+    claim = Claim("name", "topic", "statement", "place", "figure", reads, judge, parameters, choices)
+    return changing_choices(claim, judge, evidence, verdict, others)
 
 
 def judge_with_change(name, place, below, above):
@@ -25,13 +48,13 @@ def judge_with_change(name, place, below, above):
     return judge
 
 
-def test_every_parameter_is_tried_or_is_what_the_statement_says():
-    tables = (TOLERANCES, COUNTS, SHARES, BOUNDS, LISTED, {"at", "part"}, STATED)
+def test_a_number_of_a_claim_is_a_choice_or_what_the_statement_says():
+    """What is not a choice is a named thing, a range of a or one value of it, or a number that the paper gives."""
+    given = {"at", "by", "claimed", "coefficients", "low", "high", "shown", "steps"}
     for claim in CLAIMS.values():
-        for name in claim.parameters:
-            assert sum(name in table for table in tables) == 1, f"{claim.name}: {name}"
-    used = {name for claim in CLAIMS.values() for name in claim.parameters}
-    assert used == {name for table in tables for name in table}
+        for name in claim.parameters.keys() - claim.choices.keys() - given:
+            assert name in {"initial", "law", "laws", "a", "synchrony", "claims"}, f"{claim.name}: {name}"
+        assert claim.choices.keys() <= claim.parameters.keys()
 
 
 @pytest.mark.parametrize(("below", "above"), [(FAILS, HOLDS), (HOLDS, FAILS)])
@@ -40,7 +63,7 @@ def test_the_tolerance_at_which_a_verdict_changes_is_given_to_one_per_cent(below
     judge = judge_with_change("tolerance", place, below, above)
     parameters = {"tolerance": 1.0}
     now = judge(NOTHING, parameters)
-    (text,) = changing_choices(judge, NOTHING, parameters, now)
+    (text,) = changes(judge, NOTHING, parameters, now)
     other = {below: above, above: below}[now.verdict]
     head, value = text.removesuffix(" (here 1)").rsplit(" ", 1)
     assert head == f"{other} if the tolerance is at {relation}"
@@ -50,20 +73,17 @@ def test_the_tolerance_at_which_a_verdict_changes_is_given_to_one_per_cent(below
 
 def test_a_share_changes_by_its_distance_from_one():
     judge = judge_with_change("share", 0.85, FAILS, HOLDS)
-    (text,) = changing_choices(judge, NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
+    (text,) = changes(judge, NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
     assert text.startswith("fails if the required share of states is at most 0.8")
     # The distance of 0.75 from 1 is more than twice 0.1.
-    assert (
-        changing_choices(judge_with_change("share", 0.75, FAILS, HOLDS), NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
-        == []
-    )
+    assert changes(judge_with_change("share", 0.75, FAILS, HOLDS), NOTHING, {"share": 0.9}, Verdict(HOLDS, "")) == []
 
 
 @pytest.mark.parametrize("other", [NOT_TESTABLE, FAILS])
 def test_a_choice_that_leaves_too_little_data_is_given(other):
     """There are too few states for a larger share, and only one value at which the claim can be judged."""
     judge = judge_with_change("share", 0.93, HOLDS, NOT_TESTABLE)
-    (text,) = changing_choices(judge, NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
+    (text,) = changes(judge, NOTHING, {"share": 0.9}, Verdict(HOLDS, ""))
     head, value = text.removesuffix(" (here 0.9)").rsplit(" ", 1)
     assert head == "not testable if the required share of states is at least"
     assert 0.93 <= float(value) < 0.935
@@ -71,7 +91,7 @@ def test_a_choice_that_leaves_too_little_data_is_given(other):
     def only(_evidence, parameters):
         return Verdict(HOLDS if parameters["near"] == 1.0 else other, "")
 
-    assert changing_choices(only, NOTHING, {"near": 1.0}, Verdict(HOLDS, "")) == [
+    assert changes(only, NOTHING, {"near": 1.0}, Verdict(HOLDS, "")) == [
         f"{other} if the distance that counts as near is not exactly 1"
     ]
 
@@ -83,7 +103,7 @@ def test_the_nearest_of_several_changes_is_given():
         where = parameters["tolerance"]
         return Verdict(HOLDS if where < 1.2 else FAILS if where < 1.5 else NOT_TESTABLE, "")
 
-    (text,) = changing_choices(judge, NOTHING, {"tolerance": 1.0}, Verdict(HOLDS, ""))
+    (text,) = changes(judge, NOTHING, {"tolerance": 1.0}, Verdict(HOLDS, ""))
     assert text.startswith("fails if the tolerance is at least 1.2")
     assert float(text.removesuffix(" (here 1)").rsplit(" ", 1)[1]) == pytest.approx(1.2, rel=0.01)
 
@@ -94,24 +114,25 @@ def test_both_halves_of_the_grid_are_one_choice():
     def judge(evidence, _parameters):
         return Verdict(HOLDS if evidence.summaries["mean_distance"].sizes["a"] == 3 else NOT_TESTABLE, "")
 
-    assert changing_choices(judge, world, {}, judge(world, {})) == [
-        "not testable if only every second value of a is used"
-    ]
+    assert changes(judge, world, {}, judge(world, {})) == ["not testable if only every second value of a is used"]
     # This is obvious for a claim on one value of a.
-    assert changing_choices(judge, world, {"at": 0.2}, judge(world, {})) == []
+    assert changes(judge, world, {"at": 0.2}, judge(world, {})) == []
 
 
 @pytest.mark.parametrize("name", ["inner_share", "level"])
 def test_other_values_with_data_are_tried(name):
     """Amplitudes of the inner blocks and levels of J: no value between them can be judged."""
-    words, summary = LISTED[name]
+    words, summary = {
+        "inner_share": ("the amplitude of the inner block over A", "phases"),
+        "level": ("the level below which J counts as 0", "mean_distance"),
+    }[name]
     world = Evidence({summary: xarray.Dataset(coords={name: [0.0, 0.3, 1.0]})}, {})
 
     def judge(_evidence, parameters):
         return Verdict(HOLDS if parameters[name] < 0.5 else FAILS, "")
 
-    assert changing_choices(judge, world, {name: 0.0}, Verdict(HOLDS, "")) == [f"fails if {words} is 1 (here 0)"]
-    assert changing_choices(judge, NOTHING, {name: 0.0}, Verdict(HOLDS, "")) == []
+    assert changes(judge, world, {name: 0.0}, Verdict(HOLDS, "")) == [f"fails if {words} is 1 (here 0)"]
+    assert changes(judge, NOTHING, {name: 0.0}, Verdict(HOLDS, "")) == []
 
 
 @pytest.mark.parametrize(
@@ -127,27 +148,30 @@ def test_other_values_with_data_are_tried(name):
         (120.0, 151.0, "at least 180"),
     ],
 )
-@pytest.mark.parametrize("name", BOUNDS)
+@pytest.mark.parametrize("name", ["close", "opposite"])
 def test_bounds_are_tried_at_the_values_with_data(name, own, place, expected):
-    words, summary, coordinate = BOUNDS[name]
-    world = Evidence({summary: xarray.Dataset(coords={coordinate: [15.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0]})}, {})
+    words = f"the phase difference {'up to' if name == 'close' else 'from'} which phases are {name}"
+    world = Evidence(
+        {"phases": xarray.Dataset(coords={"phase_difference": [15.0, 30.0, 60.0, 90.0, 120.0, 150.0, 180.0]})}, {}
+    )
     judge = judge_with_change(name, place, FAILS, HOLDS)
     now = judge(world, {name: own})
     other = {FAILS: HOLDS, HOLDS: FAILS}[now.verdict]
     texts = [f"{other} if {words} is {expected} (here {own:g})"] if expected else []
-    assert changing_choices(judge, world, {name: own}, now) == texts
-    assert changing_choices(judge, NOTHING, {name: own}, now) == []
+    assert changes(judge, world, {name: own}, now) == texts
+    assert changes(judge, NOTHING, {name: own}, now) == []
 
 
 @pytest.mark.parametrize(("place", "expected"), [(10, "at least 10"), (6, "at most 5"), (17, None), (4, None)])
-@pytest.mark.parametrize("name", COUNTS)
+@pytest.mark.parametrize("name", ["points", "samples"])
 def test_counts_are_whole_numbers(name, place, expected):
     def judge(_evidence, parameters):
         assert isinstance(parameters[name], int)
         return Verdict(HOLDS if (parameters[name] < place) == (place > 8) else FAILS, "")
 
-    texts = [f"fails if {COUNTS[name]} is {expected} (here 8)"] if expected else []
-    assert changing_choices(judge, NOTHING, {name: 8}, judge(NOTHING, {name: 8})) == texts
+    words = KINDS[name].__metadata__[0].words
+    texts = [f"fails if {words} is {expected} (here 8)"] if expected else []
+    assert changes(judge, NOTHING, {name: 8}, judge(NOTHING, {name: 8})) == texts
 
 
 def test_other_bounds_of_close_and_opposite_phases_change_a_verdict():
@@ -158,9 +182,7 @@ def test_other_bounds_of_close_and_opposite_phases_change_a_verdict():
     known = evidence(world)
     verdict = judge_claim(claim, known)
     assert verdict.verdict == READING
-    found = changing_choices(
-        lambda evidence, parameters: judge_claim(claim, evidence, parameters), known, claim.parameters, verdict
-    )
+    found = changing_choices(claim, partial(judge_claim, claim), known, verdict)
     assert "fails if the phase difference from which phases are opposite is at most 150 (here 180)" in found
     assert "holds if the phase difference up to which phases are close is at most 15 (here 30)" in found
 
@@ -176,7 +198,7 @@ def test_for_solver_comparisons_single_values_are_left_out_but_the_grid_is_not_h
         known = evidence.summaries["lyapunov"].sizes["a"] == 3
         return Verdict(NOT_TESTABLE if not known else HOLDS if 0.3 in evidence.summaries["solvers"]["a"] else FAILS, "")
 
-    assert changing_choices(judge, world, {"relative": 0.1}, judge(world, {})) == ["fails if a = 0.3 is left out"]
+    assert changes(judge, world, {}, judge(world, {}), reads=("solvers",)) == ["fails if a = 0.3 is left out"]
 
 
 @pytest.mark.parametrize(
@@ -194,7 +216,7 @@ def test_the_half_of_the_grid_that_changes_a_verdict_is_given(a, expected):
     def judge(evidence, _parameters):
         return Verdict(HOLDS if 0.1 in evidence.summaries["mean_distance"]["a"].values else FAILS, "")
 
-    assert changing_choices(judge, world, {}, judge(world, {})) == expected
+    assert changes(judge, world, {}, judge(world, {})) == expected
 
 
 def test_a_change_under_one_convention_is_given():
@@ -205,14 +227,14 @@ def test_a_change_under_one_convention_is_given():
         return Verdict(CONVENTION, "", conventions=under, own=FAILS)
 
     parameters = {"tolerance": 1.0}
-    (text,) = changing_choices(judge, NOTHING, parameters, judge(NOTHING, parameters))
+    (text,) = changes(judge, NOTHING, parameters, judge(NOTHING, parameters))
     assert text.startswith("depends on convention (other: holds loosely) if the tolerance is at least 1.5")
 
     def fewer(_evidence, parameters):
         under = {"own": FAILS, "other": HOLDS, **({} if parameters["tolerance"] > 1.5 else {"third": HOLDS})}
         return Verdict(CONVENTION, "", conventions=under, own=FAILS)
 
-    (text,) = changing_choices(fewer, NOTHING, parameters, fewer(NOTHING, parameters))
+    (text,) = changes(fewer, NOTHING, parameters, fewer(NOTHING, parameters))
     assert text.startswith("depends on convention (third: not testable) if the tolerance is at least 1.5")
 
 
@@ -223,20 +245,18 @@ def test_the_neighbours_of_the_value_of_a_claim_are_tried():
     def judge(_evidence, parameters):
         return Verdict(FAILS if parameters["at"] > 0.08 else HOLDS, "")
 
-    assert changing_choices(judge, world, {"at": 0.08}, judge(world, {"at": 0.08})) == [
-        "fails if a is 0.0825 (here 0.08)"
-    ]
-    assert changing_choices(judge, world, {"at": 0.5}, Verdict(FAILS, "")) == []
+    assert changes(judge, world, {"at": 0.08}, judge(world, {"at": 0.08})) == ["fails if a is 0.0825 (here 0.08)"]
+    assert changes(judge, world, {"at": 0.5}, Verdict(FAILS, "")) == []
 
 
 def test_window_and_whole_run_are_tried():
     def judge(_evidence, parameters):
         return Verdict(HOLDS if parameters["part"] == "window" else FAILS, "")
 
-    assert changing_choices(judge, NOTHING, {"part": "window"}, Verdict(HOLDS, "")) == [
+    assert changes(judge, NOTHING, {"part": "window"}, Verdict(HOLDS, "")) == [
         "fails if the whole run is used (here the window)"
     ]
-    assert changing_choices(judge, NOTHING, {"part": "run"}, Verdict(FAILS, "")) == [
+    assert changes(judge, NOTHING, {"part": "run"}, Verdict(FAILS, "")) == [
         "holds if the window is used (here the whole run)"
     ]
 
@@ -247,7 +267,7 @@ def test_other_evidence_is_tried():
     def judge(evidence, _parameters):
         return Verdict(FAILS if evidence is other else HOLDS, "")
 
-    found = changing_choices(
+    found = changes(
         judge, NOTHING, {}, Verdict(HOLDS, ""), [("zero is 2 (here 1)", other), ("zero is 0.5 (here 1)", NOTHING)]
     )
     assert found == ["fails if zero is 2 (here 1)"]
@@ -255,6 +275,6 @@ def test_other_evidence_is_tried():
 
 def test_nothing_changes_a_claim_that_cannot_be_tested():
     judge = judge_with_change("tolerance", 0.9, FAILS, HOLDS)
-    assert changing_choices(judge, NOTHING, {"tolerance": 1.0}, Verdict(NOT_TESTABLE, "")) == []
+    assert changes(judge, NOTHING, {"tolerance": 1.0}, Verdict(NOT_TESTABLE, "")) == []
     beyond = judge_with_change("tolerance", 2.1, HOLDS, FAILS)
-    assert changing_choices(beyond, NOTHING, {"tolerance": 1.0}, Verdict(HOLDS, "")) == []
+    assert changes(beyond, NOTHING, {"tolerance": 1.0}, Verdict(HOLDS, "")) == []

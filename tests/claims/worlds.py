@@ -1,8 +1,9 @@
-"""Summaries of a world in which every statement of the paper is true: every judge should return «holds»."""
+"""Summaries of a world in which every statement of the paper is true: every claim should hold."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 
 import numpy as np
 import xarray
@@ -54,6 +55,11 @@ def evidence(summaries: Summaries, **config: object) -> Evidence:
 
 def paper_world() -> Summaries:
     """Return all summaries, new at each call, so that a test may alter them."""
+    return {name: dataset.copy(deep=True) for name, dataset in _world().items()}
+
+
+@cache
+def _world() -> Summaries:
     world = {
         "mean_distance": _mean_distance(),
         "lyapunov": _lyapunov(),
@@ -90,6 +96,8 @@ def paper_world() -> Summaries:
                 "velocity_frequency": (BLOCK, [0.17, 0.34, 0.17]),
                 "velocity_frequency_error": (BLOCK, 0.01),
                 "velocity_correlation": (POINT, -0.9),
+                "stop_jump": (POINT, 0.1),
+                "start_jump": (POINT, 0.2),
             },
             block=BLOCKS,
         ),
@@ -121,7 +129,28 @@ def paper_world() -> Summaries:
         for values in (dataset[key].values for key in numbers):
             if name != "equilibrium":
                 values *= np.linspace(1.0, 1.001, values.size).reshape(values.shape)
-    return {"runs": _runs(world["mean_distance"], world["lyapunov"]), **world}
+    world = {"runs": _runs(world["mean_distance"], world["lyapunov"]), **world}
+    count_sections(world)
+    return world
+
+
+def count_sections(world: Summaries) -> None:
+    """Determine the sections of the runs from their crossings; a run without any crossing did not complete."""
+    crossings, runs = world["bifurcation_diagram"], world["runs"]
+    velocity, upward = crossings["crossing_velocity"].values, crossings["crossing_direction"].values > 0
+    place = tuple(runs.get_index(name).get_indexer(crossings[name].values) for name in POINT)
+    shape = tuple(runs.sizes[name] for name in POINT)
+    values = {name: np.full(shape, np.nan) for name in ("mean", "min", "max")}
+    count, status = np.zeros(shape, "i4"), np.full(shape, Status.DIVERGED, "i1")
+    ends = np.cumsum(crossings["crossing_count"].values)
+    for *index, first, end in zip(*place, ends - crossings["crossing_count"].values, ends, strict=True):
+        section = velocity[first:end][upward[first:end]]
+        status[tuple(index)], count[tuple(index)] = Status.COMPLETED, len(np.unique(section))
+        for name, value in values.items() if len(section) else ():
+            value[tuple(index)] = getattr(section, name)()
+    runs["status"], runs["section_count"] = (POINT, status), (POINT, count)
+    for name, value in values.items():
+        runs[f"section_velocity_{name}"] = POINT, value
 
 
 def judge_means(world: Summaries) -> None:

@@ -179,7 +179,7 @@ def test_results_depend_on_the_modules_that_make_them():
     assert "running/ensemble.py" not in point
     assert {"running/ensemble.py", "attractors/search.py"} <= names("attractors_of_law")
     assert not {"dataset/point.py", "basins/plane.py"} & names("attractors_of_law")
-    assert "claims/claims.yaml" in names("claims")
+    assert "claims/paper/history.py" in names("claims")
     drawn = names("figure_agreement")
     assert {"figures/agreement.py", "figures/style.py"} <= drawn
     assert not {name for name in drawn if name.startswith(("kernel", "stability", "report"))}

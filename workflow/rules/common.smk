@@ -161,7 +161,7 @@ def read_by_judges(wildcards):
 
 def figures_of_claims(wildcards):
     """Return the names of the figures to which claims refer."""
-    named = {claim.figure for claim in claims_of(read_yaml(CLAIMS_FILE))}
+    named = {claim.figure for claim in CLAIMS.values()}
     return sorted(name for name in named if f"{RESULTS}/figures/{name}.png" in FILES)
 
 

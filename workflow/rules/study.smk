@@ -21,10 +21,8 @@ except KernelError as error:
 from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS
 from burridge_knopoff.check.changes import changes
 from burridge_knopoff.check.study import is_locked
-from burridge_knopoff.claims.claim import FILE as CLAIMS_FILE
-from burridge_knopoff.claims.claim import READS, claims_of, read_claims
-from burridge_knopoff.figures.description import figure_descriptions, picture_names
-from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.claims.paper import CLAIMS, READS
+from burridge_knopoff.figures.description import figure_descriptions
 from burridge_knopoff.proof.scope import LARGEST_V, NONLINEAR_V
 from burridge_knopoff.provenance.bad_file import CHANGED
 from burridge_knopoff.provenance.files import (
@@ -54,7 +52,7 @@ from burridge_knopoff.study.model import MODEL_KEYS
 from burridge_knopoff.study.paths import VALUE
 from burridge_knopoff.study.remarks import remarks
 from burridge_knopoff.study.study import all_points, run_files, solver_points
-from burridge_knopoff.study.yaml_file import ConfigError, read_config, read_yaml
+from burridge_knopoff.study.yaml_file import ConfigError, read_config
 from snakemake_logger_plugin_study.plan import PLAN
 from snakemake_logger_plugin_study.private import (
     config_of_command_line,
@@ -108,7 +106,6 @@ try:
     update_config(GIVEN, OVERRIDES)
     STUDY = load_study(GIVEN, display_path(CONFIG_FILE), WRITTEN)
     RESULTS = f"results/{STUDY.name}"
-    read_claims(picture_names({*PAPER_STATES, *STUDY.initial}))
     # Snakemake would report these errors with a traceback. Results may be read-only as long as no job runs.
     check_folder(os.path.abspath(".snakemake"))
     nearest_folder(RESULTS)

@@ -4,7 +4,7 @@ from burridge_knopoff.job import Job
 
 job = Job(snakemake)
 
-from burridge_knopoff.claims.making import verdicts
+from burridge_knopoff.claims.ledger import verdicts
 
 names = [path.stem for path in job.paths("summaries")]
 summaries = dict(zip(names, job.summaries("summaries"), strict=True))

@@ -71,7 +71,17 @@ def reached_attractors(attractors: xarray.Dataset) -> xarray.Dataset:
     meaningless.
     """
     own = attractors.sel(contact=attractors.attrs["contact"], start=attractors.attrs["start"])
-    slots = (own["branch"] == own["initial_branch"]) & (own["side"] == own["initial_side"]) & (own["branch"] >= 0)
+    known, slot = reached_slots(own)
     names = ["mean_distance", "mean_distance_error", "kind", "period"]
-    reached = own[names].isel(attractor=slots.argmax("attractor")).assign(known=slots.any("attractor"))
+    reached = own[names].isel(attractor=slot).assign(known=known)
     return reached.drop_vars(("contact", "start")).transpose("law", "initial", "a")
+
+
+def reached_slots(attractors: xarray.Dataset) -> tuple[xarray.DataArray, xarray.DataArray]:
+    """Return whether the attractor that an initial state reaches is known, and its slot, over (law, initial, a).
+
+    attractors : under one convention
+    """
+    slots = (attractors["branch"] == attractors["initial_branch"]) & (attractors["side"] == attractors["initial_side"])
+    slots &= attractors["branch"] >= 0
+    return slots.any("attractor"), slots.argmax("attractor")

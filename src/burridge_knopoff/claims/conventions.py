@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.range import Range
 from burridge_knopoff.claims.verdict import (
     CONVENTION,
     FAILS,
@@ -19,7 +20,6 @@ from burridge_knopoff.claims.verdict import (
     READING,
     Measured,
     NotTestableError,
-    Range,
     Verdict,
     describe_where,
     join_words,
@@ -53,13 +53,13 @@ def judge_conventions(
     """
     verdicts, others, unknown = {evidence.own_convention: own}, [], []
     for name, attractors in evidence.other_conventions():
-        found, numbers = judge(attractors)
-        if found:
-            verdicts[name] = found
+        judged, numbers = judge(attractors)
+        if judged:
+            verdicts[name] = judged
         else:
             unknown.append(name)
-        if found and found != own:
-            others.append(f"under ({name}) it {found}: {numbers}")
+        if judged and judged != own:
+            others.append(f"under ({name}) it {judged}: {numbers}")
     if unknown:
         others.append(f"it cannot be judged under {join_words([f'({name})' for name in unknown])}")
     changes = "; ".join([*exceptions, *others])

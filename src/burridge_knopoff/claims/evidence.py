@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
-from burridge_knopoff.claims.verdict import NotTestableError, Range, Verdict
+from burridge_knopoff.claims.range import Range
+from burridge_knopoff.claims.verdict import NotTestableError, Verdict
 from burridge_knopoff.laws import law_of
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_V, has_paper_numbers, initial_state
@@ -47,12 +48,12 @@ class Evidence:
     verdicts: Mapping[str, Verdict] = field(default_factory=dict)
     selected: dict[Hashable, tuple[Any, object]] = field(default_factory=dict, repr=False, compare=False)
 
-    def _cached(self, key: Hashable, select: Callable[[], _T], source: object = None) -> _T:
+    def cached(self, key: Hashable, select: Callable[[], _T], source: object = None) -> _T:
         """Return the selection from a Dataset, `source`, computed at the first request."""
-        own = id(source), key
-        if own not in self.selected:
-            self.selected[own] = select(), source
-        return self.selected[own][0]
+        place = id(source), key
+        if place not in self.selected:
+            self.selected[place] = select(), source
+        return self.selected[place][0]
 
     @cached_property
     def halves(self) -> list[Evidence]:
@@ -80,8 +81,8 @@ class Evidence:
         for law in laws:
             if law not in self.config["laws"]:
                 raise NotTestableError(f"the study has no {law} law")
-            own = self.config["laws"][law]
-            if self._cached((law, str(own)), partial(law_of, law, PAPER_A, own)) != law_of(law, PAPER_A):
+            description = self.config["laws"][law]
+            if self.cached((law, str(description)), partial(law_of, law, PAPER_A, description)) != law_of(law, PAPER_A):
                 raise NotTestableError(f"the study's {law} law is not the paper's")
 
     def check_runs(self) -> None:
@@ -110,7 +111,7 @@ class Evidence:
         if "law" not in dataset.dims or set(dataset["law"].values) <= {*PAPER_LAWS}:
             return dataset
         laws = [law for law in dataset["law"].values if law in PAPER_LAWS]
-        return self._cached("laws", lambda: dataset.sel(law=laws), dataset)
+        return self.cached("laws", lambda: dataset.sel(law=laws), dataset)
 
     def law_comparison(self, dataset: xarray.Dataset) -> xarray.Dataset:
         """Return the comparison of the paper's two laws from a summary that compares laws with the first one.
@@ -123,20 +124,21 @@ class Evidence:
         (other,) = (law for law in PAPER_LAWS if law != first)
         return dataset.sel(other_law=other)
 
-    def state_summary(self, name: str, initial: str) -> xarray.Dataset:
-        """Return a summary over law and a for one of the paper's initial states, completed runs only.
+    def state_summary(self, name: str, initial: str | Sequence[str]) -> xarray.Dataset:
+        """Return a summary for one of the paper's initial states, or over several, completed runs only.
 
-        Raises NotTestableError if the study lacks the state, or uses its name for another.
+        Raises NotTestableError if the study lacks a state, or uses its name for another.
         """
         self.check_runs()
-        self.check_state(initial)
+        for state in [initial] if isinstance(initial, str) else initial:
+            self.check_state(state)
         dataset = self.summary(name)
 
         def select() -> xarray.Dataset:
-            found = dataset.sel(initial=initial)
-            return found.where(found["status"] == Status.COMPLETED) if "status" in found else found
+            runs = dataset.sel(initial=initial if isinstance(initial, str) else list(initial))
+            return runs.where(runs["status"] == Status.COMPLETED) if "status" in runs else runs
 
-        return self._cached(("initial", initial), select, dataset)
+        return self.cached(("initial", initial if isinstance(initial, str) else tuple(initial)), select, dataset)
 
     def check_state(self, initial: str) -> None:
         """Raise NotTestableError if the study has no initial state of that name, or it is not the paper's."""
@@ -154,19 +156,19 @@ class Evidence:
             raise NotTestableError(
                 f"a statement on all {a} needs {least} values of a; {owner} has {chosen.sum()} there"
             )
-        return self._cached(("a", chosen.tobytes()), lambda: dataset.isel(a=chosen), dataset)
+        return self.cached(("a", chosen.tobytes()), lambda: dataset.isel(a=chosen), dataset)
 
     def at(self, dataset: xarray.Dataset, a: float) -> xarray.Dataset:
         """Return a summary at one value of a; raises NotTestableError if it is not in the grid."""
         if a not in dataset["a"].values:
             raise NotTestableError(f"a = {a:g} is not in the grid")
-        return self._cached(("a", a), lambda: dataset.sel(a=a), dataset)
+        return self.cached(("a", a), lambda: dataset.sel(a=a), dataset)
 
     def weakening(self, law: str, a: np.ndarray) -> np.ndarray:
         """Return −F'(v), the rate at which friction falls with velocity at the driver velocity, at values of a."""
         v = self.config["v"]
         key = law, v, a.tobytes()
-        return self._cached(key, lambda: np.array([-float(law_of(law, value).slope(v)) for value in a]))
+        return self.cached(key, lambda: np.array([-float(law_of(law, value).slope(v)) for value in a]))
 
     @property
     def own_convention(self) -> str:
@@ -194,7 +196,7 @@ class Evidence:
 
     def _convention_attractors(self, contact: str, start: str) -> xarray.Dataset:
         attractors = self.summary("attractors")
-        return self._cached((contact, start), lambda: attractors.sel(contact=contact, start=start), attractors)
+        return self.cached((contact, start), lambda: attractors.sel(contact=contact, start=start), attractors)
 
     def critical_a(self, law: str) -> tuple[float, float]:
         """Return a_c, at which synchrony loses stability, and its error; NaN if the study has no orbits."""

@@ -47,10 +47,10 @@ def group_by_topic(claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str,
 
 
 def _grouped(key: str, claims: Iterable[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    found: dict[str, list[dict[str, Any]]] = {}
+    groups: dict[str, list[dict[str, Any]]] = {}
     for claim in claims:
-        found.setdefault(claim[key], []).append(claim)
-    return found
+        groups.setdefault(claim[key], []).append(claim)
+    return groups
 
 
 def as_json(content: Mapping[str, Any]) -> str:
@@ -125,8 +125,8 @@ def _section(claim: Mapping[str, Any], figures: str) -> Iterator[str]:
     yield f"#### {claim['name']}"
     yield f"*{claim['statement']}* ({claim['place']})"
     under = {CONVENTION: "under the study's convention", READING: "under the first reading"}.get(claim["verdict"])
-    own = f" ({under}: {claim['own']})" if under else ""
-    yield f"**{claim['verdict'].capitalize()}**{own}. {claim['reason']}"
+    under_first = f" ({under}: {claim['own']})" if under else ""
+    yield f"**{claim['verdict'].capitalize()}**{under_first}. {claim['reason']}"
     if claim["changes"]:
         items = [_link(item, names) for item in claim["changes"].split("; ")]
         yield "\n".join(["Exceptions and other cases:", "", *map(_item, items)])

@@ -6,16 +6,21 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import partial
+from graphlib import TopologicalSorter
 from typing import Any
 
 import numpy as np
+import xarray
 
-from burridge_knopoff.claims.choices import other_tolerances
 from burridge_knopoff.claims.claim import Claim
 from burridge_knopoff.claims.conventions import rounded_state_changes
 from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.formats import as_csv, as_json, as_markdown
 from burridge_knopoff.claims.margins import changing_choices
-from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Range, Verdict
+from burridge_knopoff.claims.other_tolerances import other_tolerances
+from burridge_knopoff.claims.paper import CLAIMS
+from burridge_knopoff.claims.range import Range
+from burridge_knopoff.claims.verdict import NOT_TESTABLE, VERDICTS, NotTestableError, Verdict
 from burridge_knopoff.provenance.sources import provenance
 from burridge_knopoff.study.paper import PAPER_LAWS
 
@@ -29,7 +34,7 @@ def judge(claim: Claim, evidence: Evidence, parameters: Mapping[str, Any] | None
     try:
         evidence.check_setting()
         evidence.check_laws(_claim_laws(parameters))
-        return claim.judge(evidence, **parameters)
+        return claim(evidence, **parameters)
     except NotTestableError as error:
         return Verdict(NOT_TESTABLE, f"Not testable here: {error}.")
 
@@ -48,8 +53,8 @@ def _add_changes(claim: Claim, evidence: Evidence, verdict: Verdict, others: Seq
     if verdict.verdict != NOT_TESTABLE and a and "initial" in claim.parameters and claim.topic != "model":
         states = np.atleast_1d(claim.parameters["initial"]).tolist()
         changes += rounded_state_changes(evidence, states, _claim_laws(claim.parameters), a)
-    found = changing_choices(partial(judge, claim), evidence, claim.parameters, verdict, others)
-    return replace(verdict, changes="; ".join(changes), changing_choices=found)
+    choices = changing_choices(claim, partial(judge, claim), evidence, verdict, others)
+    return replace(verdict, changes="; ".join(changes), changing_choices=choices)
 
 
 def _search_depth(evidence: Evidence) -> str:
@@ -64,17 +69,20 @@ def _search_depth(evidence: Evidence) -> str:
     )
 
 
-def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collection[str]) -> dict[str, Any]:
+def ledger(study: str, claims: Sequence[Claim], evidence: Evidence, figures: Collection[str]) -> dict[str, Any]:
     """Return the judged claims as the content of claims.json, which docs/data.md describes.
 
     figures : names of the study's figures; a claim with another figure gets none
     """
     verdicts: dict[str, Verdict] = {}
     # A claim about other claims reads their verdicts from the evidence.
-    known = replace(evidence, verdicts=verdicts)
-    others = list(other_tolerances(known))
-    for claim in claims:
-        verdicts[claim.name] = _add_changes(claim, known, judge(claim, known), others)
+    judged = replace(evidence, verdicts=verdicts)
+    others = list(other_tolerances(judged))
+    # Claims come after those on which they depend.
+    by_name = {claim.name: claim for claim in claims}
+    for name in TopologicalSorter({claim.name: claim.depends_on for claim in claims}).static_order():
+        if name in by_name:
+            verdicts[name] = _add_changes(by_name[name], judged, judge(by_name[name], judged), others)
     independent = [verdicts[claim.name].verdict for claim in claims if not claim.depends_on]
     return {
         "study": study,
@@ -83,33 +91,42 @@ def ledger(study: str, claims: list[Claim], evidence: Evidence, figures: Collect
         **provenance(__name__),
         "counts": {name: sum(verdict.verdict == name for verdict in verdicts.values()) for name in VERDICTS},
         "independent_counts": {name: independent.count(name) for name in VERDICTS},
-        "claims": [
-            {
-                "name": claim.name,
-                "topic": claim.topic,
-                "statement": claim.statement,
-                "place": claim.place,
-                "verdict": verdict.verdict,
-                "own": verdict.own or verdict.verdict,
-                "reason": verdict.reason,
-                "measured": [
-                    {
-                        "quantity": item.quantity,
-                        "value": _json_number(item.value),
-                        "error": _json_number(item.error),
-                        "proved": item.proved,
-                    }
-                    for item in verdict.measured
-                ],
-                "changes": verdict.changes,
-                "changing_choices": list(verdict.changing_choices),
-                "conventions": dict(verdict.conventions),
-                "figure": claim.figure if claim.figure in figures else "",
-                "depends_on": list(claim.depends_on),
-            }
-            for claim, verdict in zip(claims, verdicts.values(), strict=True)
-        ],
+        "claims": [_entry(claim, verdicts[claim.name], figures) for claim in claims],
     }
+
+
+def _entry(claim: Claim, verdict: Verdict, figures: Collection[str]) -> dict[str, Any]:
+    """Return a claim with its verdict as an entry of claims.json."""
+    return {
+        "name": claim.name,
+        "topic": claim.topic,
+        "statement": claim.statement,
+        "place": claim.place,
+        "verdict": verdict.verdict,
+        "own": verdict.own or verdict.verdict,
+        "reason": verdict.reason,
+        "measured": [
+            {**vars(item), "value": _json_number(item.value), "error": _json_number(item.error)}
+            for item in verdict.measured
+        ],
+        "changes": verdict.changes,
+        "changing_choices": list(verdict.changing_choices),
+        "conventions": dict(verdict.conventions),
+        "figure": claim.figure if claim.figure in figures else "",
+        "depends_on": list(claim.depends_on),
+    }
+
+
+def verdicts(
+    config: Mapping[str, Any], summaries: Mapping[str, xarray.Dataset], figures: Sequence[str]
+) -> tuple[str, str, str]:
+    """Return the verdicts on all claims of a study as JSON, CSV and Markdown.
+
+    config : the keys of a study's config that claims read, and the name of the study
+    summaries : by name; figures : names of those pictures of the study to which claims refer
+    """
+    content = ledger(config["study"], list(CLAIMS.values()), Evidence(summaries, config), figures)
+    return as_json(content), as_csv(content), as_markdown(content, "../figures")
 
 
 def _json_number(value: float | None) -> float | None:

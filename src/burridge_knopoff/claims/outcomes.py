@@ -1,53 +1,105 @@
-"""The outcome of the paper's initial states: in the runs, or the attractors reached under one convention."""
+"""The outcome of the paper's initial states over (law, initial, a): the motion of the runs, or on attractors reached.
+
+Both have the same properties, so that one expression judges a statement from the runs of the study and, under other
+conventions of contact and start, from the attractors that the states reach.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
 
-import numpy as np
+import xarray
 
-from burridge_knopoff.attractors.lookup import reached_values
+from burridge_knopoff.attractors.lookup import reached_slots
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.verdict import Range
+from burridge_knopoff.claims.range import Range
 from burridge_knopoff.motion.kind import MotionKind, merge_chaos
 
-if TYPE_CHECKING:
-    import xarray
-
+#: Kinds of motion that repeat.
 PERIODIC_KINDS = (MotionKind.SYNCHRONIZED, MotionKind.PERIODIC)
 
 
-def synchrony(evidence: Evidence, initial: str, a: Range, inside: xarray.Dataset | None = None) -> xarray.DataArray:
-    """Return where an initial state leads to synchrony in a range of a, over (law, a): 1 or 0, NaN where undetermined.
+@dataclass(frozen=True)
+class Runs:
+    """The motion of the study's runs from some initial states in a range of a, completed runs only."""
 
-    inside : the attractors there under one convention, to judge by the branch reached instead of the runs
+    evidence: Evidence
+    initial: Sequence[str]
+    a: Range
+
+    def of(self, summary: str, name: str) -> xarray.DataArray:
+        """Return a variable of a summary."""
+        return self.evidence.choose(self.evidence.state_summary(summary, self.initial), self.a)[name]
+
+    @property
+    def kind(self) -> xarray.DataArray:
+        """Kind of motion of the attractor that a run has reached, or of the run; all chaos is one kind."""
+        return xarray.apply_ufunc(merge_chaos, self.of("agreement", "kind"))
+
+    @property
+    def synchronized(self) -> xarray.DataArray:
+        """Whether the end blocks are synchronized: 1 or 0, NaN where the run did not complete."""
+        return self.of("mean_distance", "synchronized")
+
+    @property
+    def section(self) -> xarray.Dataset:
+        """Number of section points, and mean, smallest and largest W' of them; NaN where the run did not complete."""
+        names = {f"section_velocity_{name}": name for name in ("mean", "min", "max")}
+        runs = self.evidence.choose(self.evidence.state_summary("runs", self.initial), self.a)
+        return runs[["section_count", *names]].rename({"section_count": "count", **names})
+
+
+@dataclass(frozen=True)
+class Reached:
+    """The motion on the attractors that some initial states reach.
+
+    attractors : under one convention, in a range of a
     """
-    if inside is None:
-        return evidence.choose(evidence.state_summary("mean_distance", initial), a)["synchronized"]
-    branch = inside["initial_branch"].sel(initial=initial)
-    return (branch == 0).where(branch >= 0)
 
+    evidence: Evidence
+    attractors: xarray.Dataset
+    initial: Sequence[str]
 
-def motion_kinds(
-    evidence: Evidence, initial: str, law: str, a: Range, inside: xarray.Dataset | None = None
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return (a, kind of motion) from a state in a range of a; all chaos is one kind.
+    def of(self, name: str) -> xarray.DataArray:
+        """Return a variable of the attractors; meaningless where `known` is false."""
+        _, slot = self._slots
+        return self.attractors[name].isel(attractor=slot)
 
-    inside : the attractors there under one convention, to judge by the attractor reached instead of the runs
-    """
-    if inside is None:
-        runs = evidence.choose(evidence.state_summary("agreement", initial), a).sel(law=law)
-        return runs["a"].values, merge_chaos(runs["kind"].values)
-    return inside["a"].values, kinds_reached(inside, initial, law)
+    @property
+    def known(self) -> xarray.DataArray:
+        """Whether the attractor is known."""
+        return self._slots[0]
 
+    @property
+    def branch(self) -> xarray.DataArray:
+        """Branch of the attractor."""
+        return self.attractors["initial_branch"].sel(initial=list(self.initial))
 
-def kinds_reached(attractors: xarray.Dataset, initial: str, law: str) -> np.ndarray:
-    """Return the kind of motion reached from a state, shape (a,); all chaos is one kind.
+    @property
+    def kind(self) -> xarray.DataArray:
+        """Kind of motion on the attractor; all chaos is one kind."""
+        return xarray.where(self.known, xarray.apply_ufunc(merge_chaos, self.of("kind")), MotionKind.UNDETERMINED)
 
-    attractors : under one convention
-    """
-    known, kind = reached_values(attractors, initial, law, "kind")
-    return np.where(known, merge_chaos(kind), MotionKind.UNDETERMINED)
+    @property
+    def synchronized(self) -> xarray.DataArray:
+        """Whether the attractor is the synchronized one: 1 or 0, NaN where it is not known."""
+        return (self.branch == 0).where(self.branch >= 0)
+
+    @property
+    def section(self) -> xarray.Dataset:
+        """Number of section points, and mean W' of them; NaN where they are not known."""
+        count = self.of("section_count")
+        known = self.known & (count >= 0)
+        return xarray.Dataset({"count": count.where(known), "mean": self.of("section_velocity_mean").where(known)})
+
+    @property
+    def _slots(self) -> tuple[xarray.DataArray, xarray.DataArray]:
+        def slots() -> tuple[xarray.DataArray, xarray.DataArray]:
+            return reached_slots(self.attractors.sel(initial=list(self.initial)))
+
+        return self.evidence.cached(("slots", tuple(self.initial)), slots, self.attractors)
 
 
 def reached_attractor(
@@ -57,6 +109,6 @@ def reached_attractor(
 
     attractors : under one convention
     """
-    (there,) = np.flatnonzero(attractors["a"].values == at)
-    found = [reached_values(attractors, initial, law, name) for name in names]
-    return tuple(values[there] for _, values in found) if found[0][0][there] else None
+    known, slot = (part.sel(a=at, initial=initial, law=law).item() for part in reached_slots(attractors))
+    attractor = attractors.sel(a=at, law=law).isel(attractor=slot)
+    return tuple(attractor[name].values for name in names) if known else None

@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.claims.range import Range
 from burridge_knopoff.claims.verdict import (
     HOLDS,
     LOOSELY,
     Measured,
     NotTestableError,
-    Range,
     count_share,
     format_shares,
     judge_worst_share,
@@ -78,8 +78,8 @@ class PhaseOutcomes:
         self.cells = np.ix_(np.arange(len(self.laws)), self.inside, self.without_backward_slip)
         cells = zip(self.laws, self.holds[self.cells], strict=True)
         shares = {law: count_share(cell.all(axis=1)) for law, cell in cells}
-        self.shares, own = format_shares(shares), judge_worst_share(shares, criteria.loose_share)
-        self.verdict = LOOSELY if own == HOLDS and not self.holds[:, self.inside].all() else own
+        self.shares, worst = format_shares(shares), judge_worst_share(shares, criteria.loose_share)
+        self.verdict = LOOSELY if worst == HOLDS and not self.holds[:, self.inside].all() else worst
 
     @property
     def amplitudes(self) -> str:
@@ -90,9 +90,9 @@ class PhaseOutcomes:
     def format_fractions(self) -> str:
         """Return the fractions of the judged states as text, with Wilson intervals."""
         synchronized, antiphase = (
-            f"{percent(found.fraction[self.cells])} {words} "
-            f"(Wilson intervals {percent(found.low[self.cells], found.high[self.cells])})"
-            for found, words in (
+            f"{percent(outcome.fraction[self.cells])} {words} "
+            f"(Wilson intervals {percent(outcome.low[self.cells], outcome.high[self.cells])})"
+            for outcome, words in (
                 (self.synchronized, "of the close phases synchronize"),
                 (self.antiphase, "of the opposite phases end in antiphase"),
             )
@@ -105,11 +105,11 @@ class PhaseOutcomes:
         words : description of the states; at : mask of amplitudes
         """
         cells = np.ix_(np.arange(len(self.laws)), self.inside, at)
-        for found, ending in (
+        for outcome, ending in (
             (self.synchronized, "close phases that synchronize"),
             (self.antiphase, "opposite phases in antiphase"),
         ):
-            for law, part in zip(self.laws, found.fraction[cells], strict=True):
+            for law, part in zip(self.laws, outcome.fraction[cells], strict=True):
                 yield Measured(f"smallest share of {ending}, {words}, {law}", float(part.min()))
 
 
@@ -132,5 +132,5 @@ def _count_states(claimed: xarray.DataArray, chosen: np.ndarray, share: float) -
     if not fraction_interval(count, count)[1] >= share:
         raise NotTestableError(f"{count} states of the same phases are too few for a share of {share:g}")
     hits = states.sum(("phase_difference", "state")).transpose("law", "a", "amplitude").values
-    found = np.transpose([fraction_interval(int(number), count) for number in hits.ravel()])
-    return FractionIntervals(*found.reshape(3, *hits.shape))
+    interval = np.transpose([fraction_interval(int(number), count) for number in hits.ravel()])
+    return FractionIntervals(*interval.reshape(3, *hits.shape))

@@ -21,6 +21,9 @@ NOT_TESTABLE = "not testable"
 #: All verdicts, in the order of counts.
 VERDICTS = (HOLDS, LOOSELY, CONVENTION, READING, FAILS, NOT_TESTABLE)
 
+# A fraction of fewer values than this is written as a count.
+FEW = 10
+
 # More than this many spans of a are counted instead of listed.
 MOST_SPANS = 8
 
@@ -67,36 +70,6 @@ class Verdict:
 
 
 @dataclass(frozen=True)
-class Range:
-    """A range of the friction parameter: includes `first` and `last`, excludes `above` and `below`."""
-
-    first: float | None = None
-    last: float | None = None
-    above: float | None = None
-    below: float | None = None
-
-    def __str__(self) -> str:
-        if self.above is not None and self.last is None and self.below is None:
-            return f"a > {self.above:g}"
-        low = f"{self.first:g} ≤ " if self.first is not None else f"{self.above:g} < " if self.above is not None else ""
-        high = f" ≤ {self.last:g}" if self.last is not None else f" < {self.below:g}" if self.below is not None else ""
-        return f"{low}a{high}"
-
-    def choose(self, a: np.ndarray) -> np.ndarray:
-        """Return which values lie in the range, same shape as a."""
-        chosen = np.ones(np.shape(a), dtype=bool)
-        if self.first is not None:
-            chosen &= a >= self.first
-        if self.last is not None:
-            chosen &= a <= self.last
-        if self.above is not None:
-            chosen &= a > self.above
-        if self.below is not None:
-            chosen &= a < self.below
-        return chosen
-
-
-@dataclass(frozen=True)
 class Share:
     """A fraction as a count: so many of `count` values are as claimed."""
 
@@ -114,6 +87,8 @@ class Share:
         return fraction_interval(self.hits, self.count)[1:]
 
     def __str__(self) -> str:
+        if self.count < FEW:
+            return f"{self.hits} of {self.count}"
         return "100 %" if self.hits == self.count else "0 %" if not self.hits else f"{100 * self.value:.1f} %"
 
 
@@ -167,15 +142,15 @@ def judge_worst_share(shares: Mapping[str, Share], loose: float) -> str:
     Raises NotTestableError, with the fraction and its interval, if the values are too few to decide.
     """
     verdicts = {name: judge_share(share, loose) for name, share in shares.items()}
-    found = worst_verdict(verdicts.values())
-    if found == NOT_TESTABLE:
+    worst = worst_verdict(verdicts.values())
+    if worst == NOT_TESTABLE:
         name = next(name for name, verdict in verdicts.items() if verdict == NOT_TESTABLE)
         share = shares[name]
         raise NotTestableError(
             f"it is true in {share.hits} of {share.count} cases ({name}), and the 95 % interval of this share includes "
             f"{loose:g} (its upper end is {share.interval[1]:.2f}), so there are too few cases to decide"
         )
-    return found
+    return worst
 
 
 def judge_shares(shares: Mapping[str, Share], loose: float) -> tuple[str, str]:

@@ -20,6 +20,9 @@ REPETITIONS = 3
 # The distance between cycles of a period must be less than that of any shorter period by this factor.
 IMPROVEMENT = 0.1
 
+# Section points whose velocities W' differ by no more than this count as one point.
+SAME_VELOCITY = 1e-6
+
 # The distance between cycles in the last of PARTS parts of a run is compared with the smallest one. Distances below
 # ROUNDING times the tolerance are rounding.
 PARTS = 8
@@ -138,6 +141,11 @@ def _misfit(sequence: np.ndarray, period: int) -> float:
     length = max(len(sequence) - len(sequence) // 2, REPETITIONS * period) // period * period
     cycles = sequence[len(sequence) - length :].reshape(-1, period, *sequence.shape[1:])
     return float(np.ptp(cycles, axis=0).max())
+
+
+def count_distinct(velocity: np.ndarray) -> int:
+    """Return how many section points W', shape (n,), differ by more than SAME_VELOCITY."""
+    return int(np.count_nonzero(np.diff(np.sort(velocity)) > SAME_VELOCITY)) + 1 if len(velocity) else 0
 
 
 def section_blocks(stops: np.ndarray) -> tuple[int, int]:

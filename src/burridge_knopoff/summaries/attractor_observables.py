@@ -16,9 +16,6 @@ from burridge_knopoff.summaries.correlation import correlation
 #: Time for which each attractor is followed.
 DURATION = 1000.0
 
-# Section points whose velocities differ by no more than this count as one point.
-SAME_VELOCITY = 1e-6
-
 # The spectrum uses every THINNING-th sample of the velocity.
 THINNING = 8
 
@@ -51,8 +48,3 @@ def follow_attractor(model: Model, start: ChainState, section: Section = SUM) ->
     found = run(model, start, settings)
     crossings = found.crossing_velocity[found.crossing_direction > 0]
     return AttractorObservables(crossings, correlation(found.velocity[:, 0], found.velocity[:, -1]), found.velocity)
-
-
-def count_distinct(velocity: np.ndarray) -> int:
-    """Return how many section points W', shape (n,), differ by more than SAME_VELOCITY."""
-    return int(np.count_nonzero(np.diff(np.sort(velocity)) > SAME_VELOCITY)) + 1 if len(velocity) else 0

@@ -24,9 +24,10 @@ from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import CONTACTS, STARTS, Model
 from burridge_knopoff.model.sampling import fraction_interval
+from burridge_knopoff.motion.period import count_distinct
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.section import Section
-from burridge_knopoff.summaries.attractor_observables import count_distinct, follow_attractor
+from burridge_knopoff.summaries.attractor_observables import follow_attractor
 from burridge_knopoff.summaries.equilibrium import is_sliding_attracting
 
 _SLOT = ("a", "attractor")

@@ -17,7 +17,7 @@ from burridge_knopoff.dataset.columns import empty_columns
 from burridge_knopoff.dataset.point import POINT_VARIABLES
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
-from burridge_knopoff.motion.period import SECTION, repetition_of
+from burridge_knopoff.motion.period import SECTION, count_distinct, repetition_of
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.points import Grid, read_point
@@ -41,6 +41,12 @@ VARIABLES = {
         "f8",
         "settling time of J: earliest sampled time tau after which all samples of J are below the level",
     ),
+    "section_count": Variable(
+        RUN, "i4", "number of section points: distinct W' at upward crossings of W = 0 in the second half of the window"
+    ),
+    "section_velocity_mean": Variable(RUN, "f8", "mean W' of the section: at all upward crossings of W = 0"),
+    "section_velocity_min": Variable(RUN, "f8", "smallest W' of the section: at upward crossings of W = 0"),
+    "section_velocity_max": Variable(RUN, "f8", "largest W' of the section: at upward crossings of W = 0"),
     "repetition_points": Variable(
         RUN, "i4", "section points until the state repeats: upward ones; 0 if the state does not repeat"
     ),
@@ -92,6 +98,10 @@ def summarize(grid: Grid, period_tolerance: float, longest_period: float) -> xar
     def scalars(run: Mapping[str, np.ndarray], point: Sequence[str]) -> dict[str, Any]:
         law, _, *names = point
         values: dict[str, Any] = {name: run[name] for name in _COPIED}
+        upward = run["crossing_velocity"][run["crossing_direction"] > 0]
+        values["section_count"] = count_distinct(upward[len(upward) // 2 :])
+        if len(upward):
+            values |= {f"section_velocity_{name}": getattr(upward, name)() for name in ("mean", "min", "max")}
         values["mirror_symmetric"] = grid.model_of(law, *names).chain.is_mirror_symmetric
         if run["status"] == Status.COMPLETED:
             values["settling_time"] = settling_time(run["time"], run["distance"], LEVELS)

@@ -13,6 +13,7 @@ from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.frequency import leading_frequency
+from burridge_knopoff.motion.jumps import event_jumps
 from burridge_knopoff.periodic_orbits.grazing_distances import longest_spacing
 from burridge_knopoff.running.ensemble import new_ensemble
 from burridge_knopoff.running.status import Status
@@ -57,6 +58,14 @@ VARIABLES = {
         _BLOCK,
         "f8",
         "amplitude of the position: half its range relative to the driver among the samples of the stored trajectory",
+    ),
+    "stop_jump": Variable(
+        RUN, "f8", "smallest jump of U'' at a stop: of the block that stops, among the events with states"
+    ),
+    "start_jump": Variable(
+        RUN,
+        "f8",
+        "smallest jump of U''' at a start: of the block that starts, among the events with states; U'' does not jump",
     ),
 }
 _READ = ["status", "position", "velocity", "trajectory_time", "event_position", "event_velocity", *EVENTS]
@@ -115,6 +124,17 @@ def _cycles(
         "velocity_correlation": correlation(record[:, 0], record[:, -1]),
         "least_velocity": run["velocity"].min(axis=0),
         "position_amplitude": 0.5 * np.ptp(run["position"], axis=0),
+        **_smallest_jumps(run, model),
+    }
+
+
+def _smallest_jumps(run: Mapping[str, np.ndarray], model: Model) -> dict[str, float]:
+    """Return the smallest jumps of U'' and U''' at events; NaN without any."""
+    states = run["event_position"], run["event_velocity"]
+    stops, starts = event_jumps(model, *states, run["event_block"], run["event_kind"] == STOP)
+    return {
+        "stop_jump": stops.min() if len(stops) else np.nan,
+        "start_jump": starts.min() if len(starts) else np.nan,
     }
 
 

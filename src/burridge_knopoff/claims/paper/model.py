@@ -2,26 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from fractions import Fraction
 
 import numpy as np
 
+from burridge_knopoff.claims.choice import LooseTolerance, Near, Tolerance
+from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import Evidence, finite
-from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.range import POSITIVE, Range
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
     LOOSELY,
     Measured,
     NotTestableError,
-    Range,
     Verdict,
     describe_where,
     extremes,
     judge_value,
     worst_verdict,
 )
+from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.study.formatting import span, with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
@@ -29,9 +31,73 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 PARTS = ("real", "imaginary")
 
 
-@judge("equilibrium")
-def equilibrium_position(evidence: Evidence, law: str, coefficients: Sequence[float], tolerance: float) -> Verdict:
-    """Judge the formula U_i − vτ = −c_i (1 − av) for the unstable equilibrium, with given c_i, at all a."""
+# Random states, units and friction at which the equations of motion are compared.
+COMPARISONS = 100
+
+
+@claim("Eqs. 1 and 2", "friction_laws")
+def dimensionless_equations(evidence: Evidence, *, law: str = "nonlinear") -> Verdict:
+    """In the units 1/ω of time and F(0)/k of position, Eq. 1 becomes Eq. 2, with v = V√(km)/F(0) and a = cF(0)/√(km).
+
+    Both are rational functions of the state, the time and √k, √m, F(0), c and V. They are compared in exact fractions
+    at random values; rational functions of a few degrees that agree at a hundred random values are the same.
+    """
+    evidence.check_blocks()
+    differences = [equation_difference(Chain(3), np.random.default_rng(number)) for number in range(COMPARISONS)]
+    same = sum(difference == 0 for difference in differences)
+    largest = float(max(differences))
+    reason = f"Eq. 1 in these units is Eq. 2, in exact fractions, at {same} of {COMPARISONS} random states and units."
+    return Verdict(HOLDS if same == COMPARISONS else FAILS, reason, [Measured("largest difference", largest)])
+
+
+def equation_difference(chain: Chain, random: np.random.Generator) -> Fraction:
+    """Return the largest |ΔU''| between Eq. 1 in dimensionless units and the equations of a chain of three blocks.
+
+    The state of slipping blocks, the time and all units are random fractions.
+    """
+
+    def fractions(count: int) -> list[Fraction]:
+        return [Fraction(*map(int, pair)) for pair in random.integers(1, 1000, (count, 2))]
+
+    root_k, root_m, friction, c, speed, time = fractions(6)
+    k, m, unit_of_time = root_k**2, root_m**2, root_m / root_k
+    x, velocity = fractions(3), fractions(3)
+    # Eq. 1, divided by m.
+    forces = (
+        k * (x[1] - 2 * x[0] + speed * time) - friction / (1 + c * velocity[0]),
+        k * (x[0] - 4 * x[1] + x[2] + 2 * speed * time) - friction / (1 + c * velocity[1]),
+        k * (x[1] - 2 * x[2] + speed * time) - friction / (1 + c * velocity[2]),
+    )
+    with_units = [force / m for force in forces]
+    a, v = c * friction / (root_k * root_m), speed * root_k * root_m / friction
+    u, slip = [k * value / friction for value in x], [k * value * unit_of_time / friction for value in velocity]
+    tau = time / unit_of_time
+    dimensionless = [
+        Fraction(drive) * v * tau
+        - sum((Fraction(spring) * value for spring, value in zip(row, u, strict=True)), Fraction())
+        - Fraction(threshold) / (1 + a * rate)
+        for drive, row, threshold, rate in zip(
+            chain.driving.tolist(), chain.stiffness.tolist(), chain.thresholds.tolist(), slip, strict=True
+        )
+    ]
+    return max(
+        abs(k * unit_of_time**2 * value / friction - other)
+        for value, other in zip(with_units, dimensionless, strict=True)
+    )
+
+
+@claim("Results, below Eq. 5", "equilibrium", "equilibrium")
+def equilibrium(
+    evidence: Evidence,
+    *,
+    law: str = "linearized",
+    coefficients: tuple[float, ...] = (0.8333333333333334, 0.6666666666666666, 0.8333333333333334),
+    tolerance: Tolerance = 1e-10,
+) -> Verdict:
+    """The unstable equilibrium lies at vτ − 5(1 − av)/6, vτ − 2(1 − av)/3 and vτ − 5(1 − av)/6 (linearized law).
+
+    U_i − vτ = −c_i (1 − av), at all a; coefficients : c_i
+    """
     evidence.check_blocks()
     equilibrium = evidence.summary("equilibrium").sel(law=law)
     v = evidence.config["v"]
@@ -50,23 +116,25 @@ def equilibrium_position(evidence: Evidence, law: str, coefficients: Sequence[fl
     return Verdict(verdict, reason, measured)
 
 
-@judge("equilibrium")
-def equilibrium_unstable(evidence: Evidence, a: Range) -> Verdict:
-    """Judge whether some eigenvalues of the Jacobian at uniform sliding are positive, under both laws.
+@claim("Results", "equilibrium", "equilibrium")
+def equilibrium_unstable(evidence: Evidence, *, a: Range = POSITIVE) -> Verdict:
+    """As long as friction decreases with velocity, some eigenvalues of the stability matrix of uniform motion are
+    positive.
 
-    A positive eigenvalue is a positive number. For instability a positive real part is enough.
+    «Some eigenvalues of the Jacobian are always positive»: positive numbers, or numbers with a positive real part,
+    which is enough for instability.
     """
     evidence.check_blocks()
     equilibrium = evidence.choose(evidence.summary("equilibrium"), a)
     readings: dict[str, list[str]] = {"an eigenvalue is a positive number": [], "it has a positive real part": []}
     measured: list[Measured] = []
     for law in PAPER_LAWS:
-        found = equilibrium.sel(law=law)
-        real, imaginary = (found["eigenvalue"].sel(part=part).transpose("a", "mode").values for part in PARTS)
+        sliding = equilibrium.sel(law=law)
+        real, imaginary = (sliding["eigenvalue"].sel(part=part).transpose("a", "mode").values for part in PARTS)
         for of_laws, chosen in zip(readings.values(), ((real > 0.0) & (imaginary == 0.0), real > 0.0), strict=True):
             of_laws.append(HOLDS if chosen.any(axis=1).all() else FAILS)
         growth = real.max(axis=1)
-        difference = float(np.abs(growth - found["growth_rate"].values).max())
+        difference = float(np.abs(growth - sliding["growth_rate"].values).max())
         measured += [
             Measured(f"smallest of the largest real parts, {law}", float(growth.min())),
             Measured(f"smallest modulus of an imaginary part, {law}", float(np.abs(imaginary).min())),
@@ -83,13 +151,24 @@ def equilibrium_unstable(evidence: Evidence, a: Range) -> Verdict:
     return combine_readings(verdicts, reason, measured, describe_where("no growth", whole["a"].values, stable))
 
 
-@judge("equilibrium")
-def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, loose: float, a: Range) -> Verdict:
-    """Judge the growth rate of perturbations of uniform sliding in units of −F'(v), the slope of friction at v."""
+@claim("Results", "equilibrium", "equilibrium")
+def growth(
+    evidence: Evidence,
+    *,
+    law: str = "linearized",
+    claimed: float = 1.0,
+    tolerance: Tolerance = 0.05,
+    loose: LooseTolerance = 0.1,
+    a: Range = POSITIVE,
+) -> Verdict:
+    """The amplitude of the velocity oscillations grows as exp(−F'(v) t), with the slope F' of the friction law.
+
+    Perturbations of uniform sliding grow in simulations at a rate in units of −F'(v).
+    """
     evidence.check_blocks()
-    found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
-    values = found["a"].values
-    ratio = found["growth_rate"].values / evidence.weakening(law, values)
+    sliding = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
+    a_values = sliding["a"].values
+    ratio = sliding["growth_rate"].values / evidence.weakening(law, a_values)
     measured = extremes("growth rate over −F'(v), in simulations", ratio)
     verdict = worst_verdict(judge_value(item.value, claimed, tolerance, loose) for item in measured)
     rate = with_error(float(ratio.mean()), float(np.ptp(ratio)))
@@ -97,11 +176,17 @@ def growth_rate(evidence: Evidence, law: str, claimed: float, tolerance: float, 
     return Verdict(verdict, reason, measured)
 
 
-@judge("equilibrium", "stick_slip")
-def near_equilibrium(
-    evidence: Evidence, initial: tuple[str, str], law: str, at: float, near: float, loose: float
+@claim("Results", "motion_minus", "equilibrium", "stick_slip")
+def minus_near_equilibrium(
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    law: str = "linearized",
+    at: float = 0.08,
+    near: Near = 1.0,
+    loose: LooseTolerance = 2.0,
 ) -> Verdict:
-    """Judge whether the first block of one state starts close to its equilibrium, and that of another state does not.
+    """In minus the first block begins close to its stationary position; in plus it does not.
 
     initial : the state that is close, the state that is not
     near, loose : close means up to this many amplitudes of the block in the motion reached from the first state, and
@@ -129,9 +214,18 @@ def near_equilibrium(
     return Verdict(verdict, reason, measured)
 
 
-@judge("mean_distance")
-def friction_keeps_sign(evidence: Evidence, initial: Sequence[str], law: str, a: Range) -> Verdict:
-    """Judge whether the friction on a slipping block stays positive in every run."""
+@claim("The linearization", "friction_laws", "mean_distance")
+def friction_keeps_sign(
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    law: str = "linearized",
+    a: Range = POSITIVE,
+) -> Verdict:
+    """The linearized friction does not change its sign, which would be an artefact.
+
+    The friction on a slipping block stays positive in every run.
+    """
     least, where = np.inf, ""
     negative = []
     for state in initial:
@@ -147,12 +241,15 @@ def friction_keeps_sign(evidence: Evidence, initial: Sequence[str], law: str, a:
     return Verdict(HOLDS if least > 0.0 else FAILS, reason, [Measured("smallest Φ(U')", least)], "; ".join(negative))
 
 
-@judge("equilibrium")
-def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdict:
-    """Judge the number of exponentials in the solution while all blocks slip; complex pairs count loosely as one."""
+@claim("Eq. 3", "equilibrium", "equilibrium")
+def exponentials(evidence: Evidence, *, law: str = "linearized", claimed: int = 3, a: Range = POSITIVE) -> Verdict:
+    """Between two events a position is a sum of three exponentials and a linear function of time.
+
+    Complex pairs count loosely as one.
+    """
     evidence.check_blocks()
-    found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)["eigenvalue"]
-    real, imaginary = (found.sel(part=part).values for part in PARTS)
+    eigenvalue = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)["eigenvalue"]
+    real, imaginary = (eigenvalue.sel(part=part).values for part in PARTS)
     counts, pairs = (
         np.array([len({*zip(x.round(12), y.round(12), strict=True)}) for x, y in zip(real, part, strict=True)])
         for part in (imaginary, np.abs(imaginary))
@@ -169,12 +266,19 @@ def exponentials(evidence: Evidence, law: str, claimed: int, a: Range) -> Verdic
     return Verdict(verdict, reason, measured)
 
 
-@judge("lyapunov", "equilibrium")
-def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed: int, a: Range) -> Verdict:
-    """Judge the dimension of the map from event to event; the claim holds loosely if some directions vanish.
+@claim("Abstract", "lyapunov", "lyapunov", "equilibrium")
+def map_dimension(
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    law: str = "linearized",
+    claimed: int = 6,
+    a: Range = POSITIVE,
+) -> Verdict:
+    """The model is transformed into a six-dimensional mapping from one stop or start to the next.
 
-    A state has two components per block: position relative to the driver, and velocity. Each Lyapunov exponent of −∞
-    is a direction that sticking has removed permanently.
+    A state has two components per block: position relative to the driver, and velocity. Each Lyapunov exponent of
+    −∞ is a direction that sticking has removed permanently; the claim holds loosely if there are some.
     """
     evidence.check_blocks()
     lost = np.concatenate(
@@ -194,7 +298,7 @@ def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed:
         *extremes("number of exponents of −∞", lost),
     ]
     verdict = FAILS if numbers != claimed else HOLDS if left.min() == claimed else LOOSELY
-    removed, remaining = (span(f"{found.min():.0f}", f"{found.max():.0f}") for found in (lost, left))
+    removed, remaining = (span(f"{count.min():.0f}", f"{count.max():.0f}") for count in (lost, left))
     reason = (
         f"A state has {numbers} components. Sticking permanently removes {removed} of these dimensions ({law}), "
         f"so that the map acts on {remaining}."
@@ -202,19 +306,21 @@ def map_dimension(evidence: Evidence, initial: Sequence[str], law: str, claimed:
     return Verdict(verdict, reason, measured)
 
 
-@judge("equilibrium")
-def stable_where_friction_grows(evidence: Evidence, law: str, a: Range) -> Verdict:
-    """Judge whether uniform sliding is stable in simulations if friction grows with velocity.
+@claim("Results", "equilibrium", "equilibrium")
+def stable_where_friction_grows(evidence: Evidence, *, law: str = "linearized", a: Range = POSITIVE) -> Verdict:
+    """Uniform sliding is unstable because friction decreases with velocity; where it grows with velocity it is
+    stable.
 
-    Uses the mirror image of a law at the driver velocity: the same friction there, and the opposite slope.
+    Judged by simulations with the mirror image of a law at the driver velocity: the same friction there, and the
+    opposite slope.
     """
     evidence.check_blocks()
-    found = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
-    growth = found["strengthening_growth_rate"].values
+    sliding = evidence.choose(evidence.summary("equilibrium").sel(law=law), a)
+    growth = sliding["strengthening_growth_rate"].values
     if not len(finite(growth)):
         raise NotTestableError(f"the mirror image of the {law} law is not a friction law with {a}")
     largest = float(np.nanmax(growth))
     words = f"decay at a rate of {-largest:.3g} or more" if largest < 0.0 else f"grow, at a rate of up to {largest:.3g}"
     reason = f"For {a} perturbations {words} if the slope of the {law} law is reversed."
-    changes = "".join(describe_where("growth", found["a"].values, growth >= 0.0))
+    changes = "".join(describe_where("growth", sliding["a"].values, growth >= 0.0))
     return Verdict(HOLDS if largest < 0.0 else FAILS, reason, [Measured("largest growth rate", largest)], changes)

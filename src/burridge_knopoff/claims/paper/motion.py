@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.claims.choice import Correlation, LooseShare, LooseTolerance, Tolerance
+from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence, finite
-from burridge_knopoff.claims.for_all import Case, for_all
-from burridge_knopoff.claims.judge import judge
-from burridge_knopoff.claims.outcomes import reached_attractor
+from burridge_knopoff.claims.outcomes import Runs, reached_attractor
+from burridge_knopoff.claims.range import BELOW, POSITIVE, Range
+from burridge_knopoff.claims.statement import Truth, for_all
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
     LOOSELY,
     Measured,
     NotTestableError,
-    Range,
     Share,
     Verdict,
     count_share,
@@ -31,19 +31,32 @@ from burridge_knopoff.claims.verdict import (
     judge_worst_share,
     worst_verdict,
 )
+from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.study.formatting import span, with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
     import xarray
 
+# A jump of this size or less may be rounding.
+ROUNDING = 1e-9
+
 #: The readings of a stick-slip cycle.
 ONE_BLOCK, ANY_BLOCK = "between successive stops of one block", "between successive stops of any blocks"
 
 
-@judge("stick_slip", "attractors")
-def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence[str], at: float) -> Verdict:
-    """Judge whether each block stops repeatedly at one a, from each state and under some laws."""
+@claim("Results, Figs. 6a and 7a", "motion_plus", "stick_slip", "attractors")
+def velocities_touch_zero(
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    laws: tuple[str, ...] = ("linearized",),
+    at: float = 0.08,
+) -> Verdict:
+    """At a = 0.08 the velocity of each of the three blocks touches zero, from minus and from plus.
+
+    Each block stops repeatedly.
+    """
     verdicts, measured, never = [], [], []
     for state in initial:
         runs = evidence.choose(evidence.state_summary("stick_slip", state), Range(above=0.0))
@@ -56,34 +69,60 @@ def every_block_stops(evidence: Evidence, initial: Sequence[str], laws: Sequence
                 Measured(f"stops per unit time, block {n}, {law}, {state}", value) for n, value in enumerate(rate, 1)
             ]
             everywhere = runs["stop_rate"].sel(law=law).values
-            known = np.isfinite(everywhere).all(axis=-1)
-            some = known & ~(everywhere > 0.0).all(axis=-1)
-            never += describe_where("a block never stops", runs["a"].values, some, f"{law}, {state}")
+            completed = np.isfinite(everywhere).all(axis=-1)
+            sliding = completed & ~(everywhere > 0.0).all(axis=-1)
+            never += describe_where("a block never stops", runs["a"].values, sliding, f"{law}, {state}")
     right = sum(verdict == HOLDS for verdict in verdicts)
     reason = f"At a = {at:g} all three blocks stop repeatedly in {right} of {len(verdicts)} runs."
 
     def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {
+        shares = {
             f"{law}, {state}": Share(int((rate[0] > 0.0).all()), 1)
             for state in initial
             for law in laws
             if (rate := reached_attractor(attractors, at, state, law, "stop_rate"))
         }
-        return judge_shares(found, 1.0)
+        return judge_shares(shares, 1.0)
 
     return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, never, judge_attractors)
 
 
-@judge("equilibrium", "attractors")
-def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verdict:
-    """Judge whether in every motion some block stops repeatedly.
+@claim("Introduction; Conclusions", "stick_slip", "stick_slip")
+def not_differentiable_at_events(evidence: Evidence, *, a: Range = POSITIVE, loose_share: LooseShare = 0.9) -> Verdict:
+    """The equations of motion are not differentiable at the times when a block starts to move or stops.
 
-    While all blocks slip, the energy ½|U' − v|² + ½ x·Kx of their motion about uniform sliding grows, unless they slide
-    uniformly, if friction falls with velocity. Oscillations that grow without bound bring some velocity to 0
-    (docs/claims.md). Uniform sliding itself is unstable if its eigenvalues have positive real parts, which are half of
-    −F'(v) each; otherwise motion without sticks attracts. As a check, some block has to stop in each known attractor.
+    Where a block stops, U'' jumps. Where it starts, U'' is continuous and its derivative jumps.
+    """
 
-    loose_share : fraction of the values of a, and of the attractors, from which the claim holds loosely
+    def truth(runs: Runs) -> Truth:
+        stop, start = (runs.of("stick_slip", name) for name in ("stop_jump", "start_jump"))
+        return Truth((stop > ROUNDING) & (start > ROUNDING), stop.notnull() & start.notnull())
+
+    states = list(PAPER_STATES)
+    share = for_all(evidence, states, a, loose_share, truth, "too few runs under the {law} law have events {where}")
+    runs = Runs(evidence, states, a)
+    smallest = {name: float(runs.of("stick_slip", name).min()) for name in ("stop_jump", "start_jump")}
+    measured = share.measured("share of a at which all events have a jump")
+    measured += [
+        Measured("smallest jump of U'' where a block stops", smallest["stop_jump"]),
+        Measured("smallest jump of U''' where a block starts", smallest["start_jump"]),
+    ]
+    reason = (
+        f"U'' jumps at every stop, by at least {smallest['stop_jump']:.2g}, and U''' at every start, by at least "
+        f"{smallest['start_jump']:.2g}, at {share} of the values of a with {a}. U'' is continuous at a start."
+    )
+    return share.conclude(reason, measured, "no jump at some event")
+
+
+@claim("Results", "stick_slip", "equilibrium", "attractors", depends_on=("equilibrium_unstable",))
+def sticks_unavoidable(evidence: Evidence, *, a: Range = POSITIVE, loose_share: LooseShare = 0.9) -> Verdict:
+    """Some sticks are unavoidable, whatever the motion.
+
+    While all blocks slip, the energy ½|U' − v|² + ½ x·Kx of their motion about uniform sliding grows, unless they
+    slide uniformly, if friction falls with velocity. Oscillations that grow without bound bring some velocity to 0
+    (docs/claims.md). Uniform sliding itself is unstable if its eigenvalues have positive real parts, which are half
+    of −F'(v) each; otherwise motion without sticks attracts. As a check, some block has to stop in each known
+    attractor.
     """
     evidence.check_blocks()
     equilibrium = evidence.choose(evidence.summary("equilibrium"), a)
@@ -96,11 +135,11 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
         slope = evidence.weakening(law, equilibrium["a"].values)
         shares[f"values of a, {law}"] = count_share(np.all(real > 0.0, axis=-1))
         measured += extremes("real part of an eigenvalue over −F'(v)", real / slope[:, None], law)
-        found = attractors.sel(law=law)
-        there = found["branch"].values >= 0
-        if not there.any():
+        slots = attractors.sel(law=law)
+        present = slots["branch"].values >= 0
+        if not present.any():
             raise NotTestableError(f"no attractor is known under the {law} law with {a}")
-        stops = found["stop_rate"].values[there] > 0.0
+        stops = slots["stop_rate"].values[present] > 0.0
         shares[f"attractors, {law}"], every[law] = (
             count_share(np.any(stops, axis=-1)),
             count_share(np.all(stops, axis=-1)),
@@ -119,11 +158,19 @@ def sticks_unavoidable(evidence: Evidence, a: Range, loose_share: float) -> Verd
     return Verdict(judge_worst_share(shares, loose_share), reason, measured, changes)
 
 
-@judge("stick_slip", "attractors")
-def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation: float) -> Verdict:
-    """Judge whether the end blocks are in antiphase: the correlation of their velocities is at most `correlation`.
+@claim("Results, Fig. 7", "motion_plus", "stick_slip", "attractors")
+def antiphase(
+    evidence: Evidence,
+    *,
+    initial: str = "plus",
+    law: str = "linearized",
+    at: float = 0.08,
+    correlation: Correlation = -0.5,
+) -> Verdict:
+    """From plus the velocities of the end blocks are in antiphase at a = 0.08.
 
-    The claim holds loosely if the correlation is negative.
+    Antiphase is a correlation of at most `correlation`: it is 0 for uncorrelated velocities and −1 for sines in
+    antiphase. The claim holds loosely if the correlation is negative.
     """
     runs = evidence.state_summary("stick_slip", initial).sel(law=law)
     value = evidence.at(runs, at)["velocity_correlation"].item()
@@ -136,10 +183,10 @@ def antiphase(evidence: Evidence, initial: str, law: str, at: float, correlation
     exceptions = [f"negative only {format_values(runs['a'].values, negative)}"] if negative.any() else []
 
     def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = reached_attractor(attractors, at, initial, law, "velocity_correlation")
-        if not found or not np.isfinite(found[0]):
+        reached = reached_attractor(attractors, at, initial, law, "velocity_correlation")
+        if not reached or not np.isfinite(reached[0]):
             return "", ""
-        return _judge_antiphase(found[0], correlation), f"correlation {with_error(round(float(found[0]), 2))}"
+        return _judge_antiphase(reached[0], correlation), f"correlation {with_error(round(float(reached[0]), 2))}"
 
     measured = [Measured("correlation of U₁' and U₃'", value)]
     return judge_conventions(evidence, verdict, reason, measured, exceptions, judge_attractors)
@@ -149,44 +196,51 @@ def _judge_antiphase(value: float, correlation: float) -> str:
     return HOLDS if value <= correlation else LOOSELY if value < 0.0 else FAILS
 
 
-@judge("stick_slip", "agreement")
-def antiphase_persists(evidence: Evidence, initial: str, a: Range, loose_share: float) -> Verdict:
-    """Judge whether end blocks in antiphase in a run stay so: the run is on its attractor.
+@claim("Conclusions", "stick_slip", "stick_slip", "agreement")
+def antiphase_persists(
+    evidence: Evidence, *, initial: str = "plus", a: Range = BELOW, loose_share: LooseShare = 0.9
+) -> Verdict:
+    """If the end blocks are in antiphase, from plus, this persists in time for a < 0.1.
 
-    Antiphase means a negative correlation of their velocities in the window. `settled` of agreement.nc states whether
-    the run is on its attractor: a transient would be followed by another motion.
+    Antiphase means a negative correlation of their velocities in the window. It persists if the run is on its
+    attractor, by `settled` of agreement.nc: a transient would be followed by another motion.
     """
-    runs = evidence.choose(evidence.state_summary("stick_slip", initial), a)
-    ends = evidence.choose(evidence.state_summary("agreement", initial), a)
 
-    def cases() -> Iterator[Case]:
-        for law in PAPER_LAWS:
-            grid, opposed = runs["a"].values, runs["velocity_correlation"].sel(law=law).values < 0.0
-            settled = ends["settled"].sel(law=law).values
-            if not opposed.any():
-                raise NotTestableError(f"no run from {initial} under the {law} law is in antiphase with {a}")
-            where = format_values(grid, opposed & ~(settled >= 0))
-            unknown = (
-                f"it is undetermined whether the run from {initial} under the {law} law is on its attractor {where}"
-            )
-            yield Case(law, grid, settled == 1, settled >= 0, unknown, applies=opposed)
+    def truth(runs: Runs) -> Truth:
+        correlation, settled = (
+            runs.of(*variable).sel(initial=initial)
+            for variable in (("stick_slip", "velocity_correlation"), ("agreement", "settled"))
+        )
+        opposed = correlation < 0.0
+        for law in opposed["law"][~opposed.any("a")].values:
+            raise NotTestableError(f"no run from {initial} under the {law} law is in antiphase with {a}")
+        return Truth(settled == 1, settled >= 0, opposed)
 
-    found = for_all(loose_share, cases())
-    measured = found.measured(
+    unknown = f"it is undetermined whether the run from {initial} under the {{law}} law is on its attractor {{where}}"
+    share = for_all(evidence, [initial], a, loose_share, truth, unknown)
+    measured = share.measured(
         "share of the runs in antiphase that are on their attractor",
         lambda case: [Measured(f"values of a with a run in antiphase, {case.name}", float(case.share.count))],
     )
-    reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase, {found} stay in antiphase."
-    return Verdict(found.verdict, reason, measured, "; ".join(found.exceptions("transient", "undetermined")))
+    reason = f"Of the runs from {initial} with {a} whose end blocks move in antiphase, {share} stay in antiphase."
+    return share.conclude(reason, measured, "transient", "undetermined")
 
 
-@judge("stick_slip", "attractors")
+@claim("Results, Fig. 7", "stick_slip", "stick_slip", "attractors")
 def half_frequency(
-    evidence: Evidence, initial: str, law: str, at: float, claimed: float, tolerance: float, loose: float
+    evidence: Evidence,
+    *,
+    initial: str = "plus",
+    law: str = "linearized",
+    at: float = 0.08,
+    claimed: float = 0.5,
+    tolerance: Tolerance = 0.05,
+    loose: LooseTolerance = 0.1,
 ) -> Verdict:
-    """Judge the frequency of the end blocks relative to that of the middle block, from velocity spectra and from stops.
+    """From plus the end blocks oscillate at about half the frequency of the middle block, at a = 0.08.
 
-    Both ratios have to agree with the claim.
+    «More or less» allows a tenth, like «near» a = 0.1, and loosely twice that: beyond, a ratio is nearer to 2/3 or
+    1/3. Both the peaks of the velocity spectra and the numbers of stops have to agree with the claim.
     """
     run = evidence.at(evidence.state_summary("stick_slip", initial).sel(law=law), at)
     frequency, error, stops = (
@@ -212,50 +266,52 @@ def half_frequency(
     )
 
     def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = reached_attractor(attractors, at, initial, law, "velocity_frequency", "stop_rate")
-        if not found or not np.isfinite(found[0]).all():
+        reached = reached_attractor(attractors, at, initial, law, "velocity_frequency", "stop_rate")
+        if not reached or not np.isfinite(reached[0]).all():
             return "", ""
-        if not found[1][1] > 0.0:
+        if not reached[1][1] > 0.0:
             return FAILS, "the middle block never stops"
-        ratios = [item[end] / item[1] for item in found for end in (0, -1)]
+        ratios = [item[end] / item[1] for item in reached for end in (0, -1)]
         verdict = worst_verdict(judge_value(ratio, claimed, tolerance, loose) for ratio in ratios)
         return verdict, f"{ratios[0]:.3f} by the peaks, {ratios[2]:.3f} by stops"
 
     return judge_conventions(evidence, worst_verdict(verdicts), reason, ratios, [], judge_attractors)
 
 
-@judge("stick_slip")
+@claim("Results", "stick_slip", "stick_slip")
 def cycle_time(
     evidence: Evidence,
-    initial: Sequence[str],
-    a: Range,
-    shown: float,
-    low: float,
-    high: float,
-    tolerance: float,
-    loose: float,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    a: Range = POSITIVE,
+    shown: float = 0.08,
+    low: float = 2.0,
+    high: float = 3.0,
+    tolerance: Tolerance = 0.5,
+    loose: LooseTolerance = 1.0,
 ) -> Verdict:
-    """Judge whether the time of a stick-slip cycle lies between two values, in runs of both laws, by medians over a.
+    """One stick-slip cycle takes about two or three units of time, under both laws.
+
+    A cycle may be read as the time between two stops of one block; as the time between a stop of any block and the
+    next stop of any block, which is the inverse of the total rate of stops; or as the time between two stops of the
+    middle block in the figure of the last state, where it is the shortest cycle to be seen. Medians over a are
+    judged.
 
     shown : the a of the paper's figures of single runs
     tolerance, loose : how far outside it may lie for the claim to hold, and to hold loosely
-
-    A cycle may be read as the time between two stops of one block; as the time between a stop of any block and the next
-    stop of any block, which is the inverse of the total rate of stops; or as the time between two stops of the middle
-    block in the figure of the last state, where it is the shortest cycle to be seen.
     """
     middle = f"between successive stops of the middle block, from {initial[-1]} at a = {shown:g}"
     readings: dict[str, dict[str, np.ndarray]] = {ONE_BLOCK: {}, ANY_BLOCK: {}, middle: {}}
     for state in initial:
         runs = evidence.choose(evidence.state_summary("stick_slip", state), a)
         for law in PAPER_LAWS:
-            one = runs.sel(law=law)
+            cycles = runs.sel(law=law)
             for block in runs["block"].values:
-                readings[ONE_BLOCK][f"block {block}, {law}, {state}"] = finite(one["cycle_time"].sel(block=block))
-            stops = finite(one["stop_rate"].sum(dim="block", skipna=False))
+                readings[ONE_BLOCK][f"block {block}, {law}, {state}"] = finite(cycles["cycle_time"].sel(block=block))
+            stops = finite(cycles["stop_rate"].sum(dim="block", skipna=False))
             readings[ANY_BLOCK][f"{law}, {state}"] = 1.0 / stops[stops > 0.0]
-            if state == initial[-1] and shown in one["a"].values:
-                readings[middle][law] = finite(one["cycle_time"].sel(a=shown)[one.sizes["block"] // 2])
+            if state == initial[-1] and shown in cycles["a"].values:
+                readings[middle][law] = finite(cycles["cycle_time"].sel(a=shown)[cycles.sizes["block"] // 2])
     verdicts, measured, texts = {}, [], []
     for reading, times in readings.items():
         medians = {name: float(np.median(part)) for name, part in times.items() if len(part)}

@@ -7,14 +7,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from burridge_knopoff.claims.choice import Detuning, LooseShare, ModeShare
+from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings
 from burridge_knopoff.claims.evidence import MIN_VALUES, Evidence
-from burridge_knopoff.claims.judge import judge
+from burridge_knopoff.claims.range import BELOW, Range
 from burridge_knopoff.claims.verdict import (
     NOT_TESTABLE,
     Measured,
     NotTestableError,
-    Range,
     Share,
     Verdict,
     count_share,
@@ -49,22 +50,32 @@ LOCKED = "a periodic orbit to which a torus has locked"
 CLOSED = "any periodic orbit"
 
 
-@judge("rotation")
-def branch_locked(evidence: Evidence, a: Range, detuning: float, mode_share: float, loose_share: float) -> Verdict:
-    """Judge whether the end blocks are locked without synchrony, on branches 1 and 2, at all a of a range.
+@claim("Conclusions", "detuning", "rotation")
+def branch_locked(
+    evidence: Evidence,
+    *,
+    a: Range = BELOW,
+    detuning: Detuning = 0.3,
+    mode_share: ModeShare = 0.95,
+    loose_share: LooseShare = 0.9,
+) -> Verdict:
+    """The motion below a = 0.1, which depends on history, is an example of frequency locking, also without
+    synchrony.
 
-    The paper speaks of the phases of the lateral blocks. At equal masses their equal frequencies would show nothing,
-    since the motion is its own mirror image: the mass of one of them is therefore 1 + `detuning` times as large. The
-    statement has two readings. Frequency locking may mean that they keep one frequency, and that a perturbation of
-    their relative phase decays: three blocks that oscillate freely would have three Lyapunov exponents of 0. It may
-    mean locking as opposed to a normal mode, in which all blocks have one frequency without any locking. They are then
-    locked if no mode carries the share `mode_share` of the kinetic energy of their common oscillation.
+    If the phases of the lateral blocks are opposite, «this frequency-locking» leads to anti-synchronization: branch
+    2 from opposite phases, branch 1 from plus. The end blocks have one frequency there by mirror symmetry, which
+    shows nothing; the mass of one of them is therefore 1 + `detuning` times as large.
 
-    If the end blocks of branch 1 are locked to the middle block, the rotation number is a ratio of whole numbers that
-    is constant in a. The verdict reports where, but does not depend on it. Fractions of a are taken over the values of
-    the grid. A value with an undetermined kind of motion does not count.
+    Frequency locking may mean that they keep one frequency, and that a perturbation of their relative phase decays,
+    which «analogous to an excitation in linear systems» allows: three blocks that oscillate freely would have three
+    Lyapunov exponents of 0. Or it means locking as opposed to a normal mode, which also has one frequency: no mode
+    carries the share `mode_share` of the kinetic energy of their common oscillation. With 30 % more mass, no mode
+    has 93 % of the energy if both amplitudes are equal, and less the nearer the end of locking is; with 10 % a mode
+    may have 99 %, which does not decide.
 
-    loose_share : fraction of a from which the claim holds loosely
+    If the end blocks of branch 1 are locked to the middle block, the rotation number is a ratio of whole numbers
+    that is constant in a. The verdict reports where, but does not depend on it. Fractions of a are taken over the
+    values of the grid. A value with an undetermined kind of motion does not count.
     """
     evidence.check_blocks()
     rotation = evidence.summary("rotation")
@@ -140,23 +151,21 @@ def _locked_to_middle(rotation: xarray.Dataset, a: Range, law: str) -> tuple[lis
     return measured, where
 
 
-@judge("bifurcations", "refined")
-def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
-    """Judge whether frequency locking precedes chaos where a branch becomes chaotic as a grows.
+@claim("Conclusions", "bifurcations", "bifurcations", "refined")
+def locking_precedes_chaos(evidence: Evidence, *, loose_share: LooseShare = 0.9) -> Verdict:
+    """Frequency locking precedes the transition to chaos.
 
     Frequency locking is that of a torus: the branch moves on a torus, locks to a periodic orbit, and then becomes
-    chaotic. In a weaker sense every periodic orbit is locked, since its blocks stop in rational ratios; this is also
-    true of an orbit that was never on a torus, for example before a cascade of period doublings, and only a torus that
-    breaks up into chaos contradicts it.
+    chaotic. In a weaker sense every periodic orbit is locked, since its blocks stop in rational ratios; this is
+    also true of an orbit that was never on a torus, for example before a cascade of period doublings, and only a
+    torus that breaks up into chaos contradicts it.
 
-    The motion before chaos is that of the branch at the next smaller value of a. An onset does not count if the chaos
-    existed before, as a transient or on an attractor on which the branch ends; neither does a bifurcation that a branch
-    passes without a change. A torus may be chaos too weak for the search to resolve, or may lock between the values of
-    a; the verdict says so. A periodic orbit that is too long to be continued to the bifurcation, as in a locking
-    tongue, counts as undetermined, since another value of a may show the torus. A closer search finds more onsets, so
-    those of a study are a sample: the claim fails if the 95 % interval of the fraction lies below `loose_share`.
-
-    loose_share : fraction of the onsets of chaos from which the claim holds loosely
+    The motion before chaos is that of the branch at the next smaller value of a. An onset does not count if the
+    chaos existed before, as a transient or on an attractor on which the branch ends; neither does a bifurcation
+    that a branch passes without a change. A torus may be chaos too weak for the search to resolve, or may lock
+    between the values of a; the verdict says so. A periodic orbit that is too long to be continued to the
+    bifurcation, as in a locking tongue, counts as undetermined, since another value of a may show the torus. A
+    closer search finds more onsets, so those of a study are a sample.
     """
     evidence.check_blocks()
     bifurcations = evidence.summary("bifurcations")
@@ -207,9 +216,9 @@ def locking_precedes_chaos(evidence: Evidence, loose_share: float) -> Verdict:
                 f"the motion before chaos is undetermined at a = {', '.join(f'{a:.5g}' for a in values)} ({name})"
             )
         for precursor in (TORUS, UNFOLLOWED):
-            if there := sorted(low for (low, _), text in precursors.items() if text == precursor):
+            if places_of_it := sorted(low for (low, _), text in precursors.items() if text == precursor):
                 remarks.append(
-                    f"{precursor} precedes chaos just above a = {', '.join(f'{a:g}' for a in there)} ({name})"
+                    f"{precursor} precedes chaos just above a = {', '.join(f'{a:g}' for a in places_of_it)} ({name})"
                 )
     verdicts = {reading: worst_verdict(of_laws) for reading, of_laws in readings.items()}
     counts = "; ".join(f"{reading} in {join_words(texts[reading])} cases ({verdicts[reading]})" for reading in readings)
@@ -258,7 +267,7 @@ def _was_chaotic(bifurcations: xarray.Dataset, refined: xarray.Dataset) -> np.nd
     a, kind = refined["a"].values, refined["kind"].values
     result = np.zeros(bifurcations.sizes["bifurcation"], dtype=bool)
     for k in np.flatnonzero(bifurcations["change"].values == Change.END):
-        there = refined["branch"].values == bifurcations["to_branch"].values[k]
-        below = np.flatnonzero(there.any(axis=1) & (a <= bifurcations["grid_low"].values[k]))
-        result[k] = len(below) > 0 and bool(np.isin(kind[below[-1]][there[below[-1]]], CHAOS).any())
+        on_branch = refined["branch"].values == bifurcations["to_branch"].values[k]
+        below = np.flatnonzero(on_branch.any(axis=1) & (a <= bifurcations["grid_low"].values[k]))
+        result[k] = len(below) > 0 and bool(np.isin(kind[below[-1]][on_branch[below[-1]]], CHAOS).any())
     return result

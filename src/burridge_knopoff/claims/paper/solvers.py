@@ -2,26 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
+import xarray
 
+from burridge_knopoff.claims.choice import LooseShare, LooseTolerance, Much, Relative
+from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.for_all import Case, for_all
-from burridge_knopoff.claims.judge import judge
-from burridge_knopoff.claims.outcomes import kinds_reached
+from burridge_knopoff.claims.outcomes import Reached, Runs
+from burridge_knopoff.claims.range import BELOW, Range
+from burridge_knopoff.claims.statement import Case, Truth, for_all
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
     LOOSELY,
     Measured,
     NotTestableError,
-    Range,
+    Share,
     Verdict,
     count_share,
-    format_shares,
     judge_shares,
     judge_worst_share,
 )
@@ -29,58 +30,57 @@ from burridge_knopoff.motion.kind import MotionKind, is_same_result
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.study.paper import PAPER_LAWS
 
-if TYPE_CHECKING:
-    import xarray
 
-
-@judge("agreement", "solvers", "attractors")
+@claim("Abstract", "solvers", "agreement", "solvers", "attractors")
 def solutions_agree(
-    evidence: Evidence, initial: Sequence[str], a: Range, relative: float, loose_share: float
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    a: Range = BELOW,
+    relative: Relative = 0.001,
+    loose_share: LooseShare = 0.9,
 ) -> Verdict:
-    """Judge whether the map, the numerical solution of the linearized law, and that of the nonlinear law agree.
+    """The results are the same for the linearized map, the linearized numerical and the nonlinear numerical
+    solution.
+
+    The laws are compared for a < 0.1: above, the paper only says that the motion becomes chaotic. They agree at an
+    a if both lead to synchrony, both to other regular motion, or both to chaos, which are the paper's results.
 
     Solvers of one law agree at a point, a state and an a at which all of them were tried, if their ⟨J⟩ differs from
     that of the study's solver by no more than the fraction `relative`, three standard errors, or the threshold of
-    synchronization. The laws agree at an a if both lead to synchrony, both to other regular motion, or both to chaos,
-    which are the paper's results: the runs of the whole grid show it.
+    synchronization.
 
     a : range in which the laws are to agree; solvers are compared wherever they were tried
-    loose_share : fraction of points, and of the values of a, from which the claim holds loosely
     """
     solved, measured, differences = _compare_solvers(evidence, initial, relative)
     solvers = {"solvers": count_share(np.array(solved))}
 
-    def run_cases() -> Iterator[Case]:
-        for state in initial:
-            runs = evidence.choose(evidence.state_summary("agreement", state), a)
-            kinds = runs["kind"].sel(law=list(PAPER_LAWS)).values
-            known = ~(np.isnan(kinds) | (kinds == MotionKind.UNDETERMINED)).any(axis=0)
-            unknown = f"the kind of motion from {state} is undetermined"
-            yield Case(f"laws, {state}", runs["a"].values, is_same_result(*kinds), known, unknown)
+    def same_result(motion: Runs | Reached) -> Truth:
+        kind, other = (motion.kind.sel(law=law, drop=True) for law in PAPER_LAWS)
+        known = (kind != MotionKind.UNDETERMINED) & (other != MotionKind.UNDETERMINED)
+        return Truth(xarray.apply_ufunc(is_same_result, kind, other), known & kind.notnull() & other.notnull())
 
     def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
         """Judge as if the solvers agreed at the same points under every convention."""
-        inside, cases = evidence.choose(attractors, a), []
-        for state in initial:
-            one, other = (kinds_reached(inside, state, law) for law in PAPER_LAWS)
-            known = (one != MotionKind.UNDETERMINED) & (other != MotionKind.UNDETERMINED)
-            cases.append(Case(f"laws, {state}", inside["a"].values, is_same_result(one, other), known))
+        cases = list(same_result(Reached(evidence, evidence.choose(attractors, a), initial)).cases())
         if not all(case.is_decided(loose_share) for case in cases):
             return "", ""
-        return judge_shares({**solvers, **{case.name: case.share for case in cases}}, loose_share)
+        return judge_shares({**solvers, **_of_laws(cases)}, loose_share)
 
-    found = for_all(loose_share, run_cases())
-    for state, case in zip(initial, found.cases, strict=True):
-        differences += [f"{text} ({state})" for text in case.exceptions("the laws differ")]
-    shares = {**solvers, **found.shares}
-    own = judge_worst_share(shares, loose_share)
-    laws = format_shares({state: shares[f"laws, {state}"] for state in initial})
+    laws = for_all(evidence, initial, a, loose_share, same_result, "the kind of motion from {initial} is undetermined")
+    differences += laws.exceptions("the laws differ")
+    shares = {**solvers, **_of_laws(laws.cases)}
+    verdict = judge_worst_share(shares, loose_share)
     reason = (
         f"The solvers of each law agree on ⟨J⟩ at {sum(solved)} of {len(solved)} points (initial state, a), and the "
         f"laws have the same result (synchrony, other regular motion or chaos) at {laws} of the values of a with {a}."
     )
     numbers = [Measured(f"share with agreement of the {name}", share.value) for name, share in shares.items()]
-    return judge_conventions(evidence, own, reason, [*numbers, *measured], differences, judge_attractors)
+    return judge_conventions(evidence, verdict, reason, [*numbers, *measured], differences, judge_attractors)
+
+
+def _of_laws(cases: Sequence[Case]) -> dict[str, Share]:
+    return {f"laws, {case.name}": case.share for case in cases}
 
 
 def _compare_solvers(
@@ -97,19 +97,19 @@ def _compare_solvers(
         evidence.check_state(state)
         solvers = evidence.choose(evidence.summary("solvers").sel(initial=state), Range(above=0.0), least=1)
         for value in solvers["a"].values:
-            found = solvers.sel(a=value)
+            runs = solvers.sel(a=value)
             mean, difference, error = (
-                found[name].values for name in ("mean_distance", "difference", "difference_error")
+                runs[name].values for name in ("mean_distance", "difference", "difference_error")
             )
-            there = np.isfinite(difference)
+            completed = np.isfinite(difference)
             # A solver that cannot treat a law has not failed.
-            if (found["status"].values > Status.COMPLETED).any() or (there.sum(axis=-1) < 2).all():
+            if (runs["status"].values > Status.COMPLETED).any() or (completed.sum(axis=-1) < 2).all():
                 continue
             allowed = np.maximum.reduce(
                 [relative * np.abs(mean), standard_errors * np.nan_to_num(error), np.full_like(mean, threshold)]
             )
-            solved.append(bool((np.abs(difference) <= allowed)[there].all()))
-            largest = float(np.abs(difference[there]).max())
+            solved.append(bool((np.abs(difference) <= allowed)[completed].all()))
+            largest = float(np.abs(difference[completed]).max())
             measured.append(Measured(f"largest |Δ⟨J⟩| between solvers, {state}, a = {value:g}", largest))
             if not solved[-1]:
                 differences.append(f"the solvers differ at a = {value:g} ({state})")
@@ -118,32 +118,33 @@ def _compare_solvers(
     return solved, measured, differences
 
 
-@judge("solvers")
-def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) -> Verdict:
-    """Judge whether the map needs far fewer steps per unit time than solvers of the differential equations.
+@claim("Conclusions", "solvers", "solvers")
+def map_is_cheaper(
+    evidence: Evidence, *, steps: float = 1000000.0, much: Much = 1000.0, loose: LooseTolerance = 100.0
+) -> Verdict:
+    """The map takes far less computing than stepping the differential equations.
 
-    These may be read as the paper's own; as Runge-Kutta with the step of the study; or as Taylor series, which solve
-    the same equations from event to event.
+    The steps per unit time of solvers of the differential equations, in units of those of the map. They may be the
+    paper's own; those of Runge-Kutta with the step of the study; or those of Taylor series, which solve the same
+    equations from event to event. Unlike times, steps do not depend on the machine. A step of the map is a solution
+    between two events, or part of one; it takes as long as a few Runge-Kutta steps.
 
     steps : the paper's time steps per unit time
-    much, loose : ratio of their steps to those of the map above which the claim holds, and above which it holds loosely
-
-    Unlike times, steps do not depend on the machine. A step of the map is a solution between two events, or part of
-    one; it takes as long as a few Runge-Kutta steps.
+    much, loose : ratio above which the claim holds, and above which it holds loosely
     """
     evidence.check_blocks()
-    found = evidence.summary("solvers").sel(law="linearized")
-    if "map" not in found["solver"].values:
+    runs = evidence.summary("solvers").sel(law="linearized")
+    if "map" not in runs["solver"].values:
         raise NotTestableError("the study has no run with the solver map")
-    rate = (found["step_count"] / found["end_time"]).where(found["step_count"] >= 0)
-    own = rate.sel(solver="map").values
-    own = own[np.isfinite(own)]
-    if not len(own):
+    rate = (runs["step_count"] / runs["end_time"]).where(runs["step_count"] >= 0)
+    map_rate = rate.sel(solver="map").values
+    map_rate = map_rate[np.isfinite(map_rate)]
+    if not len(map_rate):
         raise NotTestableError("no run with the solver map completed")
-    largest = float(own.max())
+    largest = float(map_rate.max())
     taken = {"the paper's time stepping": steps}
     for name in ("rk4", "series"):
-        if name in found["solver"].values and np.isfinite(rate.sel(solver=name)).any():
+        if name in runs["solver"].values and np.isfinite(rate.sel(solver=name)).any():
             taken[name] = float(np.nanmax(rate.sel(solver=name)))
     ratios = {name: number / largest for name, number in taken.items()}
     measured = [Measured("largest number of steps of the map per unit time", largest)]
@@ -151,7 +152,7 @@ def map_is_cheaper(evidence: Evidence, steps: float, much: float, loose: float) 
         measured.append(Measured(f"number of steps per unit time, {name}", number))
         measured.append(Measured(f"ratio of these to those of the map, {name}", ratios[name]))
     if "rk4" in taken:
-        error = np.abs(found["difference"].sel(solver="rk4").values)
+        error = np.abs(runs["difference"].sel(solver="rk4").values)
         measured.append(Measured("largest |Δ⟨J⟩| of rk4 at that step", float(np.nanmax(error))))
     readings = {
         f"compared with {name}": HOLDS if ratio >= much else LOOSELY if ratio >= loose else FAILS

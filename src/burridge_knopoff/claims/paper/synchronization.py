@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from burridge_knopoff.claims.choice import Level, LooseShare, LooseTolerance, Tolerance
+from burridge_knopoff.claims.claim import claim
 from burridge_knopoff.claims.conventions import combine_readings, judge_conventions
 from burridge_knopoff.claims.evidence import Evidence
-from burridge_knopoff.claims.for_all import Case, for_all
-from burridge_knopoff.claims.judge import judge
-from burridge_knopoff.claims.outcomes import reached_attractor, synchrony
+from burridge_knopoff.claims.outcomes import Reached, Runs, reached_attractor
+from burridge_knopoff.claims.range import SYNCHRONY, Range
+from burridge_knopoff.claims.statement import Case, Truth, for_all
 from burridge_knopoff.claims.verdict import (
     FAILS,
     HOLDS,
@@ -19,7 +21,6 @@ from burridge_knopoff.claims.verdict import (
     NOT_TESTABLE,
     Measured,
     NotTestableError,
-    Range,
     Verdict,
     join_words,
     judge_interval,
@@ -33,43 +34,58 @@ if TYPE_CHECKING:
     import xarray
 
 
-@judge("mean_distance", "attractors")
-def synchronizes(evidence: Evidence, initial: str, a: Range, synchronized: bool, loose_share: float) -> Verdict:
-    """Judge whether an initial state always, or never, leads to synchrony, for all a of a range and both laws.
+def _synchronizes(evidence: Evidence, initial: str, a: Range, loose_share: float, *, synchronized: bool) -> Verdict:
+    """Judge whether an initial state always, or never, leads to synchrony, for all a of a range and both laws."""
 
-    loose_share : fraction of the values of a from which the claim holds loosely
-    """
-    runs = evidence.choose(evidence.state_summary("mean_distance", initial), a)
-    here, elsewhere = ("synchrony", "no synchrony") if synchronized else ("no synchrony", "synchrony")
-    verb = "synchronize" if synchronized else "do not synchronize"
+    def truth(motion: Runs | Reached) -> Truth:
+        synchrony = motion.synchronized.sel(initial=initial)
+        return Truth(synchrony == synchronized, synchrony.notnull())
 
-    def cases(inside: xarray.Dataset | None = None) -> Iterator[Case]:
-        found = synchrony(evidence, initial, a, inside)
-        for law in PAPER_LAWS:
-            state = found.sel(law=law).values
-            few = f"too few runs from {initial} under the {law} law completed at {a}"
-            yield Case(law, found["a"].values, state == synchronized, np.isfinite(state), few)
+    unknown = f"too few runs from {initial} under the {{law}} law completed at {a}"
+    share = for_all(evidence, [initial], a, loose_share, truth, unknown, truth)
+    claimed, otherwise = ("synchrony", "no synchrony") if synchronized else ("no synchrony", "synchrony")
+    mean = Runs(evidence, [initial], a).of("mean_distance", "mean_distance").isel(initial=0)
 
     def extreme(case: Case) -> Iterator[Measured]:
-        mean = runs["mean_distance"].sel(law=case.name).values[case.right]
-        if len(mean):
-            value, name = (mean.max(), "largest") if synchronized else (mean.min(), "smallest")
+        values = mean.sel(law=case.name).values[case.right]
+        if len(values):
+            value, name = (values.max(), "largest") if synchronized else (values.min(), "smallest")
             yield Measured(f"{name} ⟨J⟩ there, {case.name}", float(value))
 
-    found = for_all(loose_share, cases())
-    reason = f"From {initial} the end blocks {verb} at {found} of the values of a with {a}."
-    measured = found.measured(f"share of a with {here}", extreme)
-    return judge_conventions(
-        evidence,
-        found.verdict,
-        reason,
-        measured,
-        found.exceptions(elsewhere),
-        found.convention_judge(evidence, a, cases),
+    verb = "synchronize" if synchronized else "do not synchronize"
+    return share.conclude(
+        f"From {initial} the end blocks {verb} at {share} of the values of a with {a}.",
+        share.measured(f"share of a with {claimed}", extreme),
+        otherwise,
     )
 
 
-@judge("attractors", "orbits", "proof")
+@claim("Results, Fig. 3", "mean_distance", "mean_distance", "attractors")
+def minus_synchronizes(
+    evidence: Evidence,
+    *,
+    initial: str = "minus",
+    a: Range = SYNCHRONY,
+    loose_share: LooseShare = 0.9,
+) -> Verdict:
+    """From the state minus the end blocks synchronize, ⟨J⟩ = 0, for every a between 0.005 and 0.08, under both laws."""
+    return _synchronizes(evidence, initial, a, loose_share, synchronized=True)
+
+
+@claim("Results, Fig. 3", "mean_distance", "mean_distance", "attractors")
+def plus_does_not_synchronize(
+    evidence: Evidence,
+    *,
+    initial: str = "plus",
+    a: Range = SYNCHRONY,
+    loose_share: LooseShare = 0.9,
+) -> Verdict:
+    """From the state plus the end blocks do not synchronize, ⟨J⟩ > 0, for any a between 0.005 and 0.08, under both
+    laws.
+    """
+    return _synchronizes(evidence, initial, a, loose_share, synchronized=False)
+
+
 def edge_of_synchrony(
     evidence: Evidence,
     initial: str,
@@ -122,6 +138,38 @@ def edge_of_synchrony(
     return combine_readings(verdicts, reason, measured)
 
 
+@claim("Results, Fig. 3", "orbits", "attractors", "orbits", "proof")
+def upper_edge(
+    evidence: Evidence,
+    *,
+    initial: str = "minus",
+    claimed: float = 0.08,
+    tolerance: Tolerance = 0.005,
+    loose: LooseTolerance = 0.01,
+) -> Verdict:
+    """From minus, there is synchrony up to a = 0.08.
+
+    "The synchronization appears for the parameter a between 0.005 and 0.08": only there, or at least there.
+    """
+    return edge_of_synchrony(evidence, initial=initial, end="upper", claimed=claimed, tolerance=tolerance, loose=loose)
+
+
+@claim("Results, Fig. 3", "mean_distance", "attractors", "orbits", "proof")
+def lower_edge(
+    evidence: Evidence,
+    *,
+    initial: str = "minus",
+    claimed: float = 0.005,
+    tolerance: Tolerance = 0.0005,
+    loose: LooseTolerance = 0.001,
+) -> Verdict:
+    """From minus, synchrony appears from a = 0.005 on.
+
+    The lower end of the range in `upper_edge`.
+    """
+    return edge_of_synchrony(evidence, initial=initial, end="lower", claimed=claimed, tolerance=tolerance, loose=loose)
+
+
 def _judge_edge(low: float, high: float, claimed: float, tolerance: float, loose: float) -> str:
     """Return the verdict on an edge in (low, high], or at low if they are equal; «not testable» if it is open."""
     try:
@@ -151,11 +199,21 @@ def _edge(grid: np.ndarray, synchronized: np.ndarray, is_upper: bool) -> tuple[f
     return float(grid[index[0] - 1]) if index[0] else 0.0, float(grid[index[0]])
 
 
-@judge("mean_distance", "attractors")
-def mean_distance_at(
-    evidence: Evidence, initial: str, laws: Sequence[str], at: float, claimed: float, tolerance: float, loose: float
+@claim("Results, Fig. 5b", "distance", "mean_distance", "attractors")
+def plus_mean_distance(
+    evidence: Evidence,
+    *,
+    initial: str = "plus",
+    laws: tuple[str, ...] = ("linearized",),
+    at: float = 0.08,
+    claimed: float = 0.14,
+    tolerance: Tolerance = 0.005,
+    loose: LooseTolerance = 0.01,
 ) -> Verdict:
-    """Judge ⟨J⟩ from an initial state at one a, under some laws, and under each convention by the attractor reached."""
+    """From plus, J fluctuates around 0.14 at a = 0.08.
+
+    Under each other convention ⟨J⟩ is that of the attractor reached.
+    """
     runs = evidence.at(evidence.state_summary("mean_distance", initial), at)
     verdicts, measured, texts = [], [], []
     for law in laws:
@@ -167,8 +225,8 @@ def mean_distance_at(
         texts.append(f"{with_error(value, error)} ({law})")
 
     def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
-        found = {law: reached_attractor(attractors, at, initial, law, "mean_distance") for law in laws}
-        means = {law: mean[0] for law, mean in found.items() if mean}
+        reached = {law: reached_attractor(attractors, at, initial, law, "mean_distance") for law in laws}
+        means = {law: mean[0] for law, mean in reached.items() if mean}
         if not means:
             return "", ""
         verdict = worst_verdict(judge_value(mean, claimed, tolerance, loose) for mean in means.values())
@@ -178,11 +236,12 @@ def mean_distance_at(
     return judge_conventions(evidence, worst_verdict(verdicts), reason, measured, [], judge_attractors)
 
 
-@judge("mean_distance", "agreement", "attractors")
-def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -> Verdict:
-    """Judge whether J fluctuates stationarily: the run is on its attractor, which is not synchronized.
+@claim("Results, Fig. 5b", "distance", "mean_distance", "agreement", "attractors")
+def plus_stationary(evidence: Evidence, *, initial: str = "plus", law: str = "linearized", at: float = 0.08) -> Verdict:
+    """From plus, J displays stationary fluctuations at a = 0.08.
 
-    On an attractor all means are stationary; that of J has the error of its batch means.
+    On an attractor all means are stationary: J fluctuates stationarily if the run is on its attractor and this is
+    not synchronized. ⟨J⟩ has the error of its batch means.
     """
     run = evidence.at(evidence.state_summary("mean_distance", initial), at).sel(law=law)
     mean, error, synchronized = (run[name].item() for name in ("mean_distance", "mean_distance_error", "synchronized"))
@@ -193,23 +252,33 @@ def stationary_distance(evidence: Evidence, initial: str, law: str, at: float) -
         raise NotTestableError(f"it is undetermined whether the run from {initial} at a = {at:g} is on its attractor")
 
     def judge_attractors(attractors: xarray.Dataset) -> tuple[str, str]:
-        if not (found := reached_attractor(attractors, at, initial, law, "branch")):
+        if not (reached := reached_attractor(attractors, at, initial, law, "branch")):
             return "", ""
-        return (HOLDS, "no synchrony") if found[0] else (FAILS, "synchrony, J = 0")
+        return (HOLDS, "no synchrony") if reached[0] else (FAILS, "synchrony, J = 0")
 
     words = "is on its attractor" if settled else "is not on its attractor yet"
     reason = (
         f"The run from {initial} at a = {at:g} ({law}) {words}; its batch means give ⟨J⟩ = {with_error(mean, error)}."
     )
-    own = HOLDS if settled and not synchronized else FAILS
-    return judge_conventions(evidence, own, reason, [Measured("⟨J⟩", mean, error)], [], judge_attractors)
+    verdict = HOLDS if settled and not synchronized else FAILS
+    return judge_conventions(evidence, verdict, reason, [Measured("⟨J⟩", mean, error)], [], judge_attractors)
 
 
-@judge("mean_distance", "orbits")
-def distance_vanishes(
-    evidence: Evidence, initial: str, law: str, at: float, by: float, level: float, loose: float
+@claim("Results, Fig. 5a", "distance", "mean_distance", "orbits")
+def minus_distance_vanishes(
+    evidence: Evidence,
+    *,
+    initial: str = "minus",
+    law: str = "linearized",
+    at: float = 0.08,
+    by: float = 4000.0,
+    level: Level = 1e-06,
+    loose: LooseTolerance = 1.25,
 ) -> Verdict:
-    """Judge whether J falls below a level for good by a time, loosely by `loose` times that time.
+    """From minus, J has gone to zero by τ = 4000 at a = 0.08.
+
+    Zero means below the threshold of synchrony, for good. The claim holds loosely if it takes up to a quarter
+    longer, `loose` times as long.
 
     J falls exponentially and is never 0. When it reaches the rounding error, the lowest level, depends on the
     arithmetic, so that time is only reported.

@@ -1,0 +1,254 @@
+"""Claims on the two friction laws: whether they agree, and whether linearizing is justified."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.claims.choice import LooseShare, LooseTolerance, RunPart, Tolerance
+from burridge_knopoff.claims.claim import claim
+from burridge_knopoff.claims.conventions import combine_readings
+from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.range import BELOW, Range
+from burridge_knopoff.claims.statement import Case, Statement, Truth, decided
+from burridge_knopoff.claims.verdict import (
+    FAILS,
+    HOLDS,
+    LOOSELY,
+    Measured,
+    NotTestableError,
+    Verdict,
+    describe_where,
+    extremes,
+    judge_share,
+    judge_value,
+)
+from burridge_knopoff.dataset.variables import Answer
+from burridge_knopoff.motion.kind import SYNCHRONOUS, merge_chaos
+from burridge_knopoff.study.paper import PAPER_LAWS
+from burridge_knopoff.summaries.judgement import excess, same_mean
+
+
+@claim("Introduction; Results, Fig. 3", "agreement", "agreement")
+def laws_agree(
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    a: Range = BELOW,
+    loose_share: LooseShare = 0.9,
+) -> Verdict:
+    """Linearizing the friction law does not change the results, ⟨J⟩ against a, for a < 0.1.
+
+    "A close correspondence" of two figures of ⟨J⟩: on their common scale, or at each a, for both curves together. The
+    study's relative tolerance of agreement may be applied to the largest ⟨J⟩ in the range, as curves in a figure
+    correspond: those of both states have one scale. Or it may be applied to ⟨J⟩ at each a, as in agreement.nc: curves
+    that coincide in a figure may then differ where ⟨J⟩ is small.
+    """
+    laws = _law_comparison(evidence, initial, a)
+    scale = float(laws["mean_distance"].max())
+    beyond = excess(laws["difference"], scale, laws.attrs["synchronization_threshold"], laws.attrs)
+    synchronous = laws["kind"].isin(SYNCHRONOUS).all("law")
+    of_largest = same_mean(beyond, laws["difference_error"], synchronous, laws.attrs)
+    difference = abs(laws["difference"]).where(of_largest == Answer.YES).max("a")
+    measured = [
+        Measured("largest ⟨J⟩", scale),
+        *(
+            Measured(f"largest |Δ⟨J⟩| where they agree on the scale of the largest, {state}", value)
+            for state, value in zip(initial, difference.values.tolist(), strict=True)
+            if np.isfinite(value)
+        ),
+    ]
+    tolerance = 100.0 * laws.attrs["relative_tolerance"]
+    words = f"The laws agree in ⟨J⟩, whose largest value is {scale:.3f}, within {tolerance:g} %"
+    readings = {"of the largest value": of_largest, "of the value at each a": laws["same_mean_distance"]}
+    return _judge_agreement(evidence, words, readings, a, loose_share, measured)
+
+
+@claim("Conclusions", "agreement", "agreement")
+def laws_agree_in_kind(
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    a: Range = BELOW,
+    loose_share: LooseShare = 0.9,
+) -> Verdict:
+    """The nonlinearity of the friction law is not essential for the kind of motion for a < 0.1.
+
+    The kinds may be those that the paper names: periodic, quasiperiodic and chaotic. Or they may be synchrony, other
+    regular motion and chaos: a torus is locked to periodic orbits on a dense set of a, so that a single value of a may
+    show either.
+    """
+    laws = _law_comparison(evidence, initial, a)
+    same, kinds = laws["same_kind"], xarray.apply_ufunc(merge_chaos, laws["kind"])
+    differ = kinds.sel(law=PAPER_LAWS[0], drop=True) != kinds.sel(law=PAPER_LAWS[1], drop=True)
+    readings = {
+        "with periodic and quasiperiodic motion as two kinds": same.where(~((same == Answer.YES) & differ), Answer.NO),
+        "with periodic and quasiperiodic motion as one kind": same,
+    }
+    return _judge_agreement(evidence, "The laws agree in the kind of motion", readings, a, loose_share)
+
+
+def _law_comparison(evidence: Evidence, initial: Sequence[str], a: Range) -> xarray.Dataset:
+    return evidence.choose(evidence.law_comparison(evidence.state_summary("agreement", initial)), a)
+
+
+def _judge_agreement(
+    evidence: Evidence,
+    words: str,
+    readings: Mapping[str, xarray.DataArray],
+    a: Range,
+    loose_share: float,
+    measured: Sequence[Measured] = (),
+) -> Verdict:
+    """Judge whether the laws agree, by the points of all states together, as a figure shows them.
+
+    words : what the readings qualify
+    readings : Answer at each point, over (initial, a), under each reading
+    """
+    verdicts, texts, numbers, exceptions = {}, [], [], []
+    for reading, agrees in readings.items():
+        truth = Truth(agrees == Answer.YES, agrees.isin((Answer.YES, Answer.NO)))
+        cases = list(truth.cases())
+        states = Statement(evidence, [case for case in cases if case.known.any()], loose_share)
+        unknown = [text for case in cases for text in describe_where("undetermined", case.a, ~case.known, case.name)]
+        grid = np.tile(agrees["a"].values, agrees.sizes["initial"])
+        right, known = (part.transpose("initial", "a").values.ravel() for part in (truth.right, truth.known))
+        points = Case("points", grid, right, known, f"the laws could not be compared: {'; '.join(unknown)}")
+        share = decided(Statement(evidence, [points], loose_share)).share
+        verdicts[reading] = judge_share(share, loose_share)
+        texts.append(f"{reading}, at {share} of the points (initial state, a) with {a}, {states} ({verdicts[reading]})")
+        numbers += states.measured(f"share of a at which the laws agree, {reading}", partial(_parting, reading))
+        exceptions += [f"{reading}, {text}" for text in (*states.exceptions("they differ"), *unknown)]
+    return combine_readings(verdicts, f"{words}: {'; '.join(texts)}.", [*numbers, *measured], exceptions)
+
+
+def _parting(reading: str, case: Case) -> Iterator[Measured]:
+    """Yield the smallest a at which the laws differ."""
+    if len(differ := case.a[case.known & ~case.right]):
+        yield Measured(f"smallest a at which they differ, {reading}, {case.name}", float(differ[0]))
+
+
+@claim("Introduction; The linearization", "friction_laws", "mean_distance")
+def linearization_justified(
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    law: str = "linearized",
+    a: Range = BELOW,
+    part: RunPart = "window",
+    tolerance: Tolerance = 0.01,
+    loose: LooseTolerance = 0.05,
+) -> Verdict:
+    """The linearization of the friction law is justified for small a.
+
+    The laws differ by (aU')²/(1 + aU'). At the fastest slips of the runs this may be a hundredth of the static
+    friction, and loosely a twentieth.
+
+    law : the linearized law, whose friction 1 − aU' gives the speed
+    part : part of the runs: window, or run with its transient
+    """
+    grid, speed = _fastest_slips(evidence, initial, law, a, part)
+    product = grid * evidence.config["v"] * speed
+    top = int(np.argmax(product))
+    difference = float(product[top] ** 2 / (1.0 + product[top]))
+    measured = [
+        Measured("largest difference of the laws on a slipping block", difference),
+        Measured("largest aU'", float(product[top])),
+        *extremes("ratio of the fastest slip to v", speed),
+    ]
+    verdict = HOLDS if difference <= tolerance else LOOSELY if difference <= loose else FAILS
+    reason = (
+        f"For {a} the laws differ by at most {difference:.2g} of the static friction on a slipping block (at a = "
+        f"{grid[top]:g}), since the fastest slips {'in the window' if part == 'window' else 'of the whole run'} are "
+        f"{speed.min():.2f} to {speed.max():.2f} times as fast as the driver."
+    )
+    return Verdict(verdict, reason, measured)
+
+
+@claim("Introduction", "friction_laws", "mean_distance")
+def springs_and_masses_help(
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    law: str = "linearized",
+    a: Range = BELOW,
+    claimed: float = 2.0,
+    tolerance: Tolerance = 0.5,
+    loose: LooseTolerance = 1.0,
+) -> Verdict:
+    """Strong springs and large masses, which make a small, justify the linearization.
+
+    The difference of the laws on a slipping block, (aU')², falls with the square of a if U' does not change. At one a,
+    linearized motion is proportional to v. Hence aU' is av times the ratio of slip speed to v, a function of a alone
+    that is known from the windows of the runs. What stronger springs do depends on what is held fixed. At a fixed v,
+    as in the paper's study, av falls with a. At a fixed velocity V of the driver v grows as a falls, and av = cV stays,
+    where F(0)/(1 + cV) is the friction. The paper's choice is the first reading.
+
+    claimed : power of a with which the difference falls, or falls faster: that of (aU')² if U' did not change
+    """
+    names = "at a fixed v", "at a fixed V, which leaves av = cV unchanged"
+    return _judge_powers(_fastest_slips(evidence, initial, law, a, "window"), names, claimed, tolerance, loose)
+
+
+@claim("Introduction", "friction_laws", "mean_distance", depends_on=("springs_and_masses_help",))
+def low_friction_helps(
+    evidence: Evidence,
+    *,
+    initial: tuple[str, ...] = ("minus", "plus"),
+    law: str = "linearized",
+    a: Range = BELOW,
+    claimed: float = 2.0,
+    tolerance: Tolerance = 0.5,
+    loose: LooseTolerance = 1.0,
+) -> Verdict:
+    """A low friction force that depends weakly on the velocity, which makes a small, justifies the linearization.
+
+    As in `springs_and_masses_help`, with a = cF(0)/√(km) and v = V√(km)/F(0). A weak dependence is a small c, which
+    leaves v as it is. A low friction is a small F(0): at a fixed velocity V of the driver v grows, and av = cV stays.
+    The difference of the laws is a fraction of F(0).
+    """
+    names = "through c", "through F(0) at a fixed V, which leaves av = cV unchanged"
+    return _judge_powers(_fastest_slips(evidence, initial, law, a, "window"), names, claimed, tolerance, loose)
+
+
+def _judge_powers(
+    slips: tuple[np.ndarray, np.ndarray], names: tuple[str, str], claimed: float, tolerance: float, loose: float
+) -> Verdict:
+    """Judge the power of a with which the difference of the laws, (aU')² on a slipping block, falls.
+
+    slips : a and speed, see `_fastest_slips`; names : of the readings in which v is fixed, and in which av is
+    """
+    grid, speed = slips
+    least, largest = int(np.argmin(grid)), int(np.argmax(grid))
+    readings, measured, texts = {}, [], []
+    for name, product in zip(names, (grid * speed, speed), strict=True):
+        power = float(np.polyfit(np.log(grid), 2.0 * np.log(product), 1)[0])
+        ratio = float((product[least] / product[largest]) ** 2)
+        readings[name] = judge_value(min(power, claimed), claimed, tolerance, loose)
+        measured.append(Measured(f"power of a with which the difference of the laws falls {name}", power))
+        measured.append(Measured(f"remaining fraction of it {name}", ratio))
+        texts.append(f"to {100 * ratio:.2g} %, as a^{power:.2f}, {name} ({readings[name]})")
+    reason = (
+        f"From a = {grid[largest]:g} down to {grid[least]:g} the difference of the laws on a slipping block falls "
+        f"{'; '.join(texts)}. With the same slip speed it would fall as a^{claimed:g}."
+    )
+    return combine_readings(readings, reason, measured)
+
+
+def _fastest_slips(
+    evidence: Evidence, initial: Sequence[str], law: str, a: Range, part: str
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return (a, fastest slip divided by v) of all completed runs, from their least friction 1 − aU'."""
+    slips = []
+    for state in initial:
+        runs = evidence.choose(evidence.state_summary("mean_distance", state), a).sel(law=law)
+        friction = runs["window_least_friction" if part == "window" else "least_friction"].values
+        completed = np.isfinite(friction)
+        if not completed.any():
+            raise NotTestableError(f"no run from {state} completed with {a}")
+        slips.append((runs["a"].values[completed], 1.0 - friction[completed]))
+    grid, product = (np.concatenate(part) for part in zip(*slips, strict=True))
+    return grid, product / (grid * evidence.config["v"])

@@ -1,0 +1,194 @@
+"""Statements on all values of a, judged case by case: under each law, or from each initial state.
+
+A statement is an expression over the motion from the initial states (`outcomes`). The runs decide under the study's
+convention of contact and start, the attractors that the states reach under the others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+import xarray
+
+from burridge_knopoff.claims.conventions import judge_conventions
+from burridge_knopoff.claims.evidence import Evidence
+from burridge_knopoff.claims.outcomes import Reached, Runs
+from burridge_knopoff.claims.range import Range
+from burridge_knopoff.claims.verdict import (
+    Measured,
+    NotTestableError,
+    Share,
+    Verdict,
+    describe_where,
+    format_shares,
+    format_values,
+    judge_shares,
+    judge_worst_share,
+    share_is_decided,
+)
+
+
+@dataclass(frozen=True)
+class Truth:
+    """Where a statement is true, over a and perhaps law and initial.
+
+    right : meaningless where it is not known; known : where it is known
+    applies : values that the statement is about
+    """
+
+    right: xarray.DataArray
+    known: xarray.DataArray
+    applies: xarray.DataArray | bool = True
+
+    def cases(self, unknown: str = "") -> Iterator[Case]:
+        """Yield a case for each law and initial state on which the statement depends, with its name.
+
+        unknown : reason not to judge, in which {law}, {initial} and {where}, the values of a, are filled in
+        """
+        applies = self.applies if isinstance(self.applies, xarray.DataArray) else xarray.ones_like(self.known, bool)
+        parts = xarray.broadcast(self.right.astype(bool), self.known.astype(bool), applies.astype(bool))
+        dimensions = [name for name in ("law", "initial") if name in parts[0].dims]
+        for labels in product(*(parts[0][name].values.tolist() for name in dimensions)):
+            place = dict(zip(dimensions, labels, strict=True))
+            right, known, about = (part.sel(place).values for part in parts)
+            grid = parts[0]["a"].values
+            reason = unknown.format(**place, where=format_values(grid, ~known & about))
+            yield Case(", ".join(labels), grid, right, known, reason, about)
+
+
+@dataclass(frozen=True)
+class Case:
+    """Where a statement is true in one case. All arrays have shape (n,).
+
+    name : of the case, «linearized, plus»; empty if it is the only one
+    a : ascending
+    right : whether the statement is true; meaningless where that is not known
+    known : whether that is known
+    unknown : the reason not to judge if the values that are not known decide
+    applies : values of a that the statement is about; all by default
+    """
+
+    name: str
+    a: np.ndarray
+    right: np.ndarray
+    known: np.ndarray
+    unknown: str = ""
+    applies: np.ndarray | bool = True
+
+    @property
+    def share(self) -> Share:
+        """The fraction of the known values at which the statement is true."""
+        known = self.known & self.applies
+        return Share(int(np.count_nonzero(self.right & known)), int(np.count_nonzero(known)))
+
+    def is_decided(self, loose: float) -> bool:
+        """Return whether the verdict does not depend on the values that are not known; False if none is known."""
+        share, unknown = self.share, int(np.count_nonzero(~self.known & self.applies))
+        return share.count > 0 and share_is_decided(share.hits, share.hits + unknown, share.count + unknown, loose)
+
+    def exceptions(self, wrong: str, unknown: str = "") -> list[str]:
+        """Describe where the statement is false and, if there are words for it, where that is not known."""
+        texts = describe_where(wrong, self.a, self.known & ~self.right & self.applies, self.name)
+        return texts + (describe_where(unknown, self.a, ~self.known & self.applies, self.name) if unknown else [])
+
+
+@dataclass(frozen=True)
+class Statement:
+    """A statement that has to be true in all cases; as text, its shares.
+
+    loose : share from which the statement holds loosely
+    under : judges it by the attractors reached under one convention, see `judge_conventions`; None if they cannot
+    """
+
+    evidence: Evidence
+    cases: Sequence[Case]
+    loose: float
+    under: Callable[[xarray.Dataset], tuple[str, str]] | None = None
+
+    def __str__(self) -> str:
+        return format_shares(self.shares)
+
+    @property
+    def shares(self) -> Mapping[str, Share]:
+        """The share of each case."""
+        return {case.name: case.share for case in self.cases}
+
+    @property
+    def share(self) -> Share:
+        """The share of the only case."""
+        (share,) = self.shares.values()
+        return share
+
+    @property
+    def verdict(self) -> str:
+        """The verdict for the worst share; raises NotTestableError if it is open."""
+        return judge_worst_share(self.shares, self.loose)
+
+    def measured(self, words: str, more: Callable[[Case], Iterable[Measured]] = lambda case: ()) -> list[Measured]:
+        """Return each share with its words, and `more` numbers of its case."""
+        return [
+            item
+            for case in self.cases
+            for item in (Measured(f"{words}, {case.name}", self.shares[case.name].value), *more(case))
+        ]
+
+    def exceptions(self, wrong: str, unknown: str = "") -> list[str]:
+        """Return the exceptions of all cases, see `Case.exceptions`."""
+        return [text for case in self.cases for text in case.exceptions(wrong, unknown)]
+
+    def conclude(
+        self,
+        reason: str,
+        measured: Sequence[Measured],
+        wrong: str,
+        unknown: str = "",
+        further: Sequence[str] = (),
+        verdict: str = "",
+    ) -> Verdict:
+        """Return the verdict, under each convention if attractors can judge it.
+
+        wrong, unknown : words for where the statement is false, and where that is not known; further : other exceptions
+        verdict : if it is not that of the shares
+        """
+        exceptions = [*(self.exceptions(wrong, unknown)), *further]
+        verdict = verdict or self.verdict
+        if self.under is None:
+            return Verdict(verdict, reason, measured, "; ".join(exceptions))
+        return judge_conventions(self.evidence, verdict, reason, measured, exceptions, self.under)
+
+
+def decided(statement: Statement) -> Statement:
+    """Return a statement; raises NotTestableError, with the reason of a case, if unknown values decide it."""
+    for case in statement.cases:
+        if not case.is_decided(statement.loose):
+            raise NotTestableError(case.unknown)
+    return statement
+
+
+def for_all(
+    evidence: Evidence,
+    initial: Sequence[str],
+    a: Range,
+    loose: float,
+    truth: Callable[[Runs], Truth],
+    unknown: str,
+    reached: Callable[[Reached], Truth] | None = None,
+) -> Statement:
+    """Return a statement over the runs from some initial states in a range of a.
+
+    truth : where it is true of the runs; reached : where it is true of the attractors that the states reach
+    unknown : reason not to judge, see `Truth.cases`
+
+    Raises NotTestableError, with the reason of a case, if the values that are not known decide it.
+    """
+
+    def under(attractors: xarray.Dataset) -> tuple[str, str]:
+        assert reached is not None
+        cases = reached(Reached(evidence, evidence.choose(attractors, a), initial)).cases()
+        return judge_shares({case.name: case.share for case in cases if case.is_decided(loose)}, loose)
+
+    cases = list(truth(Runs(evidence, initial, a)).cases(unknown))
+    return decided(Statement(evidence, cases, loose, under if reached else None))
