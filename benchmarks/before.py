@@ -53,17 +53,17 @@ def measured() -> dict[str, float]:
 
         return least(run)
 
-    found = {}
+    durations = {}
     for law in LAWS:
         for initial, a in RUNS:
             model = Model(Chain(3), law_of(law, a))
             name = f"{law}, {initial}, a = {a:g}"
-            found[f"{name}, bare"] = bare(model, initial)
+            durations[f"{name}, bare"] = bare(model, initial)
             for solver in ("series", "map") if law == "linearized" else ("series",):
                 for count in (0, 3):
                     settings = Settings(solver=solver, lyapunov_exponents=count)
                     by = " by map" if solver == "map" else ""
-                    found[f"{name}, {count} exponents{by}"] = least(
+                    durations[f"{name}, {count} exponents{by}"] = least(
                         lambda model=model, initial=initial, settings=settings: simulate(
                             model, initial=initial, settings=settings
                         )
@@ -71,7 +71,7 @@ def measured() -> dict[str, float]:
     for law, blocks, a in LABELS:
         position, velocity, cloud = starts(blocks)
         kernel, clouds = new_ensemble(Model(Chain(blocks), law_of(law, a))), Clouds([cloud], 2 * blocks, [RADIUS])
-        found[f"labels, {law}, N = {blocks}, a = {a:g}"] = least(
+        durations[f"labels, {law}, N = {blocks}, a = {a:g}"] = least(
             lambda k=kernel, c=clouds, x=position, w=velocity: k.label(
                 x, w, np.zeros(x.shape, bool), c, [RETURNS], [0], END
             )
@@ -79,9 +79,9 @@ def measured() -> dict[str, float]:
     for name, kind in BUILT_IN.items():
         law = kind(0.08)
         for chosen, label in ((law, "built in"), (FormulaLaw(0.08, law.formula, **law.parameters), "by formula")):
-            found[f"{name} {label}"] = bare(Model(Chain(3), chosen), "plus")
+            durations[f"{name} {label}"] = bare(Model(Chain(3), chosen), "plus")
     unequal = Chain(3, coupling=[1.0, 1.1], threshold=[1.0, 1.05, 1.0])
-    found["nonlinear, unequal springs and thresholds"] = bare(Model(unequal, law_of("nonlinear", 0.08)), "plus")
+    durations["nonlinear, unequal springs and thresholds"] = bare(Model(unequal, law_of("nonlinear", 0.08)), "plus")
     law = law_of("carlson_langer", 5.0, {"sigma": 0.01})
     chain = Model(Chain(BLOCKS, coupling=100.0, pulling=1.0), law, SLOW)
     position = -0.9 + 0.0005 * np.random.default_rng(1).uniform(-1.0, 1.0, BLOCKS) - chain.sliding_offset
@@ -91,8 +91,8 @@ def measured() -> dict[str, float]:
         solver.begin(rest)
         solver.run(LONG)
 
-    found[f"carlson_langer, N = {BLOCKS}, bare, in groups"] = least(in_groups)
-    return found
+    durations[f"carlson_langer, N = {BLOCKS}, bare, in groups"] = least(in_groups)
+    return durations
 
 
 def child(source: Path) -> dict[str, float]:

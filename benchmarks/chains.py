@@ -149,18 +149,18 @@ def by_groups(rounds: int) -> None:
             )
             for _ in range(rounds)
         ]
-        one, recorded, still, other = (
-            min(each[0] for each in column if each) if column[0] else None for column in zip(*turns, strict=True)
+        bare, recorded, still, other = (
+            min(timing[0] for timing in column if timing) if column[0] else None for column in zip(*turns, strict=True)
         )
         rows.append(
             [
                 blocks,
                 v,
-                f"{one:.2f}",
-                f"{recorded / one:.2f}",
-                f"{still / one:.2f}",
+                f"{bare:.2f}",
+                f"{recorded / bare:.2f}",
+                f"{still / bare:.2f}",
                 "" if other is None else f"{other:.1f}",
-                "" if other is None else f"{other / one:.1f}",
+                "" if other is None else f"{other / bare:.1f}",
                 turns[0][0][1],
             ]
         )

@@ -88,8 +88,8 @@ class Trials:
             run = study.run()
         commands.append("snakemake -c2")
         good = run.returncode == 0 and not differences(study, self.finished) and not temporaries(study)
-        shown = ", ".join(f"`{command}`" for command in commands)
-        self.rows.append([fault, moment, hit, str(whole), str(left), shown, "yes" if good else "NO"])
+        listing = ", ".join(f"`{command}`" for command in commands)
+        self.rows.append([fault, moment, hit, str(whole), str(left), listing, "yes" if good else "NO"])
         print(" | ".join(self.rows[-1]), file=sys.stderr, flush=True)
 
     def stopped(self, fault: str, good: bool) -> None:

@@ -78,21 +78,21 @@ def agreement(floor: FloorRun, ours: Trajectory) -> float:
 
     Events are compared block by block, since events that are simultaneous to rounding may come in either order.
     """
-    for what, theirs, own in (
+    for what, theirs, value in (
         ("crossings", len(floor.crossing), len(ours.crossing_time)),
         ("events", len(floor.event), ours.event_count),
         ("<J>", floor.mean_distance, ours.mean_distance),
     ):
-        if abs(theirs - own) > TOLERANCE:
-            raise RuntimeError(f"{what}: got {theirs} by the floor, expected {own}")
+        if abs(theirs - value) > TOLERANCE:
+            raise RuntimeError(f"{what}: got {theirs} by the floor, expected {value}")
     difference = 0.0
     for block in (1, 2, 3):
         time, _, kind = floor.event[floor.event[:, 1] == block].T
         chosen = ours.event_block == block
         if not np.array_equal(kind, ours.event_kind[chosen]):
             raise RuntimeError(f"block {block}: got another order of stops and starts by the floor")
-        own = ours.event_time[chosen]
-        difference = max(difference, float(np.abs(time - own)[own < REGULAR].max()))
+        times = ours.event_time[chosen]
+        difference = max(difference, float(np.abs(time - times)[times < REGULAR].max()))
     if difference > TOLERANCE:
         raise RuntimeError(f"event times: got a difference of {difference:.0e}, expected at most {TOLERANCE:g}")
     return difference

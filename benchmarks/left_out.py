@@ -75,13 +75,15 @@ def main() -> int:
             text = path.read_text(encoding="utf-8")
             try:
                 path.write_text(mutant.text, encoding="utf-8")
-                found = digests(copy, Path(f"{copy.folder}-results"))
+                checksums = digests(copy, Path(f"{copy.folder}-results"))
             finally:
                 path.write_text(text, encoding="utf-8")
                 copies.put(copy)
-            same = found is not None and {**found, "study.json": ""} == {**expected, "study.json": ""}
-            config = found is not None and found["study.json"] != expected["study.json"]
-            outcomes.append("fails" if found is None else "same" if same else "another config" if config else "CHANGED")
+            same = checksums is not None and {**checksums, "study.json": ""} == {**expected, "study.json": ""}
+            config = checksums is not None and checksums["study.json"] != expected["study.json"]
+            outcomes.append(
+                "fails" if checksums is None else "same" if same else "another config" if config else "CHANGED"
+            )
             if outcomes[-1] not in ("fails", "same"):
                 print(f"{outcomes[-1]}: {mutant}", flush=True)
 

@@ -35,18 +35,18 @@ def followed(
     """Yield each chaotic set of a law as in the file, and its lifetime now."""
     search = SearchSettings(**study.config["attractors"])
     returns = xarray.load_dataset(results / f"returns/{law}.nc")
-    here = attractors.sel(law=law)
-    for a in here["a"].values[np.isin(here["kind"].values, CHAOTIC).any(axis=1)].tolist():
-        one = here.sel(a=a)
-        slots = one.isel(attractor=np.flatnonzero(one["branch"].values >= 0))
-        known = known_attractors(attractors, returns, study.model(law, a)).attractors
+    part = attractors.sel(law=law)
+    for a in part["a"].values[np.isin(part["kind"].values, CHAOTIC).any(axis=1)].tolist():
+        point = part.sel(a=a)
+        slots = point.isel(attractor=np.flatnonzero(point["branch"].values >= 0))
+        candidates = known_attractors(attractors, returns, study.model(law, a)).attractors
         # Sets not shown to last are chaos too.
         sets = [
             replace(item, motion=replace(item.motion, kind=MotionKind.CHAOTIC)) if item.motion.kind in CHAOTIC else item
-            for item in known
+            for item in candidates
         ]
-        found = lifetimes(study.model(law, a), sets, replace(search, seed=search.seed + 1), LONGER)
-        for slot, lifetime in enumerate(found):
+        spans = lifetimes(study.model(law, a), sets, replace(search, seed=search.seed + 1), LONGER)
+        for slot, lifetime in enumerate(spans):
             if lifetime is not None and slots["side"].values[slot] >= 0:
                 yield slots.isel(attractor=slot), lifetime
 
@@ -64,14 +64,16 @@ def main() -> None:
         least = study.config["attractors"]["lifetime"]
         rows, bounds = [], []
         for law in study.laws:
-            for one, lifetime in followed(results, study, attractors, law):
+            for attractor, lifetime in followed(results, study, attractors, law):
                 if not lifetime.ends:
                     bounds.append(lifetime.interval[0])
                     continue
-                before = words(*(one[f"lifetime{end}"].item() for end in ("", "_low", "_high")))
+                before = words(*(attractor[f"lifetime{end}"].item() for end in ("", "_low", "_high")))
                 now = words(lifetime.mean, *lifetime.interval)
-                kinds = MotionKind(one["kind"].item()).words, CHAOTIC[not lifetime.is_longer_than(least)].words
-                rows.append([law, f"{one['a'].item():g}", f"{one['mean_distance'].item():.4f}", before, now, *kinds])
+                kinds = MotionKind(attractor["kind"].item()).words, CHAOTIC[not lifetime.is_longer_than(least)].words
+                rows.append(
+                    [law, f"{attractor['a'].item():g}", f"{attractor['mean_distance'].item():.4f}", before, now, *kinds]
+                )
         print_table(["law", "a", "<J>", "lifetime in the file", "in ten times the time", "kind", "then"], rows)
         print(f"{len(bounds)} other chaotic sets, which none left: longer than {min(bounds, default=0.0):.3g}")
 

@@ -45,7 +45,7 @@ def main() -> None:
 
         alone = together = np.inf
         for _ in range(ROUNDS):
-            alone = min(alone, least(lambda: [one.run() for one in runners()], 1) / MEMBERS)
+            alone = min(alone, least(lambda: [runner.run() for runner in runners()], 1) / MEMBERS)
             together = min(together, least(lambda: run_together(runners()), 1) / MEMBERS)
         rows.append([f"{together / alone:.2f}", law, blocks, exponents, f"{alone:.2f}", f"{together:.2f}"])
     print(f"Vectors of {LANES} doubles.\n")

@@ -102,14 +102,14 @@ def sample(rooms: list[str], count: int, seed: int) -> list[Mutant]:
     places = sorted({place for path in paths for place in spots(path)})
     generator = random.Random(seed)
     generator.shuffle(places)
-    found: list[Mutant] = []
+    mutants: list[Mutant] = []
     for path, position in places:
-        if len(found) == count:
+        if len(mutants) == count:
             break
         mutant = change(path, generator.choice(changes(path)[position]))
         if mutant:
-            found.append(mutant)
-    return found
+            mutants.append(mutant)
+    return mutants
 
 
 def spots(path: Path) -> list[tuple[Path, object]]:
@@ -137,14 +137,14 @@ def changes(path: Path) -> dict[object, list[Callable[[], str]]]:
 
 def changes_of_python(text: str) -> dict[object, list[Callable[[], str]]]:
     """Return {(line, column): functions that return Python code with a change there}."""
-    found = defaultdict(list)
+    edits = defaultdict(list)
     nodes = list(ast_nodes(parso.parse(text)))
     for name in filter(is_used, operator_names()):
         operator = get_operator(name)()
         spans = [span for node in nodes for span in operator.mutation_positions(node)]
         for occurrence, (begin, _) in enumerate(spans):
-            found[begin].append(partial(mutate_code, text, operator, occurrence))
-    return found
+            edits[begin].append(partial(mutate_code, text, operator, occurrence))
+    return edits
 
 
 def is_used(name: str) -> bool:

@@ -9,7 +9,7 @@ from functools import partial
 
 #: Operators that can replace each other; a binary one has blanks around it, which a template and a pointer have not.
 FAMILIES = (("+", "-", "*", "/"), ("<", "<=", ">", ">=", "==", "!="), ("&&", "||"), ("+=", "-=", "*=", "/="))
-OTHERS = {one: [other for other in family if other != one] for family in FAMILIES for one in family}
+OTHERS = {token: [other for other in family if other != token] for family in FAMILIES for token in family}
 
 # In a number a ' is not a quotation mark.
 _WORD = re.compile(
@@ -25,19 +25,19 @@ _TRUTH = re.compile(r"\b(?:true|false)\b")
 def changes_of_cpp(text: str) -> dict[object, list[Callable[[], str]]]:
     """Return {place: functions that return C++ code with a change there}."""
     code = _masked(text)
-    found: list[tuple[int, int, str]] = []
+    edits: list[tuple[int, int, str]] = []
     for word in _OPERATOR.finditer(code):
-        found += [(*word.span(), other) for other in OTHERS[word[0]]]
+        edits += [(*word.span(), other) for other in OTHERS[word[0]]]
     for word in _NUMBER.finditer(code):
         value = float(word[0]) if re.search("[.eE]", word[0]) else int(word[0])
-        found += [(*word.span(), repr(other) if other >= 0 else f"({other!r})") for other in (value - 1, value + 1)]
+        edits += [(*word.span(), repr(other) if other >= 0 else f"({other!r})") for other in (value - 1, value + 1)]
     for word in _TRUTH.finditer(code):
-        found.append((*word.span(), "false" if word[0] == "true" else "true"))
+        edits.append((*word.span(), "false" if word[0] == "true" else "true"))
     for word in _CONDITION.finditer(code):
         begin, end = word.end(), _closing(code, word.end())
-        found.append((begin, end, f"(!{text[begin:end]})"))
+        edits.append((begin, end, f"(!{text[begin:end]})"))
     changes = defaultdict(list)
-    for begin, end, new in found:
+    for begin, end, new in edits:
         changes[begin].append(partial(_replaced, text, begin, end, new))
     return changes
 

@@ -50,44 +50,53 @@ def exponents(results: Path, study: Study, attractors: xarray.Dataset, a: float)
     """Return the uncertainty exponent of the plane of the maps at one a under each law, and the dimension."""
     plane = BasinSettings(initial=study.state(study.config["basins"]["initial"]), pairs=PAIRS)
     start = study.config["start"]
-    known = [known_of(results, attractors, study.model(law, a)) for law in study.laws]
-    found = [basins.pairs(one, plane, SEARCH.label_limit, SEARCH.seed, start) for one in known]
-    values = [(one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()) for one in found]
+    candidates = [known_of(results, attractors, study.model(law, a)) for law in study.laws]
+    summaries = [basins.pairs(candidate, plane, SEARCH.label_limit, SEARCH.seed, start) for candidate in candidates]
+    values = [
+        (summary["uncertainty_exponent"].item(), summary["uncertainty_exponent_error"].item()) for summary in summaries
+    ]
     alpha = "; ".join(f"{value:.3f} ± {error:.3f}" for value, error in values)
     return [f"{a:g}", alpha, "; ".join(f"{2.0 - value:.2f}" for value, _ in values)]
 
 
 def local_exponents(results: Path, study: Study, attractors: xarray.Dataset, a: float) -> list[str]:
     """Return the slope of log f against log ε over a factor of 27 about each of SMALLER, linearized law."""
-    known = known_of(results, attractors, study.model("linearized", a))
+    candidates = known_of(results, attractors, study.model("linearized", a))
     plane = BasinSettings(initial=study.state(study.config["basins"]["initial"]))
-    position, velocity = plane.initial.coordinates(known.model.blocks)
+    position, velocity = plane.initial.coordinates(candidates.model.blocks)
 
     def label(points: np.ndarray) -> np.ndarray:
         where = states(position, *points.T, velocity)
-        return label_states(known.model, known.attractors, *where, time_limit=SEARCH.label_limit)[0]
+        return label_states(candidates.model, candidates.attractors, *where, time_limit=SEARCH.label_limit)[0]
 
-    found = follow_pairs(label, plane.first_position, plane.last_position, 4000, SEARCH.seed, SEPARATIONS)
+    counts = follow_pairs(label, plane.first_position, plane.last_position, 4000, SEARCH.seed, SEPARATIONS)
     without = [np.delete(np.arange(BATCHES), k) for k in range(BATCHES)]
 
     def slopes(batches: np.ndarray) -> np.ndarray:
-        fraction = found.different_weight[batches].sum(axis=0) / found.labelled_weight[batches].sum(axis=0)
+        fraction = counts.different_weight[batches].sum(axis=0) / counts.labelled_weight[batches].sum(axis=0)
         return np.array([np.log(fraction[k] / fraction[k + 3]) / np.log(27.0) for k in SMALLER])
 
-    error = np.sqrt(BATCHES - 1.0) * np.std([slopes(one) for one in without], axis=0)
-    return [f"{a:g}", *(f"{one:.2f} ± {own:.2f}" for one, own in zip(slopes(np.arange(BATCHES)), error, strict=True))]
+    error = np.sqrt(BATCHES - 1.0) * np.std([slopes(sample) for sample in without], axis=0)
+    return [
+        f"{a:g}",
+        *(f"{slope:.2f} ± {deviation:.2f}" for slope, deviation in zip(slopes(np.arange(BATCHES)), error, strict=True)),
+    ]
 
 
 def born_at(study: Study, attractors: xarray.Dataset) -> float:
     """Return the a at which the orbit of these stops begins at a grazing that turns, stable or not (linearized law)."""
     model = study.model("linearized", BIRTH_FROM)
-    one = attractors.sel(law="linearized", a=BIRTH_FROM)
-    one = one.isel(attractor=(one["kind"] == MotionKind.PERIODIC).values)
-    states = np.concatenate([one["position"].values - model.sliding_offset, one["velocity"].values], axis=1)
+    periodic = attractors.sel(law="linearized", a=BIRTH_FROM)
+    periodic = periodic.isel(attractor=(periodic["kind"] == MotionKind.PERIODIC).values)
+    states = np.concatenate([periodic["position"].values - model.sliding_offset, periodic["velocity"].values], axis=1)
     orbits = [limit_cycle(model, state_of(state)) for state in states]
     orbit = next(orbit for orbit in orbits if orbit.stop_counts == STOPS)
-    found = locate_bifurcations(follow(orbit, BIRTH_RANGE, upward=False))
-    return next(one.a for one in found if one.kind == BifurcationKind.GRAZING and one.is_turning_point)
+    bifurcations = locate_bifurcations(follow(orbit, BIRTH_RANGE, upward=False))
+    return next(
+        bifurcation.a
+        for bifurcation in bifurcations
+        if bifurcation.kind == BifurcationKind.GRAZING and bifurcation.is_turning_point
+    )
 
 
 def main() -> None:
@@ -104,9 +113,9 @@ def main() -> None:
         [local_exponents(results, study, attractors, a) for a in EXPONENTS_AT],
     )
     model = study.model("linearized", PHASES_AT[0])
-    known = [known_of(results, attractors, model.at(a)) for a in PHASES_AT]
-    found = phases.one_law(known, PHASES, SEARCH.label_limit)["synchronized_fraction"]
-    table = 100.0 * found.sel(amplitude=AMPLITUDE).transpose("inner_share", "phase_difference", "a").values
+    candidates = [known_of(results, attractors, model.at(a)) for a in PHASES_AT]
+    fraction = phases.one_law(candidates, PHASES, SEARCH.label_limit)["synchronized_fraction"]
+    table = 100.0 * fraction.sel(amplitude=AMPLITUDE).transpose("inner_share", "phase_difference", "a").values
     header = ["share", *(f"{angle:g}°, a = {a:g}" for angle in PHASES.phase_difference for a in PHASES_AT)]
     rows = [
         [f"{share:g}", *(f"{value:g} %" for value in row.ravel())]

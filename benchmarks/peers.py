@@ -65,7 +65,7 @@ def compare(law: str, state: str, rounds: int) -> list[list[str]]:
     }
     measured = ("whole run", f"τ = {SCIPY_TRANSIENT + SCIPY_WINDOW:g}, scaled", f"τ = {RK4_WINDOW:g}, scaled")
     rows = []
-    for (name, seconds), extent, run, own in zip(cpu.items(), measured, runs, own_runs, strict=True):
+    for (name, seconds), extent, run, reference in zip(cpu.items(), measured, runs, own_runs, strict=True):
         ratio = seconds / full["ours"]
         rows.append(
             [
@@ -76,9 +76,9 @@ def compare(law: str, state: str, rounds: int) -> list[list[str]]:
                 f"{1e3 * full['ours']:.1f}",
                 f"{1e3 * seconds:.1f}" if seconds < 10 else f"{1e3 * seconds:.3g}",
                 extent,
-                f"{len(run.event_time)} / {len(own.event_time)}",
-                f"{abs(run.mean_distance - own.mean_distance):.0e}",
-                event_time_difference(run, own),
+                f"{len(run.event_time)} / {len(reference.event_time)}",
+                f"{abs(run.mean_distance - reference.mean_distance):.0e}",
+                event_time_difference(run, reference),
             ]
         )
     return rows
@@ -93,11 +93,11 @@ def together(law: str, rounds: int) -> list[str]:
     def ours():
         return ensemble.run(position, velocity, np.zeros((MEMBERS, 3)), [ENSEMBLE_END])
 
-    own, (final, events) = ours(), heyoka.run(position, velocity, ENSEMBLE_END)
+    reference, (final, events) = ours(), heyoka.run(position, velocity, ENSEMBLE_END)
     times = {"ours": ours, "heyoka": lambda: heyoka.run(position, velocity, ENSEMBLE_END)}
     cpu = {name: 1e6 * seconds / MEMBERS for name, seconds in cpu_times(times, rounds).items()}
-    difference = np.abs(final - own["position"][:, 0]).max()
-    counts = f"{events} / {own['event_count'].sum()}"
+    difference = np.abs(final - reference["position"][:, 0]).max()
+    counts = f"{events} / {reference['event_count'].sum()}"
     ratio = f"{cpu['heyoka'] / cpu['ours']:.1f}"
     return [ratio, law, f"{cpu['ours']:.1f}", f"{cpu['heyoka']:.1f}", counts, f"{difference:.0e}"]
 

@@ -86,7 +86,9 @@ def parts_of(results, job):
         if kept:
             sys.exit(f"{log}: what came from the cache took no time: rm -r .snakemake/study_cache, and run it again")
         parts[name].append([float(value) for value in seconds])
-    return [(sum(total for total, _ in each), max(longest for _, longest in each)) for each in parts.values()]
+    return [
+        (sum(total for total, _ in durations), max(longest for _, longest in durations)) for durations in parts.values()
+    ]
 
 
 def on(cores, jobs, seconds, parts):
@@ -97,11 +99,11 @@ def on(cores, jobs, seconds, parts):
     """
     laws = sum(job.rule == "attractors_of_law" for job in jobs.values())
     processes = max(1, cores // max(1, laws))
-    shared = {number: found for number, found in parts.items() if found}
+    shared = {number: pieces for number, pieces in parts.items() if pieces}
     wide = {number: replace(job, threads=processes if number in shared else 1) for number, job in jobs.items()}
     took = dict(seconds)
-    for number, found in shared.items():
-        spared = sum((total - longest) * (1.0 / jobs[number].threads - 1.0 / processes) for total, longest in found)
+    for number, pieces in shared.items():
+        spared = sum((total - longest) * (1.0 / jobs[number].threads - 1.0 / processes) for total, longest in pieces)
         took[number] = max(0.0, seconds[number] - spared)
     return wide, took
 
@@ -132,12 +134,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("configs", nargs="+")
     parser.add_argument("--cores", type=int, default=2)
-    given = parser.parse_args()
-    for config in given.configs:
-        moments = list(estimates(*recorded(config, given.cores)))
+    options = parser.parse_args()
+    for config in options.configs:
+        moments = list(estimates(*recorded(config, options.cores)))
         _, begin, took = moments[0]
         largest = max(ratio(*pair) for moment, *pair in moments if moment >= min(60.0, took / 10))
-        print(f"{config}: {took:.0f} s on {given.cores} cores, estimated {begin:.0f} s, then at most {largest:.2f} off")
+        print(
+            f"{config}: {took:.0f} s on {options.cores} cores, estimated {begin:.0f} s, then at most {largest:.2f} off"
+        )
         on_other_cores(config)
 
 

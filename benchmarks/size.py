@@ -105,16 +105,18 @@ def main() -> None:
         for points in options.points:
             folder = (options.folder or Path(temporary)) / f"points{points}"
             folder.mkdir(parents=True)
-            row, found = measure(points, folder, options.cores)
+            row, rule_costs = measure(points, folder, options.cores)
             rows.append(row)
-            rules.append(found)
+            rules.append(rule_costs)
     header = ["points", "dry run s", "run min", "CPU s a point", "Snakemake MB", "no-op s", "check s", "points MB"]
     print_table(header, rows)
     table = []
     for rule in sorted(rules[-1], key=lambda name: -rules[-1][name][0]):
         memory = rules[-1][rule][1]
-        each = [1000.0 * found[rule][0] / points for found, points in zip(rules, options.points, strict=True)]
-        table.append([rule, *(f"{cost:.2f}" for cost in each), f"{memory:.0f}"])
+        costs = [
+            1000.0 * rule_costs[rule][0] / points for rule_costs, points in zip(rules, options.points, strict=True)
+        ]
+        table.append([rule, *(f"{cost:.2f}" for cost in costs), f"{memory:.0f}"])
     names = [f"ms a point, {points}" for points in options.points]
     print_table(["rule", *names, "MB, largest"], table)
 

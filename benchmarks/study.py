@@ -31,10 +31,10 @@ POINT_COMMAND = '"{params.command} --out {output} > /dev/null 2> {log} || [ $? =
 PLANNED = re.compile(r"^(\d+) jobs: ", re.MULTILINE)
 
 
-def make_baseline(folder: Path, made: Path) -> Path:
+def make_baseline(folder: Path, outputs: Path) -> Path:
     """Copy the workflow with point jobs that import and link; return its Snakefile.
 
-    made : folder of a finished run of the study
+    outputs : folder of a finished run of the study
     """
     shutil.copy(REPOSITORY / "Snakefile", folder)
     (folder / "profiles").symlink_to("workflow/profiles")
@@ -45,7 +45,7 @@ def make_baseline(folder: Path, made: Path) -> Path:
     if text.count(POINT_COMMAND) != 1:
         raise RuntimeError(f"{POINT_RULE} has changed: the line {POINT_COMMAND} is not in it")
     # A link costs almost nothing in the process that has already imported; `cp` would be one more process.
-    script = f"{IMPORTS}, os; os.link('{made}/{{output}}', '{{output}}')"
+    script = f"{IMPORTS}, os; os.link('{outputs}/{{output}}', '{{output}}')"
     rule.write_text(text.replace(POINT_COMMAND, f'"python -c \\"{script}\\" 2> {{log}}"'), encoding="utf-8")
     return folder / "Snakefile"
 

@@ -43,11 +43,11 @@ PERIODS, REPEATED = 2.4e5, 1e-6
 def period(model: Model, state: ChainState) -> float:
     """Return the time after which a stop of the first block is repeated, infinity if it takes longer than `PERIODS`."""
     options = Settings(transient=0.0, window=PERIODS, batches=2, sampling=PERIODS, trajectory=0.0, events="all")
-    found = run(model, state, options)
-    stops = (found.event_block == 1) & (found.event_kind == 0)
-    states = np.hstack([found.event_position, found.event_velocity])[stops]
+    trajectory = run(model, state, options)
+    stops = (trajectory.event_block == 1) & (trajectory.event_kind == 0)
+    states = np.hstack([trajectory.event_position, trajectory.event_velocity])[stops]
     near = np.flatnonzero(np.abs(states[:-1] - states[-1]).max(axis=1) < REPEATED)
-    times = found.event_time[stops]
+    times = trajectory.event_time[stops]
     return float(times[-1] - times[near[-1]]) if len(near) else np.inf
 
 
@@ -57,9 +57,9 @@ def resolved(study: Study, law: str, places: list[xarray.Dataset]) -> list[objec
     These are the numbers of chaotic attractors, of others, and of periodic orbits, with their values of a and periods.
     """
     chaotic, closed = 0, []
-    for one in places:
-        model, velocity = study.model(law, float(one["a"])), one["velocity"].values
-        start = ChainState(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
+    for attractor in places:
+        model, velocity = study.model(law, float(attractor["a"])), attractor["velocity"].values
+        start = ChainState(attractor["position"].values - model.sliding_offset, velocity, velocity == 0.0)
         trajectory = run(model, start, OPTIONS)
         above, below = trajectory.lyapunov_exponent / (CERTAIN * trajectory.lyapunov_error)
         chaotic += int(above > 1.0)

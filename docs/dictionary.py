@@ -79,27 +79,27 @@ class Row:
 
     def line(self, usual: tuple[str, ...]) -> str:
         """Return the row of a table; its dimensions are given unless they are the usual ones of the table."""
-        shown = ""
+        shape = ""
         if self.dimensions != usual:
             further = self.dimensions[len(usual) :] if usual == self.dimensions[: len(usual)] else ()
-            shown = f" ({', '.join(('…', *further) if usual and further else self.dimensions) or 'scalar'})"
-        return f"| {self.listed}{shown} | {self.meaning} |"
+            shape = f" ({', '.join(('…', *further) if usual and further else self.dimensions) or 'scalar'})"
+        return f"| {self.listed}{shape} | {self.meaning} |"
 
 
 def rows(path: Path) -> list[Row]:
     """Return the variables of a file, except the coordinates that the page explains once."""
-    found: list[Row] = []
+    table: list[Row] = []
     with netCDF4.Dataset(path) as dataset:
         for variable in dataset.variables.values():
             row = _row(variable)
             base = re.sub(r"_(error|low|high)$", "", variable.name)
-            owners = [k for k, one in enumerate(found) if f"{one.names[0]}_".startswith(f"{base}_")]
-            owners = [k for k in owners if not UNCERTAINTY.match(found[k].meaning)]
+            owners = [k for k, entry in enumerate(table) if f"{entry.names[0]}_".startswith(f"{base}_")]
+            owners = [k for k in owners if not UNCERTAINTY.match(table[k].meaning)]
             if base != variable.name and owners and UNCERTAINTY.match(row.meaning):
-                found[owners[0]] = replace(found[owners[0]], names=found[owners[0]].names + row.names)
+                table[owners[0]] = replace(table[owners[0]], names=table[owners[0]].names + row.names)
             elif row.names != row.dimensions or row.names[0] not in COMMON:
-                found.append(row)
-    return found
+                table.append(row)
+    return table
 
 
 def _row(variable: netCDF4.Variable) -> Row:
@@ -126,10 +126,10 @@ def page(text: str, folder: Path) -> str:
         return any(name == row.names[0] and meaning.startswith(row.meaning) for name, meaning in seen)
 
     def table(match: re.Match[str]) -> str:
-        found = rows(sorted(folder.glob(match["file"]))[0])
-        new = [row for row in found if not is_described(row)]
-        again = ", ".join(row.listed for row in found if row not in new)
-        seen.update((row.names[0], row.meaning) for row in found)
+        file_rows = rows(sorted(folder.glob(match["file"]))[0])
+        new = [row for row in file_rows if not is_described(row)]
+        again = ", ".join(row.listed for row in file_rows if row not in new)
+        seen.update((row.names[0], row.meaning) for row in file_rows)
         [(usual, _)] = Counter(row.dimensions for row in new).most_common(1)
         lines = [f"| variable ({', '.join(usual) or 'scalar'}) | meaning |", "| --- | --- |"]
         lines += [row.line(usual) for row in new]

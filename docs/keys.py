@@ -53,19 +53,19 @@ Schema = dict[str, Any]
 
 def fields(keys: Keys = CONFIG, section: str = "") -> dict[str, Field]:
     """Return the fields of a config by their full keys, such as `motion.zero_exponent`."""
-    found: dict[str, Field] = {}
+    leaves: dict[str, Field] = {}
     for name, field in keys.fields.items():
         inside = isinstance(field.range, Keys)
-        found |= fields(field.range, f"{section}{name}.") if inside else {section + name: field}
-    return found
+        leaves |= fields(field.range, f"{section}{name}.") if inside else {section + name: field}
+    return leaves
 
 
 def updated_tables(text: str) -> str:
     """Return the page with the rows of all keys brought up to date."""
-    known = fields()
+    leaves = fields()
     return re.sub(
         r"^\| `([a-z_.]+)` \|.*$",
-        lambda row: _row(row[1], known[row[1]]) if row[1] in known else row[0],
+        lambda row: _row(row[1], leaves[row[1]]) if row[1] in leaves else row[0],
         text,
         flags=re.MULTILINE,
     )
@@ -215,8 +215,8 @@ def _(allowed: SpringsFile) -> Schema:
 @schema_of.register
 def _(allowed: Several) -> Schema:
     limits = {"minItems": allowed.least, "maxItems": allowed.most, "uniqueItems": allowed.distinct}
-    shown = {key: limit for key, limit in limits.items() if limit and limit != Several.most}
-    return {"type": "array", **shown, "items": schema_of(allowed.each)}
+    bounds = {key: limit for key, limit in limits.items() if limit and limit != Several.most}
+    return {"type": "array", **bounds, "items": schema_of(allowed.each)}
 
 
 @schema_of.register
@@ -232,7 +232,7 @@ def _(allowed: RandomNumbers) -> Schema:
 
 @schema_of.register
 def _(allowed: Either) -> Schema:
-    return {"anyOf": [schema_of(one) for one in allowed.ranges]}
+    return {"anyOf": [schema_of(alternative) for alternative in allowed.ranges]}
 
 
 class _Dumper(yaml.SafeDumper):

@@ -33,23 +33,23 @@ os.chdir(next(folder for folder in (Path.cwd(), *Path.cwd().parents) if (folder 
 def notebook() -> str:
     """Return the text of the notebook."""
     page = PAGE.read_text(encoding="utf-8")
-    made = v4.new_notebook(metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}})
+    nb = v4.new_notebook(metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}})
     end = 0
     for match in CELL.finditer(page):
         if text := page[end : match.start()].strip():
-            made.cells.append(v4.new_markdown_cell(text))
+            nb.cells.append(v4.new_markdown_cell(text))
         if end == 0:
-            made.cells.append(v4.new_code_cell(START))
-        made.cells.append(picture(match) if match["picture"] else block(match))
+            nb.cells.append(v4.new_code_cell(START))
+        nb.cells.append(picture(match) if match["picture"] else block(match))
         end = match.end()
-    for number, cell in enumerate(made.cells, start=1):
+    for number, cell in enumerate(nb.cells, start=1):
         # nbformat assigns random ids.
         cell.id = f"cell-{number}"
-    for count, cell in enumerate((cell for cell in made.cells if cell.cell_type == "code"), start=1):
+    for count, cell in enumerate((cell for cell in nb.cells if cell.cell_type == "code"), start=1):
         for part in (cell, *cell.outputs):
             if "execution_count" in part:
                 part.execution_count = count
-    return nbformat.writes(made) + "\n"
+    return nbformat.writes(nb) + "\n"
 
 
 def block(match: re.Match[str]) -> nbformat.NotebookNode:
@@ -61,9 +61,9 @@ def block(match: re.Match[str]) -> nbformat.NotebookNode:
 def picture(match: re.Match[str]) -> nbformat.NotebookNode:
     """Return a cell that shows a picture file."""
     path = PAGE.parent / match["picture"]
-    shown = {"image/png": base64.b64encode(path.read_bytes()).decode(), "text/plain": match["title"]}
+    bundle = {"image/png": base64.b64encode(path.read_bytes()).decode(), "text/plain": match["title"]}
     code = f'Image("{path.relative_to(PAGE.parents[1])}")'
-    return v4.new_code_cell(code, outputs=[v4.new_output("execute_result", data=shown, execution_count=1)])
+    return v4.new_code_cell(code, outputs=[v4.new_output("execute_result", data=bundle, execution_count=1)])
 
 
 if __name__ == "__main__":

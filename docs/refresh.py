@@ -58,16 +58,16 @@ def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
 
     attractors : attractors.nc
     """
-    found = []
+    entries = []
     for number, name in sorted(branch_names(attractors).items()):
         for law in attractors["law"].values.tolist():
-            of_law = attractors.sel(law=law)
-            there = of_law["branch"].values == number
-            a = of_law["a"].values[there.any(axis=1)]
+            part = attractors.sel(law=law)
+            there = part["branch"].values == number
+            a = part["a"].values[there.any(axis=1)]
             if not len(a):
                 continue
-            mean, kinds = of_law["mean_distance"].values[there], np.unique(of_law["kind"].values[there])
-            found.append(
+            mean, kinds = part["mean_distance"].values[there], np.unique(part["kind"].values[there])
+            entries.append(
                 {
                     "number": number,
                     "name": name,
@@ -79,30 +79,30 @@ def branches(attractors: xarray.Dataset) -> list[dict[str, Any]]:
                     "kinds": [MotionKind(kind).words for kind in kinds.tolist()],
                 }
             )
-    return found
+    return entries
 
 
-def branch_table(found: Sequence[Mapping[str, Any]]) -> str:
+def branch_table(entries: Sequence[Mapping[str, Any]]) -> str:
     """Return the branches that exist at LONG or more values of a as a table, a row for each law."""
-    long = {branch["number"] for branch in found if branch["values_of_a"] >= LONG}
+    long = {branch["number"] for branch in entries if branch["values_of_a"] >= LONG}
     rows = ["| branch | law | a | values of a | ⟨J⟩ | kinds of motion |", "| --- | --- | --- | ---: | --- | --- |"]
-    for branch in found:
+    for branch in entries:
         if branch["number"] in long:
             name = branch["name"] if branch["name"].endswith(")") else f"{branch['name']} ({branch['number']})"
             a = span(f"{branch['first_a']:g}", f"{branch['last_a']:g}")
             mean = span(*(f"{end:.2g}" for end in branch["mean_distance"]))
             cells = [name, branch["law"], a, str(branch["values_of_a"]), mean, ", ".join(branch["kinds"])]
             rows.append(f"| {' | '.join(cells)} |")
-    others = len({branch["number"] for branch in found} - long)
+    others = len({branch["number"] for branch in entries} - long)
     return "\n".join(rows) + f"\n\n{others} other branches exist at fewer than {LONG} values of a under each law.\n"
 
 
-def pages(ledger: Mapping[str, Any], found: Sequence[Mapping[str, Any]]) -> dict[Path, str]:
+def pages(ledger: Mapping[str, Any], entries: Sequence[Mapping[str, Any]]) -> dict[Path, str]:
     """Return the generated block of each page of the documentation."""
     return {
         DOCS / "claims.md": as_markdown(ledger, "figures"),
         DOCS.parent / "README.md": headline(ledger),
-        DOCS / "attractors.md": branch_table(found),
+        DOCS / "attractors.md": branch_table(entries),
     }
 
 
@@ -133,10 +133,10 @@ def main(results: Path) -> None:
     """Update the pages, the JSON files and the figures from the results of a study."""
     ledger = published_ledger(results)
     with xarray.open_dataset(results / "summary/attractors.nc") as attractors:
-        found = branches(attractors)
+        entries = branches(attractors)
     write_text(LEDGER, as_json(ledger))
-    write_text(BRANCHES, json.dumps(found, ensure_ascii=False, indent=1) + "\n")
-    for path, block in pages(ledger, found).items():
+    write_text(BRANCHES, json.dumps(entries, ensure_ascii=False, indent=1) + "\n")
+    for path, block in pages(ledger, entries).items():
         write_text(path, replace_block(path.read_text(encoding="utf-8"), block))
     for name in sorted(figure_names()):
         if (source := results / f"figures/{name}.png").exists():

@@ -25,20 +25,22 @@ def stage(rule: str) -> str:
 def arrows(graph: str) -> set[tuple[str, str]]:
     """Return (from, to) of the stages in a graph of rules, as `snakemake --rulegraph mermaid-js` prints it."""
     rules = dict(re.findall(r"(id\d+)\[(\w+)\]", graph))
-    found = {(stage(rules[one]), stage(rules[other])) for one, other in re.findall(r"(id\d+) --> (id\d+)", graph)}
-    return {(one, other) for one, other in found if one != other and other != "all"}
+    pairs = {
+        (stage(rules[source]), stage(rules[target])) for source, target in re.findall(r"(id\d+) --> (id\d+)", graph)
+    }
+    return {(source, target) for source, target in pairs if source != target and target != "all"}
 
 
 def chart(graph: str) -> str:
     """Return the stages and what they read, with all summaries in one box for figures, claims and report."""
-    found = arrows(graph)
-    summaries = sorted({name for pair in found for name in pair} - {*ENDS})
+    pairs = arrows(graph)
+    summaries = sorted({name for pair in pairs for name in pair} - {*ENDS})
     lines = ["flowchart LR", '  simulate["simulate: points"]']
     lines += ['  subgraph summary["summaries"]', *(f'    {name}["{name}"]' for name in summaries), "  end"]
-    lines += [f"  {one} --> {other}" for one, other in sorted(found) if other in summaries]
+    lines += [f"  {source} --> {target}" for source, target in sorted(pairs) if target in summaries]
     lines += ['  figures["figures"]', '  claims["claims"]', '  report["report"]']
     lines += ["  summary --> figures", "  summary --> claims"]
-    lines += [f"  {one} --> {other}" for one, other in sorted(found) if {one, other} < {*ENDS}]
+    lines += [f"  {source} --> {target}" for source, target in sorted(pairs) if {source, target} < {*ENDS}]
     return "```mermaid\n" + "\n".join(lines) + "\n```\n"
 
 

@@ -86,7 +86,7 @@ def small_studies(tmp_path_factory: pytest.TempPathFactory):
 
     def make(name: str, folder: Path) -> None:
         small = run_study(folder / "results" / name, {**SMALL, "study": name, **STUDIES[name]}, ("summary",))
-        assert small.found
+        assert small.summaries
         (folder / "study.pickle").write_bytes(pickle.dumps(small))
 
     @cache

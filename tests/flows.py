@@ -32,10 +32,10 @@ def listed(run):
     return list(zip(run.event_time.tolist(), run.event_block.tolist(), run.event_kind.tolist(), strict=True))
 
 
-def check_events(found, expected, tolerance):
+def check_events(events, expected, tolerance):
     """Require the same stops and starts in the same order, at the same times within the tolerance."""
-    assert [event[1:] for event in found] == [event[1:] for event in expected]
-    error = max((abs(event[0] - other[0]) for event, other in zip(found, expected, strict=True)), default=0.0)
+    assert [event[1:] for event in events] == [event[1:] for event in expected]
+    error = max((abs(event[0] - other[0]) for event, other in zip(events, expected, strict=True)), default=0.0)
     assert error <= tolerance, float(error)
 
 

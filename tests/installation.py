@@ -61,9 +61,11 @@ def install(repository: Path, folder: Path) -> None:
     shutil.move(tree / "dist", folder / "dist")
     shutil.rmtree(tree)
 
-    made = Installation(folder)
+    installation = Installation(folder)
     # A command, since the `tarfile` of Python 3.11.2 (Debian 12) has no filters.
-    subprocess.run([sys.executable, "-m", "tarfile", "-e", str(made.source), str(folder / "unpacked")], check=True)
+    subprocess.run(
+        [sys.executable, "-m", "tarfile", "-e", str(installation.source), str(folder / "unpacked")], check=True
+    )
     (unpacked,) = (folder / "unpacked").iterdir()
     flags = unpacked / "src" / "burridge_knopoff" / "provenance" / "compilation.py"
     assert '"-O3"' in flags.read_text()
@@ -86,7 +88,7 @@ def install(repository: Path, folder: Path) -> None:
 
     environment = folder / "environment"
     venv.create(environment, symlinks=True)
-    subprocess.run([*pip, "--python", made.python, "install", *offline, str(made.wheel)], check=True)
+    subprocess.run([*pip, "--python", installation.python, "install", *offline, str(installation.wheel)], check=True)
     (packages,) = environment.glob("lib/python*/site-packages")
     (information,) = packages.glob("*.dist-info")
     for needed in _needs(Distribution.at(information)).values():
@@ -104,13 +106,13 @@ def content_of(tree: Path) -> dict[str, tuple[int, bytes]]:
 
 def _needs(package: Distribution) -> dict[str, Distribution]:
     """Return all requirements of a distribution without extras, and theirs, as installed here."""
-    found: dict[str, Distribution] = {}
+    distributions: dict[str, Distribution] = {}
     waiting = [package]
     while waiting:
         for line in waiting.pop().requires or ():
             requirement = Requirement(line)
             wanted = requirement.marker is None or requirement.marker.evaluate({"extra": ""})
-            if wanted and requirement.name not in found:
-                found[requirement.name] = distribution(requirement.name)
-                waiting.append(found[requirement.name])
-    return found
+            if wanted and requirement.name not in distributions:
+                distributions[requirement.name] = distribution(requirement.name)
+                waiting.append(distributions[requirement.name])
+    return distributions

@@ -66,13 +66,13 @@ def observe(model, start, transient, window, settings, mean_distance=None, expon
     batches = [part.mean() for part in np.array_split(growth, BATCHES)]
     exponent = np.sort([0.0, growth.mean()])[::-1]
     error = np.where(exponent == 0.0, 0.0, np.std(batches) / np.sqrt(BATCHES))
-    found = returns_of(model, window, np.ones(len(x)), rows_of(x).__getitem__)
+    section_returns = returns_of(model, window, np.ones(len(x)), rows_of(x).__getitem__)
     points = repetition_length(x, settings.period_tolerance, int(min(settings.longest_period, len(x) // 3)))
     motion = motion_from_period(points, float(points) if points else np.nan, np.inf, exponent, error, settings)
     return SteadyMotion(
-        found.returns,
-        found.mirror_returns,
-        found.spacing,
+        section_returns.returns,
+        section_returns.mirror_returns,
+        section_returns.spacing,
         float(x.mean()),
         float(x.std() / np.sqrt(len(x))),
         np.ones(1),
@@ -85,7 +85,7 @@ def observe(model, start, transient, window, settings, mean_distance=None, expon
 
 class Clouds:
     def __init__(self, returns, size, radii):
-        self.near = [(cKDTree(one[:, :1]), radius) for one, radius in zip(returns, radii, strict=True)]
+        self.near = [(cKDTree(points[:, :1]), radius) for points, radius in zip(returns, radii, strict=True)]
 
 
 class Ensemble:

@@ -28,13 +28,13 @@ class Block:
 
 def blocks(page: str) -> list[Block]:
     """Return the fenced blocks of a page, in order."""
-    found = []
+    code_blocks = []
     for match in FENCE.finditer(page):
         # A comment in a block is not a heading.
         before = FENCE.sub("", page[: match.start()])
         headings = re.findall(r"^#+ (.*)$", before, re.MULTILINE)
-        found.append(Block(match["info"], match["text"], headings[-1] if headings else "", match.span("text")))
-    return found
+        code_blocks.append(Block(match["info"], match["text"], headings[-1] if headings else "", match.span("text")))
+    return code_blocks
 
 
 def apply(page: str, root: Path) -> list[str]:
@@ -81,14 +81,14 @@ def outputs(page: str, name: str, headings: set[str] | None = None) -> list[tupl
 
     headings : run only the blocks below these
     """
-    found = blocks(page)
+    code_blocks = blocks(page)
     namespace: dict[str, object] = {"__name__": "__main__"}
     results = []
-    for number, block in enumerate(found):
+    for number, block in enumerate(code_blocks):
         if block.info != "python" or (headings is not None and block.heading not in headings):
             continue
         printed = run(block.text, namespace, f"{name}, block {number + 1}")
-        following = found[number + 1] if number + 1 < len(found) else None
+        following = code_blocks[number + 1] if number + 1 < len(code_blocks) else None
         if following is not None and following.info == "text":
             results.append((following, following.text, printed))
         elif printed:

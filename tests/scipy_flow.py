@@ -29,7 +29,7 @@ def scipy_events(
     state = np.concatenate([position, np.where(slip == 0, 0.0, velocity)])
     started = np.full(blocks, -1.0)
     signs = (1.0, -1.0) if contact == "symmetric" else (1.0,)
-    clock, found = 0.0, []
+    clock, events = 0.0, []
     damping = damping * np.ones((blocks, blocks))
 
     def force_at(y):
@@ -50,7 +50,7 @@ def scipy_events(
     def change(i, kind):
         slip[i], state[blocks + i] = kind, 0.0
         started[i] = clock if kind else -1.0
-        found.append((clock, i + 1, int(kind != 0)))
+        events.append((clock, i + 1, int(kind != 0)))
 
     def starts(force, growth, i):
         """Return whether a stuck block starts: at its threshold only if the force grows."""
@@ -78,7 +78,7 @@ def scipy_events(
     while True:
         settle()
         if clock >= end:
-            return found, state[:blocks], state[blocks:]
+            return events, state[:blocks], state[blocks:]
         solver = DOP853(rate, clock, state, end, rtol=1e-12, atol=1e-14, max_step=LONGEST_STEP)
         while solver.status == "running":
             solver.step()

@@ -101,7 +101,7 @@ class SmallStudy:
         return [self.study.model(law, next(iter(self.study.grid.values()))) for law in self.study.laws]
 
     @cached_property
-    def found(self) -> dict[str, xarray.Dataset]:
+    def summaries(self) -> dict[str, xarray.Dataset]:
         """The finished summaries, by name."""
         return {path.stem: open_summary(path) for path in sorted(self.folder.glob("summary/*.nc"))}
 

@@ -114,12 +114,12 @@ def test_a_state_without_a_name_is_not_one_of_the_paper(tmp_path, given, positio
 def test_the_other_half_of_a_state_is_that_of_the_paper_at_this_v(tmp_path):
     model = Model(Chain(3), law_of("nonlinear", 0.08), 0.03)
     position, velocity = model.initial_coordinates(PAPER_STATES["minus"])
-    for given, own in ((["--position", "-0.9,-1,-1"], "position"), (["--velocity", "0.1,0.2,0.3"], "velocity")):
-        options = ["--law", "nonlinear", "--a", "0.08", "--v", "0.03", "--transient", "0", "--window", "1", *given]
+    for arguments, half in ((["--position", "-0.9,-1,-1"], "position"), (["--velocity", "0.1,0.2,0.3"], "velocity")):
+        options = ["--law", "nonlinear", "--a", "0.08", "--v", "0.03", "--transient", "0", "--window", "1", *arguments]
         assert main(["simulate", *options, "--out", str(tmp_path / "x.nc")]) == 0
         with netCDF4.Dataset(tmp_path / "x.nc") as dataset:
-            assert (dataset["initial_position"][:] == position).all() == (own != "position")
-            assert (dataset["initial_velocity"][:] == velocity).all() == (own != "velocity")
+            assert (dataset["initial_position"][:] == position).all() == (half != "position")
+            assert (dataset["initial_velocity"][:] == velocity).all() == (half != "velocity")
 
 
 def test_a_state_of_the_paper_follows_v_and_its_command_makes_the_same_file(tmp_path):
@@ -367,5 +367,5 @@ def test_start_up_imports_no_heavy_library(tmp_path):
         "print([name for name in sys.modules if name.startswith((*heavy, 'burridge_knopoff.study.'))])"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    own = ["burridge_knopoff.cli.options", "burridge_knopoff.cli.simulate"]
-    assert run.stdout.splitlines()[1:] == ["[]", f"{own}", "['burridge_knopoff.study.formatting']"]
+    modules = ["burridge_knopoff.cli.options", "burridge_knopoff.cli.simulate"]
+    assert run.stdout.splitlines()[1:] == ["[]", f"{modules}", "['burridge_knopoff.study.formatting']"]

@@ -51,18 +51,18 @@ def run_of(state, **options):
 
 
 def events_of(state, **options):
-    found = record_events(ROUGH, state, state.time + 512.0, **options)
-    return found.status.name, found.time - state.time, found.moment, found.interval, found.blocks
+    catalogue = record_events(ROUGH, state, state.time + 512.0, **options)
+    return catalogue.status.name, catalogue.time - state.time, catalogue.moment, catalogue.interval, catalogue.blocks
 
 
 def events_later(state):
-    found = record_events(ROUGH, state, state.time + 512.0, begin=state.time + 256.0)
-    return found.time - state.time, found.moment, found.interval
+    catalogue = record_events(ROUGH, state, state.time + 512.0, begin=state.time + 256.0)
+    return catalogue.time - state.time, catalogue.moment, catalogue.interval
 
 
 def exponent_count(state, loading="quasistatic"):
-    found = event_exponents(ROUGH, state, state.time + 64.0, count=3, loading=loading)
-    return found.status.name, found.events, found.exponent[:2], found.error[:2]
+    exponents = event_exponents(ROUGH, state, state.time + 64.0, count=3, loading=loading)
+    return exponents.status.name, exponents.events, exponents.exponent[:2], exponents.error[:2]
 
 
 def orbit_of(orbit):
@@ -108,15 +108,15 @@ def test_results_do_not_depend_on_the_clock(name):
         _same(call(replace(state, time=clock)), expected)
 
 
-def _same(found, expected):
+def _same(actual, expected):
     if isinstance(expected, tuple | list) and not all(isinstance(item, int | float) for item in expected):
-        assert len(found) == len(expected)
-        for one, other in zip(found, expected, strict=True):
+        assert len(actual) == len(expected)
+        for one, other in zip(actual, expected, strict=True):
             _same(one, other)
     elif isinstance(expected, str):
-        assert found == expected
+        assert actual == expected
     else:
-        assert np.allclose(found, expected, rtol=1e-7, atol=1e-9, equal_nan=True)
+        assert np.allclose(actual, expected, rtol=1e-7, atol=1e-9, equal_nan=True)
 
 
 def test_a_cycle_is_found_from_the_end_of_a_long_run():

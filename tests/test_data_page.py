@@ -20,7 +20,7 @@ def test_the_page_has_every_variable(repository, small_studies, name):
     for pattern, paths in files.items():
         for row in dictionary["rows"](paths[0]) if paths else ():
             meanings = [meaning for name, meaning in described if name == row.names[0]]
-            assert any(one.startswith(row.meaning) for one in meanings), f"{row.listed}: python {DICTIONARY}"
+            assert any(phrase.startswith(row.meaning) for phrase in meanings), f"{row.listed}: python {DICTIONARY}"
             assert all(f"`{name}`" in tables[pattern] for name in row.names)
 
 

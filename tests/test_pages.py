@@ -27,9 +27,9 @@ def test_short_sections(repository, tmp_path, monkeypatch, page):
     assert Counter(block.heading for block, _, _ in results) == SHORT[page]
     for _, expected, printed in results:
         assert printed == expected
-    made = list(tmp_path.glob("docs/figures/*"))
-    assert len(made) == (page == "published.md")
-    for path in made:
-        mine, committed = (imread(one) for one in (path, repository / "docs" / "figures" / path.name))
+    figures = list(tmp_path.glob("docs/figures/*"))
+    assert len(figures) == (page == "published.md")
+    for path in figures:
+        mine, committed = (imread(picture) for picture in (path, repository / "docs" / "figures" / path.name))
         assert mine.shape == committed.shape
         assert np.abs(mine - committed).mean() < 0.001

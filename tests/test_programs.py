@@ -24,6 +24,6 @@ for path in map(Path, sys.argv[1:]):
 @pytest.mark.parametrize("folder", ["benchmarks", "docs"])
 def test_every_program_finds_what_it_imports(folder):
     paths = map(str, sorted((ROOT / folder).glob("*.py")))
-    found = subprocess.run([sys.executable, "-c", START, *paths], capture_output=True, text=True, check=False)
-    assert found.returncode == 0, found.stderr
-    assert [line for line in found.stdout.splitlines() if not line.endswith(PEERS)] == []
+    process = subprocess.run([sys.executable, "-c", START, *paths], capture_output=True, text=True, check=False)
+    assert process.returncode == 0, process.stderr
+    assert [line for line in process.stdout.splitlines() if not line.endswith(PEERS)] == []

@@ -75,11 +75,11 @@ def test_the_laws_agree_as_often_as_the_study_says(repository):
 
 def test_the_times_of_a_cycle_are_those_of_the_ledger(repository, claims):
     reason = claims["cycle_time"]["reason"]
-    one, *_ = re.findall(r"([\d.]+) to ([\d.]+) between successive stops of one block", reason)
+    interval, *_ = re.findall(r"([\d.]+) to ([\d.]+) between successive stops of one block", reason)
     both, *_ = re.findall(r"([\d.]+) to ([\d.]+) between successive stops of any blocks", reason)
     text = (repository / "README.md").read_text(encoding="utf-8")
     ours = "{:.1f} to {:.1f} for one block; {:.1f} to {:.1f} between stops of any blocks"
-    assert ours.format(*map(float, (*one, *both))) in text
+    assert ours.format(*map(float, (*interval, *both))) in text
 
 
 def test_the_time_of_the_study_is_that_of_a_dry_run(repository, tmp_path):

@@ -14,11 +14,11 @@ from tests.workflow.planned import planned
 def test_the_page_names_files_of_the_default_study(repository):
     config = read_yaml(repository / "config/paper.yaml")
     study = load_study(config, "paper.yaml")
-    known = {*planned(config).files, NAME, f"points/{study.point_file.replace('{a}', '<value>')}"}
+    paths = {*planned(config).files, NAME, f"points/{study.point_file.replace('{a}', '<value>')}"}
     text = (repository / "results/README.md").read_text(encoding="utf-8")
     named = re.findall(r"`((?:summary|figures|points)/\S+|\w+\.(?:html|json))`", text)
     assert len(named) > 10
-    assert {name.replace("<law>", "{law}").replace("<initial>", "{initial}") for name in named} <= known
+    assert {name.replace("<law>", "{law}").replace("<initial>", "{initial}") for name in named} <= paths
 
 
 def test_git_tracks_the_page_alone(repository):

@@ -46,13 +46,16 @@ STEPS = ("smallest_step", "first_step", "largest_step")
 
 def classes():
     """Return all dataclasses of the package that have fields with ranges, and all that are named settings."""
-    found = set()
+    members = set()
     for module in pkgutil.walk_packages(burridge_knopoff.__path__, "burridge_knopoff."):
         if module.name.rpartition(".")[2] not in ("_core", "__main__"):
-            found |= {kind for _, kind in inspect.getmembers(importlib.import_module(module.name), inspect.isclass)}
-    own = [kind for kind in found if dataclasses.is_dataclass(kind) and kind.__module__.startswith("burridge_knopoff")]
+            members |= {kind for _, kind in inspect.getmembers(importlib.import_module(module.name), inspect.isclass)}
+    settings_classes = [
+        kind for kind in members if dataclasses.is_dataclass(kind) and kind.__module__.startswith("burridge_knopoff")
+    ]
     return sorted(
-        (kind for kind in own if kind.__name__.endswith("Settings") or has_ranges(kind)), key=lambda kind: kind.__name__
+        (kind for kind in settings_classes if kind.__name__.endswith("Settings") or has_ranges(kind)),
+        key=lambda kind: kind.__name__,
     )
 
 
@@ -68,7 +71,7 @@ CLASSES = classes()
 FIELDS = [(kind, item.name) for kind in CLASSES for item in dataclasses.fields(kind)]
 
 
-def made(kind, **values):
+def instance_of(kind, **values):
     return kind(**{**REQUIRED.get(kind, {}), **values})
 
 
@@ -84,9 +87,9 @@ def test_all_classes_of_settings_are_found():
 def test_a_field_takes_no_value_that_it_does_not_keep(kind, name, value):
     """What is accepted is finite, has the type of the default, and is kept as it was given."""
     field = fields_of(kind).get(name)
-    default = getattr(made(kind), name)
+    default = getattr(instance_of(kind), name)
     try:
-        kept, message = getattr(made(kind, **{name: value}), name), None
+        kept, message = getattr(instance_of(kind, **{name: value}), name), None
     except ValueError as error:
         message = str(error)
     if message is not None:
@@ -151,11 +154,11 @@ def companions(kind, name, value):
 def test_a_setting_accepts_its_range_and_nothing_else(kind, name):
     good, bad = limits(kind, name)
     for value in good:
-        taken = getattr(made(kind, **companions(kind, name, value), **{name: value}), name)
+        taken = getattr(instance_of(kind, **companions(kind, name, value), **{name: value}), name)
         assert np.array_equal(taken, value)
     for value in bad:
         with refused(match=rf"^{name}(\[\d+\])?: got .*, expected"):
-            made(kind, **{name: value})
+            instance_of(kind, **{name: value})
 
 
 @pytest.mark.parametrize(

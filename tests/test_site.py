@@ -43,12 +43,12 @@ class Page(HTMLParser):
         self.feed(path.read_text())
 
     def handle_starttag(self, tag, attributes):
-        found = dict(attributes)
-        self.places |= {found[key] for key in ("id", "name") if key in found}
-        if "href" in found:
-            (self.links if tag == "a" else self.loads).add(found["href"])
-        if "src" in found:
-            self.loads.add(found["src"])
+        values = dict(attributes)
+        self.places |= {values[key] for key in ("id", "name") if key in values}
+        if "href" in values:
+            (self.links if tag == "a" else self.loads).add(values["href"])
+        if "src" in values:
+            self.loads.add(values["src"])
 
 
 def test_no_link_is_dead_and_nothing_is_loaded_from_elsewhere(site):

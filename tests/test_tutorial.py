@@ -21,10 +21,10 @@ def test_the_tutorial_prints_what_it_says(repository, tmp_path, monkeypatch):
     assert len(results) >= 5
     for _, expected, printed in results:
         assert printed == expected
-    shown = re.findall(r"!\[.*?\]\((figures/tutorial_\w+\.png)\)", page)
-    made = sorted(str(path.relative_to(tmp_path / "docs")) for path in tmp_path.rglob("*.png"))
-    assert made == sorted(shown)
-    for name in shown:
+    names = re.findall(r"!\[.*?\]\((figures/tutorial_\w+\.png)\)", page)
+    figures = sorted(str(path.relative_to(tmp_path / "docs")) for path in tmp_path.rglob("*.png"))
+    assert figures == sorted(names)
+    for name in names:
         mine, committed = (imread(folder / "docs" / name) for folder in (tmp_path, repository))
         assert mine.shape == committed.shape
         # Another version of matplotlib may shade an edge differently; a missing curve gives 0.003.

@@ -24,7 +24,7 @@ def refusal(key: str, value: Any, allowed: object) -> ValueError:
     return ValueError(f"{key}{': ' if key else ''}got {format_value(value)}, expected {allowed}")
 
 
-def suggestion(name: Any, known: Iterable[str]) -> str:
+def suggestion(name: Any, words: Iterable[str]) -> str:
     """Return ` (did you mean X?)` with the known name closest to an unknown one; empty if none is close.
 
     Case does not count, and equal first letters count more than others (W. E. Winkler, Proc. Section on Survey Research
@@ -33,7 +33,7 @@ def suggestion(name: Any, known: Iterable[str]) -> str:
     if not isinstance(name, str) or len(name) > LONGEST:
         return ""
     folded, near = name.casefold(), []
-    for word in known:
+    for word in words:
         meant = word.casefold()
         ratio = SequenceMatcher(None, folded, meant).ratio()
         if ratio >= _CLOSE or (len(folded) >= _START and meant.startswith(folded)):

@@ -94,8 +94,8 @@ class LogHandler(LogHandlerBase):
         reason = failure_reason(logs)
         if reason in self._reasons:
             first = self._reasons[reason]
-            known = "again, for the same reason" if first == job else f"for the same reason as {first}"
-            return f"failed: {job}: {known} (log {', '.join(map(str, logs)) or 'none'})"
+            cause = "again, for the same reason" if first == job else f"for the same reason as {first}"
+            return f"failed: {job}: {cause} (log {', '.join(map(str, logs)) or 'none'})"
         self._reasons[reason] = job
         return failure_line(job, logs)
 

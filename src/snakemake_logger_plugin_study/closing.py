@@ -28,19 +28,19 @@ def closing_lines(run: Run, seconds: float, *, stopped: bool = False) -> list[st
     results, ended, done = Path(run.results), run.jobs_in(FAILED), run.jobs_in(DONE)
     missed = len(run.jobs) - len(ended) - len(done)
     failed = [job for job in ended if not is_interrupted(job.log, stopping=run.stopping)]
-    made = _made_files(results, [path for job in done for path in job.output])
+    files_line = _made_files(results, [path for job in done for path in job.output])
     if ended or missed or stopped:
         counts = ((len(failed), "failed"), (len(ended) - len(failed), "interrupted"), (missed, "did not run"))
         reasons = ", ".join(f"{format_count(count, 'job')} {what}" for count, what in counts if count)
         return [
             f"study {results.name}: stopped after {format_elapsed(seconds)}: {reasons or 'before its end'}",
             *_failures(failed),
-            made,
+            files_line,
             *_remedies(failed),
         ]
     if run.touching:
         return _touched(results, [path for job in done for path in job.output])
-    lines = [f"study {results.name}: done in {format_elapsed(seconds)} {run.capacity}", made]
+    lines = [f"study {results.name}: done in {format_elapsed(seconds)} {run.capacity}", files_line]
     # Older summaries say nothing about the run.
     for rule, (name, read) in _READERS.items():
         if rule in run.wanted:
@@ -59,8 +59,8 @@ def _failures(failed: Sequence[Job]) -> list[str]:
     lines = []
     for first, *others in list(alike.values())[:MOST_FAILURES]:
         lines.append(failure_line(f"{first.name}{f' and {len(others)} more' if others else ''}", first.log))
-    more = len(alike) - MOST_FAILURES
-    return [*lines, f"failed: for {more} more reasons"] if more > 0 else lines
+    count = len(alike) - MOST_FAILURES
+    return [*lines, f"failed: for {count} more reasons"] if count > 0 else lines
 
 
 def _remedies(failed: Sequence[Job]) -> list[str]:
@@ -84,17 +84,17 @@ def _touched(results: Path, paths: Sequence[str]) -> list[str]:
     return lines
 
 
-def _made_files(results: Path, made: Sequence[str]) -> str:
-    if len(made) <= FEW_FILES:
-        return f"made: {_listed(results, made)}"
-    return f"files made in {results}: {_listed(results, made)}"
+def _made_files(results: Path, paths: Sequence[str]) -> str:
+    if len(paths) <= FEW_FILES:
+        return f"made: {_listed(results, paths)}"
+    return f"files made in {results}: {_listed(results, paths)}"
 
 
-def _listed(results: Path, made: Sequence[str]) -> str:
+def _listed(results: Path, paths: Sequence[str]) -> str:
     """Return a few files by name, and more by the number in each folder."""
-    if len(made) <= FEW_FILES:
-        return ", ".join(made) or "nothing"
-    inside = [Path(path).relative_to(results).parts for path in made if Path(path).is_relative_to(results)]
+    if len(paths) <= FEW_FILES:
+        return ", ".join(paths) or "nothing"
+    inside = [Path(path).relative_to(results).parts for path in paths if Path(path).is_relative_to(results)]
     folders = Counter(parts[0] for parts in inside if len(parts) > 1)
     names = [parts[0] for parts in inside if len(parts) == 1]
     return ", ".join([*(f"{name} {count}" for name, count in folders.items()), *names])
@@ -109,9 +109,9 @@ def _verdicts(path: Path) -> list[str]:
     counts = ", ".join(f"{verdict} {count}" for verdict, count in independent.items())
     lines = [f"{sum(independent.values())} independent claims of the paper: {counts} ({ledger})"]
     for verdict in (FAILS, CONVENTION, READING):
-        names = [each["name"] for each in read["claims"] if each["verdict"] == verdict and not each["depends_on"]]
-        more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-        lines += [f"  {verdict}: {', '.join(names[:MOST_NAMES])}{more}"] if names else []
+        names = [claim["name"] for claim in read["claims"] if claim["verdict"] == verdict and not claim["depends_on"]]
+        suffix = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+        lines += [f"  {verdict}: {', '.join(names[:MOST_NAMES])}{suffix}"] if names else []
     return lines
 
 

@@ -31,9 +31,9 @@ def measured_seconds(benchmark: str | Path, threads: int) -> float | None:
 
 def shipped_cost(rule: str, work: float) -> tuple[float, float]:
     """Return the shipped seconds of a job, times its threads, and its bytes, interpolated between its two rows."""
-    first, *more = SHIPPED.get(rule, _OTHERS)
-    last = more[0] if more else first
-    share = max(0.0, (work - first[0]) / (last[0] - first[0])) if more else 0.0
+    first, *costs = SHIPPED.get(rule, _OTHERS)
+    last = costs[0] if costs else first
+    share = max(0.0, (work - first[0]) / (last[0] - first[0])) if costs else 0.0
     seconds, size = (low + share * (high - low) for low, high in zip(first[1:], last[1:], strict=True))
     return seconds, size
 
@@ -58,11 +58,17 @@ class Durations:
 
         finished : {rule: seconds of each job that has finished in this run, times its threads}
         """
-        known = {**self.last, **finished}
-        taken = sum(map(sum, known.values()))
+        durations = {**self.last, **finished}
+        taken = sum(map(sum, durations.values()))
         # The ratio of durations on this machine to the shipped ones.
-        ratio = taken / sum(len(jobs) * self.shipped_cost(rule)[0] for rule, jobs in known.items()) if known else 1.0
-        return {rule: fmean(known[rule]) if rule in known else ratio * self.shipped_cost(rule)[0] for rule in rules}
+        ratio = (
+            taken / sum(len(jobs) * self.shipped_cost(rule)[0] for rule, jobs in durations.items())
+            if durations
+            else 1.0
+        )
+        return {
+            rule: fmean(durations[rule]) if rule in durations else ratio * self.shipped_cost(rule)[0] for rule in rules
+        }
 
 
 def work_of(study: Study) -> dict[str, float]:

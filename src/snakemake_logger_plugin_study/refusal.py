@@ -62,9 +62,9 @@ _WILDCARDS = re.compile(r"^Target rules may not contain wildcards", re.MULTILINE
 def replacement(message: str) -> str | None:
     """Return the text that replaces a message of Snakemake, empty to hide it; None to keep the message."""
     for pattern, text in _REPLACEMENTS:
-        found = pattern.search(message)
-        if found and not Path(found.groupdict().get("missing", "")).is_file():
-            return found.expand(text)
+        hit = pattern.search(message)
+        if hit and not Path(hit.groupdict().get("missing", "")).is_file():
+            return hit.expand(text)
     if match := _UNKNOWN.search(message):
         return unknown_target(match[1])
     return rule_with_wildcards() if _WILDCARDS.search(message) else None

@@ -66,7 +66,7 @@ def changed_params(changes: Mapping[str, Sequence[str]]) -> list[str]:
     changes : {change: rules}, see `check.changes`
     """
     return [
-        f"changed: {change} ({', '.join(rules[:MOST_RULES])}{f' and {len(rules) - MOST_RULES} more' * more})"
+        f"changed: {change} ({', '.join(rules[:MOST_RULES])}{f' and {len(rules) - MOST_RULES} more' * truncated})"
         for change, rules in changes.items()
-        for more in [len(rules) > MOST_RULES]
+        for truncated in [len(rules) > MOST_RULES]
     ]

@@ -124,10 +124,12 @@ class Run:
     def blocked(self) -> set[int]:
         """Return the numbers of the jobs that cannot run because other jobs failed."""
         failed = {number for number, job in self.jobs.items() if job.state == FAILED}
-        found = set(failed)
-        while more := {number for number, job in self.jobs.items() if not job.needs.isdisjoint(found)} - found:
-            found |= more
-        return found - failed
+        numbers = set(failed)
+        while (
+            dependents := {number for number, job in self.jobs.items() if not job.needs.isdisjoint(numbers)} - numbers
+        ):
+            numbers |= dependents
+        return numbers - failed
 
     def time_left(self, now: float) -> float:
         """Return the time left in seconds, counted down from the last forecast for a moment."""

@@ -15,7 +15,7 @@ from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.model import CONTACTS, STARTS
 from burridge_knopoff.motion.settings import MOTION
-from burridge_knopoff.summaries import all_laws, attractors, basins
+from burridge_knopoff.summaries import attractors, basins, branch_numbering
 from tests.attractors.test_attractors import SETTINGS
 from tests.refused import refused
 
@@ -30,7 +30,7 @@ def searched():
     found = continue_attractors([MODEL, MODEL.at(0.1)], SEARCH, MOTION, RefinementSettings(1.0), starts=states)
     parts = [attractors.one_law(found, states, SEARCH, MOTION, "moving")]
     rows = [found.rows(place) for place in found.grid]
-    whole = all_laws.merge(parts, all_laws.branch_numbers(parts, [MODEL], SEARCH))
+    whole = branch_numbering.merge(parts, branch_numbering.branch_numbers(parts, [MODEL], SEARCH))
     return whole, returns_of_law([found.models[k] for k in found.grid], rows, parts[0].attrs), rows
 
 

@@ -41,21 +41,21 @@ def files_in(results):
     return {path.relative_to(results).as_posix() for path in files}
 
 
-def record(results, given, files, file="study.yaml"):
+def record(results, config, files, file="study.yaml"):
     """Record a study, as its run does."""
-    study = load_study(given, file)
-    write_study_record(results, study.config, study.parameters, file, given, "", files)
+    study = load_study(config, file)
+    write_study_record(results, study.config, study.parameters, file, config, "", files)
 
 
 def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
     """Points of any study by their names, other files of earlier runs by the record. They are not checked or opened."""
-    given = {**yaml.safe_load(TINY), "without": ["attractors", "proof"]}
-    Path("study.yaml").write_text(json.dumps(given))
+    config = {**yaml.safe_load(TINY), "without": ["attractors", "proof"]}
+    Path("study.yaml").write_text(json.dumps(config))
     # The next run has not made them again yet.
     for name in ("report.html", "summary/claims.json", "logs/report.log", "logs/claims.log"):
         (results / name).unlink()
     before, whole = read_study_record(results)["files"], files_in(results)
-    record(results, given, planned(given).record["files"])
+    record(results, config, planned(config).record["files"])
     after = read_study_record(results)["files"]
     gone = {*before, *before.values()} - {*after, *after.values()}
     gone |= {name.replace("logs", "benchmarks").replace(".log", ".tsv") for name in gone if name.startswith("logs/")}
@@ -66,8 +66,8 @@ def test_what_is_not_of_the_study_is_pruned_and_nothing_else(results, capsys):
     gone |= {*LEFT_OVER.split()}
     assert main(["check", str(results)]) == 0
     *lines, totals, note = capsys.readouterr().out.splitlines()
-    shown = [name for name in gone if not name.startswith(("logs", "benchmarks"))]
-    assert sorted(lines) == sorted(f"leftover {results / name}: not part of this study" for name in shown)
+    paths = [name for name in gone if not name.startswith(("logs", "benchmarks"))]
+    assert sorted(lines) == sorted(f"leftover {results / name}: not part of this study" for name in paths)
     assert totals.endswith(": 0 missing, 0 corrupt, 0 stale, 0 failed")
     assert note == f"left over, with logs and benchmarks: {len(gone)} files; delete: bk prune {results}"
     assert not {"attractors", "proof"} & {*open_study(results)["summary"].children}
@@ -111,8 +111,8 @@ FOREIGN = {
 def test_by_the_record_of_another_study_nothing_is_pruned(results, capsys, case):
     """By such a record all files may be left over. Its config file may exist as well."""
     change, words = FOREIGN[case]
-    given = {**yaml.safe_load(TINY), **change}
-    record(results, given, read_study_record(results)["files"], "foreign.yaml")
+    config = {**yaml.safe_load(TINY), **change}
+    record(results, config, read_study_record(results)["files"], "foreign.yaml")
     points = results / "points/linearized/minus"
     paths = {"point": points / "a0.0500.nc", "other": points / "a0.0600.nc"}
     paths["summary"] = results / "summary/runs.nc"
@@ -122,7 +122,7 @@ def test_by_the_record_of_another_study_nothing_is_pruned(results, capsys, case)
         said = capsys.readouterr()
         assert said.out == ""
         assert said.err == f"bk prune: {results}: {words.format(**paths)}: run snakemake first\n"
-        Path("foreign.yaml").write_text(json.dumps(given))
+        Path("foreign.yaml").write_text(json.dumps(config))
     assert files_in(results) == before
 
 

@@ -24,7 +24,7 @@ from tests.check.damages import DAMAGES, POINT
 from tests.forged import forge
 
 
-def found(results):
+def findings_of(results):
     """Return {file: (kind, reason)} of all findings."""
     findings = check_study(results).findings
     return {finding.path.relative_to(results).as_posix(): (finding.kind, finding.reason) for finding in findings}
@@ -98,7 +98,7 @@ BAD = [
 @pytest.mark.parametrize(("name", "damage", "kind", "words"), BAD)
 def test_a_bad_file_is_listed(results, name, damage, kind, words):
     damage(results / name)
-    findings = found(results)
+    findings = findings_of(results)
     assert findings[name][0] == kind
     assert findings.pop(name)[1].startswith(words)
     assert all(finding[0] == "stale" and finding[1].startswith("was made from ") for finding in findings.values())
@@ -110,7 +110,7 @@ def test_a_bad_file_is_listed(results, name, damage, kind, words):
 )
 def test_files_of_other_sources_are_reported_and_opened(results, name, attribute, sources):
     forge(results / name, **{attribute: f"{sources}{'0' * 16}"})
-    kind, reason = found(results)[name]
+    kind, reason = findings_of(results)[name]
     assert kind == "stale"
     assert re.fullmatch(rf"was made by other sources \(fingerprint {'0' * 16}, now [0-9a-f]{{16}}\)", reason)
     assert open_result(results / name).data.sizes
@@ -121,7 +121,7 @@ def test_a_changed_key_is_named_in_all_files_that_depend_on_it(results, capsys):
     """Itself or by their inputs; no other file is stale, and none of these is read."""
     change_record(results, lambda record: record["config"]["attractors"].update(samples=16))
     words = "was made with attractors.samples: got 6, expected 16"
-    findings = found(results)
+    findings = findings_of(results)
     assert {*findings.values()} == {("stale", words)}
     assert findings.keys() >= {
         *("attractors/linearized.nc", "summary/attractors.nc", "basins/linearized/a0.0800/tile0.nc"),
@@ -143,11 +143,11 @@ def test_a_file_made_from_another_version_of_an_input_is_stale(results):
     """Whatever the times of the files; it is read, since the input has the same params."""
     name, of_it = "attractors/linearized.nc", "summary/attractors.nc"
     forge(results / name, title="another")
-    assert {*found(results).values()} == {("stale", f"was made from another {name}")}
-    assert of_it in found(results)
+    assert {*findings_of(results).values()} == {("stale", f"was made from another {name}")}
+    assert of_it in findings_of(results)
     assert open_result(results / of_it).data.sizes
     emptied(results / name)
-    findings = found(results)
+    findings = findings_of(results)
     assert findings.pop(name) == ("corrupt", "is empty")
     assert findings[of_it] == ("stale", f"was made from {results / name}, which is corrupt")
 
@@ -172,7 +172,7 @@ def test_what_was_begun_and_not_made_is_missing(results, log, names):
     failed = ("missing", f"its job failed: MemoryError: no more (log {log})")
     for text, finding in (("", ("missing", "not made yet")), ("Traceback…\nMemoryError: no more\n", failed)):
         log.write_text(text)
-        findings = found(results)
+        findings = findings_of(results)
         assert [findings.pop(name) for name in names] == [finding] * len(names)
         assert all(reason.startswith("was made from ") for _, reason in findings.values())
 

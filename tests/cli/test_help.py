@@ -25,9 +25,9 @@ def folder(tmp_path_factory):
     """A folder with the results of a study named as the default one."""
     folder = tmp_path_factory.mktemp("examples")
     results = folder / "results" / "paper"
-    given = {"study": "paper", "a": [0.08], "initial": {"plus": {}}, "laws": {"linearized": {}}}
-    given |= {"transient": 10, "window": 20, "batches": 2}
-    run_study(results, given).record(folder / "paper.yaml", given)
+    config = {"study": "paper", "a": [0.08], "initial": {"plus": {}}, "laws": {"linearized": {}}}
+    config |= {"transient": 10, "window": 20, "batches": 2}
+    run_study(results, config).record(folder / "paper.yaml", config)
     # As in the repository.
     (folder / "results/README.md").touch()
     return folder

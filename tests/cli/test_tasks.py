@@ -37,14 +37,14 @@ def test_attractors(capsys, tmp_path):
     out = tmp_path / "attractors.nc"
     command = ["attractors", *GIVEN, *OPTIONS, "--fraction-width", "0.15", "--initial", "plus"]
     printed = said(capsys, *command, "--out", str(out))
-    found, labels = burridge_knopoff.find_attractors(MODEL, SearchSettings(**SHORT), starts=[PAPER_STATES["plus"]])
+    attractors, labels = burridge_knopoff.find_attractors(MODEL, SearchSettings(**SHORT), starts=[PAPER_STATES["plus"]])
     written = open_summary(out)
     assert written.attrs["history"] == shlex.join(["bk", *command])
-    assert written.sizes["attractor"] == len(found)
-    means = sorted(attractor.motion.mean_distance for attractor in found)
+    assert written.sizes["attractor"] == len(attractors)
+    means = sorted(attractor.motion.mean_distance for attractor in attractors)
     assert np.sort(written["mean_distance"].values.ravel()) == pytest.approx(means, abs=1e-12)
     rows = printed.splitlines()
-    assert rows[0] == f"linearized law, a = 0.08, v = 0.1, 3 blocks: {len(found)} attractors"
+    assert rows[0] == f"linearized law, a = 0.08, v = 0.1, 3 blocks: {len(attractors)} attractors"
     assert "  motion, section points  " in rows[2]
     # An exponent is 0 within its error from either side.
     below = written.assign(lyapunov_exponent=xr.full_like(written["lyapunov_exponent"], -1e-5))
@@ -54,7 +54,7 @@ def test_attractors(capsys, tmp_path):
         row = next(line for line in rows if line.startswith(f"{name}  "))
         assert f"  {to_ascii(with_error(*means[:, slot].tolist()))}  " in row
         assert f"  {100 * written['basin_fraction'].values[0, 0, slot]:.1f} (" in row
-    reached = found[labels[-1]].motion.mean_distance
+    reached = attractors[labels[-1]].motion.mean_distance
     name = written["branch_name"].values[np.abs(written["mean_distance"].values[0, 0] - reached).argmin()]
     assert f"plus reaches: {name}\n" in printed
     assert said(capsys, "show", str(out)).count(f"\n{name}  ") == 1

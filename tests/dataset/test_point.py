@@ -55,13 +55,13 @@ def test_the_file_and_the_dataset_have_the_same_content(trajectory, path):
 
 def test_flags_keep_their_meanings():
     """Changing these would break programs that read the files."""
-    found = {
+    meanings = {
         name: dict(zip(item.attributes["flag_values"].tolist(), item.attributes["flag_meanings"].split(), strict=True))
         for name, item in POINT_VARIABLES.items()
         if "flag_values" in item.attributes
     }
     event = {0: "stop", 1: "start"}
-    assert found == {
+    assert meanings == {
         "status": {0: "completed", 1: "step_limit", 2: "accumulating_events", 3: "diverged"},
         "earlier_event_kind": event,
         "event_kind": event,
@@ -79,8 +79,8 @@ def test_events_of_the_whole_run(trajectory):
     assert (block == everything.event_block).all()
     assert trajectory.event_time.min() >= 250.0 > trajectory.earlier_event_time.max()
     assert (trajectory.event_position == everything.event_position[-len(trajectory.event_time) :]).all()
-    own = trajectory.event_velocity[np.arange(len(trajectory.event_time)), trajectory.event_block - 1]
-    assert (own == 0.0).all()
+    velocity = trajectory.event_velocity[np.arange(len(trajectory.event_time)), trajectory.event_block - 1]
+    assert (velocity == 0.0).all()
     kinds = everything.event_kind[everything.event_block == 2]
     assert (kinds[1:] != kinds[:-1]).all()
 

@@ -29,19 +29,19 @@ def make_summary(count=64, **attributes):
 
 
 def test_the_dataset_has_the_described_variables():
-    found = make_summary()
-    assert list(found.data_vars) == ["value", "verdict"]
-    assert found["value"].dims == ("law", "a")
-    assert found["value"].values[1].tolist() == list(range(64, 128))
-    assert found["value"].attrs == {"long_name": "a value", "units": "1"}
+    dataset = make_summary()
+    assert list(dataset.data_vars) == ["value", "verdict"]
+    assert dataset["value"].dims == ("law", "a")
+    assert dataset["value"].values[1].tolist() == list(range(64, 128))
+    assert dataset["value"].attrs == {"long_name": "a value", "units": "1"}
     # A flag has no unit.
-    assert list(found["verdict"].attrs) == ["long_name", "flag_values", "flag_meanings"]
-    assert found["verdict"].attrs["flag_values"].tolist() == [-1, 2]
-    assert (found["verdict"].dtype, found["verdict"].attrs["flag_meanings"]) == (np.int8, "none yes")
-    assert found["a"].values.tolist() == [k / 8 for k in range(64)]
-    assert found["a"].attrs == {"long_name": "friction parameter a", "units": "1"}
-    assert found["law"].values.tolist() == ["linearized", "nonlinear"]
-    assert found["law"].attrs == {"long_name": "friction law"}
+    assert list(dataset["verdict"].attrs) == ["long_name", "flag_values", "flag_meanings"]
+    assert dataset["verdict"].attrs["flag_values"].tolist() == [-1, 2]
+    assert (dataset["verdict"].dtype, dataset["verdict"].attrs["flag_meanings"]) == (np.int8, "none yes")
+    assert dataset["a"].values.tolist() == [k / 8 for k in range(64)]
+    assert dataset["a"].attrs == {"long_name": "friction parameter a", "units": "1"}
+    assert dataset["law"].values.tolist() == ["linearized", "nonlinear"]
+    assert dataset["law"].attrs == {"long_name": "friction law"}
     assert axes(initial=["minus"])["initial"][1].tolist() == ["minus"]
     head = {
         "Conventions": "CF-1.11, ACDD-1.3",
@@ -51,12 +51,12 @@ def test_the_dataset_has_the_described_variables():
         "history": "snakemake, from the point files",
         "v": 0.1,
     }
-    assert list(found.attrs)[:4] == list(head)[:4]
-    assert {key: found.attrs[key] for key in head} == head
-    assert found.attrs["source_module"] == "burridge_knopoff.summaries.lyapunov"
+    assert list(dataset.attrs)[:4] == list(head)[:4]
+    assert {key: dataset.attrs[key] for key in head} == head
+    assert dataset.attrs["source_module"] == "burridge_knopoff.summaries.lyapunov"
     assert make_summary(history="by hand").attrs["history"] == "by hand"
     # The title of a part is not taken for that of the whole.
-    assert make_summary(title="A part", summary="A part.", source_module="other").attrs == found.attrs
+    assert make_summary(title="A part", summary="A part.", source_module="other").attrs == dataset.attrs
 
 
 def test_a_written_summary_is_read_back(tmp_path):

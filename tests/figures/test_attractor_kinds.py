@@ -60,6 +60,6 @@ def test_bars_of_a_coarse_grid_do_not_meet():
 
 
 def test_a_branch_of_a_single_value_has_no_bar():
-    found = refined([0.0, 0.1, 0.2, 0.3], [[0, -1], [0, 1], [0, -1], [0, -1]], [1] * 4)
-    assert long_branches(found) == {0}
-    assert [text.get_text() for text in draw(found).axes[1].get_yticklabels()] == ["synchronized"]
+    dataset = refined([0.0, 0.1, 0.2, 0.3], [[0, -1], [0, 1], [0, -1], [0, -1]], [1] * 4)
+    assert long_branches(dataset) == {0}
+    assert [text.get_text() for text in draw(dataset).axes[1].get_yticklabels()] == ["synchronized"]

@@ -49,13 +49,13 @@ def test_a_symbol_lies_on_a_curve():
     ).assign(branch_number=("number", [1, 2]), branch_name=("number", ["mirror pair (1)", "mirror pair (2)"]))
     orbits = {"law": ["linearized"] * 3, "a": [0.12, 0.15, 0.16], "mean_distance": [0.045] * 3, "stable": [1] * 3}
     orbits |= {"segment": [0, 1, 0], "branch": [1, 2, 1]}
-    found = {f"orbit_{name}": ("orbit", values) for name, values in orbits.items()}
-    found["orbit_stops"] = (("orbit", "block"), np.ones((3, 3), dtype=int))
+    variables = {f"orbit_{name}": ("orbit", values) for name, values in orbits.items()}
+    variables["orbit_stops"] = (("orbit", "block"), np.ones((3, 3), dtype=int))
     folds = {"law": ["linearized"] * 2, "a": [0.16, 0.15], "a_error": [0.0] * 2, "mean_distance": [0.045] * 2}
     folds |= {"kind": [int(BifurcationKind.FOLD)] * 2, "change": [int(Change.END)] * 2}
     folds |= {"from_branch": [1, 2], "to_branch": [-1, -1]}
-    found |= {name: ("bifurcation", values) for name, values in folds.items()}
-    *_, route = draw(attractors, xr.Dataset(found)).axes
+    variables |= {name: ("bifurcation", values) for name, values in folds.items()}
+    *_, route = draw(attractors, xr.Dataset(variables)).axes
     marked = [line.get_xdata() for line in route.get_lines() if line.get_marker() == BifurcationKind.FOLD.mark]
     assert np.concatenate(marked).tolist() == [0.16]
 

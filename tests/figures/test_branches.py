@@ -47,12 +47,12 @@ def test_a_large_basin_at_few_values_has_a_colour_before_a_small_one_at_many():
 
 
 def test_a_map_has_the_colours_of_the_other_figures_and_distinguishes_grey_branches():
-    found = attractors({number: 20 - number for number in range(len(BRANCHES) + 3)})
-    known = branch_colors(found)
-    grey = [number for number, color in known.items() if color == OTHER_BRANCHES]
-    colors = map_colors(found, [-1, 0, 3, *grey])
+    dataset = attractors({number: 20 - number for number in range(len(BRANCHES) + 3)})
+    hues = branch_colors(dataset)
+    grey = [number for number, color in hues.items() if color == OTHER_BRANCHES]
+    colors = map_colors(dataset, [-1, 0, 3, *grey])
     assert sorted(colors) == [0, 3, *grey]
-    assert {number: colors[number] for number in (0, 3)} == {number: known[number] for number in (0, 3)}
+    assert {number: colors[number] for number in (0, 3)} == {number: hues[number] for number in (0, 3)}
     assert len(set(colors.values())) == 2 + len(grey)
 
 

@@ -76,10 +76,10 @@ def test_all_values_of_a_stay_on_the_axis_of_section_points():
 def compared(agrees: list[int]) -> xr.Dataset:
     """Return a summary of two laws without any difference, with these answers at two values of a."""
     names = ("other_law", "initial", "a")
-    found = dict.fromkeys(("difference", "difference_error", "section_distance"), (names, np.zeros((1, 1, 2))))
+    variables = dict.fromkeys(("difference", "difference_error", "section_distance"), (names, np.zeros((1, 1, 2))))
     return xr.Dataset(
         {
-            **found,
+            **variables,
             "event_order_time": (names, [[[10.0, 20.0]]]),
             "agrees": (names, [[agrees]]),
             "mean_distance": (("law", "initial", "a"), np.zeros((2, 1, 2))),
@@ -163,23 +163,23 @@ def all_words(figure):
 def test_a_catalogue_without_events_is_a_sentence():
     short = summarize([chain_events(0.1, 2.0)], ["linearized"], [0.1])
     diverged = summarize([chain_events(1.9, 1000.0)], ["linearized"], [1.9])
-    for found in (short, diverged):
+    for dataset in (short, diverged):
         for figure in (
-            *(catalogue.draw(found), slip_map.draw(found, "linearized")),
-            draw_run(found.isel(law=0, a=0)),
+            *(catalogue.draw(dataset), slip_map.draw(dataset, "linearized")),
+            draw_run(dataset.isel(law=0, a=0)),
         ):
             figure.draw_without_rendering()
             assert not any(panel.axison for panel in figure.axes)
             assert "No slip event began and ended" in all_words(figure)
-            assert ("a=1.9$: the run did not complete (diverged)" in all_words(figure)) == (found is diverged)
+            assert ("a=1.9$: the run did not complete (diverged)" in all_words(figure)) == (dataset is diverged)
 
 
 def test_a_catalogue_that_diverged_is_named_among_others():
-    found = summarize([chain_events(0.1, 200.0), chain_events(1.9, 1000.0)], ["linearized"], [0.1, 1.9])
-    figure = catalogue.draw(found)
+    dataset = summarize([chain_events(0.1, 200.0), chain_events(1.9, 1000.0)], ["linearized"], [0.1, 1.9])
+    figure = catalogue.draw(dataset)
     (legend,) = [panel.get_legend() for panel in figure.axes if panel.get_legend()]
     assert [text.get_text() for text in legend.get_texts()][1] == "$a=1.9$: diverged"
-    titles = {panel.get_title(loc="left"): panel for panel in slip_map.draw(found, "linearized").axes}
+    titles = {panel.get_title(loc="left"): panel for panel in slip_map.draw(dataset, "linearized").axes}
     empty = [panel for title, panel in titles.items() if "a=1.9$, diverged" in title]
     assert [(panel.axison, panel.texts[0].get_text()) for panel in empty] == [(False, "no events")] * 2
 

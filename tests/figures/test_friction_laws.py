@@ -12,8 +12,8 @@ from burridge_knopoff.study.paper import PAPER_LAWS
 
 def runs(laws, least):
     """Runs from one state, whose least friction is that of each law and a."""
-    found = xr.DataArray(least, {"law": list(laws), "initial": ["plus"], "a": [0.0, 0.3]}, ("law", "initial", "a"))
-    return found.to_dataset(name="least_friction").assign(status=xr.zeros_like(found, dtype="i1"))
+    friction = xr.DataArray(least, {"law": list(laws), "initial": ["plus"], "a": [0.0, 0.3]}, ("law", "initial", "a"))
+    return friction.to_dataset(name="least_friction").assign(status=xr.zeros_like(friction, dtype="i1"))
 
 
 def test_friction_laws_are_the_models():
@@ -29,9 +29,9 @@ def test_friction_laws_are_the_models():
 
 
 def test_a_run_that_did_not_complete_sets_no_scale():
-    found = runs(PAPER_LAWS, np.array([[[1.0, -3e9]], [[1.0, 0.8]]]))
-    found["status"][0, 0, 1] = Status.DIVERGED
-    laws, seen = draw(found, {law: {} for law in PAPER_LAWS}, 0.3).axes
+    dataset = runs(PAPER_LAWS, np.array([[[1.0, -3e9]], [[1.0, 0.8]]]))
+    dataset["status"][0, 0, 1] = Status.DIVERGED
+    laws, seen = draw(dataset, {law: {} for law in PAPER_LAWS}, 0.3).axes
     assert seen.get_ylim()[0] > 0.7
     assert laws.get_xlim()[1] < 2.0
 

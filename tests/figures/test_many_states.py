@@ -27,10 +27,10 @@ def with_states(data: xr.Dataset, names: list[str]) -> xr.Dataset:
     points, crossings, states = [], [], []
     two = list(dict.fromkeys(data["initial"].values.tolist()))
     for law, state in product(dict.fromkeys(data["law"].values.tolist()), range(len(names))):
-        these = np.flatnonzero((data["law"] == law) & (data["initial"] == two[state % 2]))
-        points.append(these)
-        crossings.append(np.flatnonzero(np.isin(of_crossing, these)))
-        states += [names[state]] * len(these)
+        indices = np.flatnonzero((data["law"] == law) & (data["initial"] == two[state % 2]))
+        points.append(indices)
+        crossings.append(np.flatnonzero(np.isin(of_crossing, indices)))
+        states += [names[state]] * len(indices)
     chosen = data.isel(point=np.concatenate(points), crossing=np.concatenate(crossings))
     return chosen.assign_coords(initial=("point", states))
 
@@ -54,17 +54,17 @@ def point(small):
 )
 def test_figures_of_one_to_eight_states(count, small, point):
     names = [f"s{k}" for k in range(count)]
-    found = {name: with_states(data, names) for name, data in small.found.items()}
+    summaries = {name: with_states(data, names) for name, data in small.summaries.items()}
     drawn = []
     for figure in figure_descriptions():
-        known = figure.of_points or set(figure.inputs) <= set(found)
-        if not known or not (figure.of_points or OF_STATES & set(figure.inputs)) or "{initial}" in figure.file:
+        is_known = figure.of_points or set(figure.inputs) <= set(summaries)
+        if not is_known or not (figure.of_points or OF_STATES & set(figure.inputs)) or "{initial}" in figure.file:
             continue
-        taken = [dict.fromkeys(names, point)] if figure.of_points else [found[name] for name in figure.inputs]
+        taken = [dict.fromkeys(names, point)] if figure.of_points else [summaries[name] for name in figure.inputs]
         draw = import_module(f"burridge_knopoff.figures.{figure.name}").draw
-        made = draw(*taken, **{name: getattr(small.study, name) for name in figure.from_study})
+        figure_drawn = draw(*taken, **{name: getattr(small.study, name) for name in figure.from_study})
         if count < STATES[-1]:
-            made.set_layout_engine("none")
-        made.draw_without_rendering()
+            figure_drawn.set_layout_engine("none")
+        figure_drawn.draw_without_rendering()
         drawn.append(figure.name)
     assert {"agreement", "bifurcation_diagram", "distance", "lyapunov", "mean_distance", "stick_slip"} <= set(drawn)

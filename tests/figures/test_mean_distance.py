@@ -43,9 +43,9 @@ WITH_A_GAP = np.array([[[0.0, np.nan, 0.2]], [[0.0, 0.1, 0.3]]])
 
 def test_a_gap_where_a_run_has_no_result(attractors):
     panels = draw(means(WITH_A_GAP), attractors=attractors).axes
-    known, run = (line for line in panels[0].get_lines() if len(line.get_ydata()) in (2, 3))
+    curve, run = (line for line in panels[0].get_lines() if len(line.get_ydata()) in (2, 3))
     assert np.array_equal(run.get_ydata(), WITH_A_GAP[0, 0], equal_nan=True)
-    assert known.get_ydata().tolist() == [0.1, 0.2]
+    assert curve.get_ydata().tolist() == [0.1, 0.2]
     assert panels[0].get_title(loc="left") == "(a) linearized law"
 
 

@@ -25,11 +25,11 @@ def test_that_there_are_none_is_said():
     ],
 )
 def test_synchrony_may_be_lost_or_gained_as_a_grows(multiplier, below, above):
-    one = xr.Dataset(
+    dataset = xr.Dataset(
         {"transverse_multiplier": ("a", [5.0, *multiplier, 5.0]), "critical_a": 0.03}, {"a": [0.01, 0.02, 0.04, 0.05]}
     )
-    one = one if np.isfinite(multiplier[0]) else one.isel(a=slice(1, 3))
-    assert (_attracts(one, below=True), _attracts(one, below=False)) == (below, above)
+    dataset = dataset if np.isfinite(multiplier[0]) else dataset.isel(a=slice(1, 3))
+    assert (_attracts(dataset, below=True), _attracts(dataset, below=False)) == (below, above)
 
 
 def test_the_transverse_multiplier_passes_1_at_the_loss_of_synchrony():

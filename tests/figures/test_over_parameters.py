@@ -34,13 +34,13 @@ def maps(figure):
 
 
 def test_a_map_has_the_first_parameter_to_the_right_and_the_second_upward(tmp_path):
-    found = summary(a=A, sigma=SIGMA)
+    dataset = summary(a=A, sigma=SIGMA)
     for figure, name in (
-        (grid_distance.draw(found), "mean_distance"),
-        (grid_exponents.draw(found), "lyapunov_exponent"),
+        (grid_distance.draw(dataset), "mean_distance"),
+        (grid_exponents.draw(dataset), "lyapunov_exponent"),
     ):
         write_figure(figure, tmp_path / f"{name}.png")
-        numbers = found[name] if name == "mean_distance" else found[name].isel(exponent=0)
+        numbers = dataset[name] if name == "mean_distance" else dataset[name].isel(exponent=0)
         for drawn, initial in zip(maps(figure), ("minus", "plus"), strict=True):
             expected = numbers.sel(law="drop", initial=initial).transpose("sigma", "a").values
             assert np.array_equal(drawn.get_array(), expected)
@@ -67,11 +67,11 @@ def test_any_number_of_panels_is_drawn(laws, states):
 
 
 def test_kinds_have_their_colours():
-    found = summary(a=A, sigma=SIGMA)
-    drawn = maps(grid_kinds.draw(found))[1].get_array()
+    dataset = summary(a=A, sigma=SIGMA)
+    drawn = maps(grid_kinds.draw(dataset))[1].get_array()
     for i, a in enumerate(A):
         for j, sigma in enumerate(SIGMA):
-            kind = found["run_kind"].sel(law="drop", initial="plus", a=a, sigma=sigma).item()
+            kind = dataset["run_kind"].sel(law="drop", initial="plus", a=a, sigma=sigma).item()
             assert tuple(drawn[j, i]) == pytest.approx(to_rgb(KINDS[kind]))
 
 
@@ -83,13 +83,13 @@ def test_a_third_parameter_has_a_panel_for_each_of_a_few_values():
 
 
 def test_a_single_parameter_that_varies_has_a_curve(tmp_path):
-    found = summary(a=[0.1], v=V)
+    dataset = summary(a=[0.1], v=V)
     for module in (grid_distance, grid_kinds, grid_exponents):
-        write_figure(module.draw(found), tmp_path / "curve.png")
-    panel = grid_distance.draw(found).axes[1]
+        write_figure(module.draw(dataset), tmp_path / "curve.png")
+    panel = grid_distance.draw(dataset).axes[1]
     line = panel.get_lines()[0]
     assert np.array_equal(line.get_xdata(), V)
-    assert np.array_equal(line.get_ydata(), found["mean_distance"].sel(initial="plus").values.ravel())
+    assert np.array_equal(line.get_ydata(), dataset["mean_distance"].sel(initial="plus").values.ravel())
     assert panel.get_xlabel() == "$v$"
 
 

@@ -33,13 +33,13 @@ def phases(shares: list[float], a: list[float]) -> xarray.Dataset:
 
 @pytest.mark.parametrize("shares", [[0.0], [0.0, 1.0], [0.0, 0.1, 0.3, 0.7, 1.0]])
 def test_every_panel_shows_its_law_share_and_a(shares):
-    found = phases(shares, [0.01, 0.02, 0.03])
+    dataset = phases(shares, [0.01, 0.02, 0.03])
     # Whatever the order in which a study names them. At the last a nothing synchronizes.
-    maps, means = np.reshape(draw(found.isel(amplitude=slice(None, None, -1))).axes[:4], (2, 2))
+    maps, means = np.reshape(draw(dataset.isel(amplitude=slice(None, None, -1))).axes[:4], (2, 2))
     kept = shares if len(shares) < 4 else [0.0, 0.3, 1.0]
     for over, below, a in zip(maps, means, (0.01, 0.02), strict=True):
         assert f"linearized, $a={a:g}$" in over.get_title(loc="left").replace("\n", " ")
-        fraction = found["synchronized_fraction"].sel(a=a)
+        fraction = dataset["synchronized_fraction"].sel(a=a)
         assert (over.get_images()[0].get_array() == fraction.sel(law="linearized", inner_share=0.0).values.T).all()
         # No block stops up to 0.2 where the inner ones slide: between the last two amplitudes.
         assert over.get_lines()[0].get_xdata()[0] == 1.5

@@ -52,8 +52,8 @@ def run():
 
 def test_pictures_have_the_same_bytes(run, tmp_path):
     point = to_dataset(run)
-    for name, own in (("plain", {}), ("own", OWN)):
-        with mpl.rc_context(own):
+    for name, settings in (("plain", {}), ("own", OWN)):
+        with mpl.rc_context(settings):
             paths = [tmp_path / f"{name}.{suffix}" for suffix in ("png", "pdf", "svg")]
             write_figure(motion.draw({"plus": point}), *paths)
     for suffix in ("png", "pdf"):
@@ -64,14 +64,14 @@ def test_figures_in_a_notebook_look_the_same(run):
     """They are drawn later, under the settings of the notebook."""
     drawn = []
     events = run.catalogue(200.0)
-    for own in ({}, OWN):
-        with mpl.rc_context(own):
+    for settings in ({}, OWN):
+        with mpl.rc_context(settings):
             for figure in (run.plot(), events.plot()):
                 canvas = FigureCanvasAgg(figure)
                 canvas.draw()
                 drawn.append(np.asarray(canvas.buffer_rgba()).copy())
-    plain, own = drawn[:2], drawn[2:]
-    assert all(np.array_equal(*pair) for pair in zip(plain, own, strict=True))
+    plain, settings = drawn[:2], drawn[2:]
+    assert all(np.array_equal(*pair) for pair in zip(plain, settings, strict=True))
 
 
 @pytest.mark.parametrize(
@@ -81,7 +81,7 @@ def test_a_backend_that_is_not_installed(backend, run, tmp_path):
     """As a notebook of another environment hands it to the programs that it starts."""
     bk = Path(sys.executable).parent / "bk"
     write_point(run, tmp_path / "run.nc")
-    command, own = [bk, "show", "run.nc", "--plot", "run.png"], {**os.environ, "MPLBACKEND": backend}
-    done = subprocess.run(command, cwd=tmp_path, env=own, capture_output=True, text=True)
+    command, environment = [bk, "show", "run.nc", "--plot", "run.png"], {**os.environ, "MPLBACKEND": backend}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     assert (tmp_path / "run.png").stat().st_size > 5_000

@@ -14,12 +14,12 @@ def cycles(blocks):
     labels = {"law": ["linearized", "nonlinear"], "initial": ["minus"], "a": a, "block": np.arange(1, blocks + 1)}
     block = np.tile(np.arange(1.0, blocks + 1) * (1.0 + a[:, None]), (2, 1, 1, 1))
     names = ("stop_rate", "cycle_time", "cycle_time_error", "stick_fraction", "velocity_frequency")
-    found = xr.Dataset({name: (tuple(labels), block.copy()) for name in names}, labels)
-    found["cycle_time"][:, :, 0, 0] = np.nan
-    found["stop_rate"][:, :, 0] = 0.0
-    correlation = xr.full_like(found["stop_rate"].isel(block=0, drop=True), -0.5)
-    error = xr.full_like(found["stop_rate"], 0.01)
-    return found.assign(velocity_frequency_error=error, velocity_correlation=correlation)
+    dataset = xr.Dataset({name: (tuple(labels), block.copy()) for name in names}, labels)
+    dataset["cycle_time"][:, :, 0, 0] = np.nan
+    dataset["stop_rate"][:, :, 0] = 0.0
+    correlation = xr.full_like(dataset["stop_rate"].isel(block=0, drop=True), -0.5)
+    error = xr.full_like(dataset["stop_rate"], 0.01)
+    return dataset.assign(velocity_frequency_error=error, velocity_correlation=correlation)
 
 
 @pytest.mark.parametrize(("blocks", "shown"), [(3, [1, 2, 3]), (6, [1, 3, 6])])

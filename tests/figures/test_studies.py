@@ -19,14 +19,14 @@ def small(request, small_studies):
 
 def figures_of(small):
     """Yield name and figure, drawn as the workflow does."""
-    study, found, grid = small.study, small.found, small.grid
+    study, summaries, grid = small.study, small.summaries, small.grid
     law, initial = study.config["figures"]["law"], study.initial[0]
     point = to_dataset(run(study.model(law, 0.2), grid.initial[initial], grid.settings[law]))
     for figure in figure_descriptions():
-        missing = not figure.of_points and not set(figure.inputs) <= set(found)
+        missing = not figure.of_points and not set(figure.inputs) <= set(summaries)
         if missing or (figure.condition and not getattr(study, figure.condition)):
             continue
-        taken = [{initial: point}] if figure.of_points else [found[name] for name in figure.inputs]
+        taken = [{initial: point}] if figure.of_points else [summaries[name] for name in figure.inputs]
         draw = import_module(f"burridge_knopoff.figures.{figure.name}").draw
         yield figure.name, draw(*taken, **{name: getattr(study, name) for name in figure.from_study})
 

@@ -172,9 +172,9 @@ def test_every_key_is_changed():
 def check_study(study, written):
     """Require that config/README.md and the schema allow an accepted study, and that it is what the file says."""
     SCHEMA.validate(written)
-    values, given = flat(study.config), flat(written)
-    assert set(given) <= KNOWN, set(given) - KNOWN
-    for key, value in given.items():
+    values, keys = flat(study.config), flat(written)
+    assert set(keys) <= KNOWN, set(keys) - KNOWN
+    for key, value in keys.items():
         if key in RANGE_OF or key in WORDS or key in BOXES:
             assert values[key] == value, key
     for key, (low, high) in RANGE_OF.items():
@@ -203,8 +203,8 @@ def check_study(study, written):
     assert all(2 <= blocks <= 64 for blocks in values.get("chains.blocks", []))
     assert all(0.0 <= a <= 100.0 for key in ("chains.a", "chains.two_blocks.a") for a in values[key])
     check_grid(study.grid, (written.get("grid") or written)["a"], values["a_digits"])
-    check_laws(study, values, given)
-    check_chain(study, given)
+    check_laws(study, values, keys)
+    check_chain(study, keys)
     check_states(study)
     check_options(study)
 
@@ -227,11 +227,11 @@ def check_grid(grid, items, digits):
         assert not str(value).startswith("-")
 
 
-def check_laws(study, values, given):
+def check_laws(study, values, keys):
     """Require that friction is finite, and at most 1 at rest, and that other keys name existing laws."""
-    assert list(study.laws) == list(given.get("laws", ("linearized", "nonlinear")))
+    assert list(study.laws) == list(keys.get("laws", ("linearized", "nonlinear")))
     assert all(re.fullmatch("[a-z][a-z0-9_]{0,31}", law) for law in study.laws)
-    solvers, asked = values["solver"], given.get("solver", {})
+    solvers, asked = values["solver"], keys.get("solver", {})
     assert tuple(solvers) == tuple(values["basins.a"]) == study.laws
     assert {values["figures.law"], *values["chains.laws"]} <= set(study.laws)
     for law in study.laws:
@@ -247,12 +247,12 @@ def check_laws(study, values, given):
                 assert abs(line[0] - 2.0 * line[1] + line[2]) < 1e-12
 
 
-def check_chain(study, given):
+def check_chain(study, keys):
     chain = study.config["chain"]
     springs = study.blocks - (chain["ends"] == "open")
     for key, count in {"coupling": springs, "pulling": study.blocks, "threshold": study.blocks}.items():
         value = chain[key]
-        assert value == given.get(f"chain.{key}", value)
+        assert value == keys.get(f"chain.{key}", value)
         if value == "neighbours":
             assert key == "pulling"
             continue

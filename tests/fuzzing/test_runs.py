@@ -80,8 +80,8 @@ class Chance(random.Random):
         ends, extra = self.choice(["open", "ring"]), self.one_in(50)
 
         def strengths(count):
-            each = [self.power(-1.0, 1.0) for _ in range(count + extra)]
-            return self.choice([self.power(-1.0, 1.0), each, 1.0])
+            powers = [self.power(-1.0, 1.0) for _ in range(count + extra)]
+            return self.choice([self.power(-1.0, 1.0), powers, 1.0])
 
         pulling = "neighbours" if self.one_in(3) else strengths(blocks)
         coupling = strengths(blocks - (ends == "open"))

@@ -22,16 +22,16 @@ def test_labels_are_those_of_whole_runs():
     basins, attractors = basin_map(
         "linearized", 0.08, pixels=3, samples=100, first_position=(-1.2, 1.2), last_position=(-1.5, 0.5)
     )
-    found = attractors.sel(law="linearized", a=0.08)
-    mean = dict(zip(found["branch"].values.tolist(), found["mean_distance"].values.tolist(), strict=True))
-    one = basins.isel(map=0)
-    assert one["branch"].shape == (3, 3)
-    assert len(np.unique(one["branch"])) > 1
+    part = attractors.sel(law="linearized", a=0.08)
+    mean = dict(zip(part["branch"].values.tolist(), part["mean_distance"].values.tolist(), strict=True))
+    plane = basins.isel(map=0)
+    assert plane["branch"].shape == (3, 3)
+    assert len(np.unique(plane["branch"])) > 1
     minus = PAPER_STATES["minus"]
-    for last, first in product(one["last_position"].values, one["first_position"].values):
+    for last, first in product(plane["last_position"].values, plane["first_position"].values):
         state = InitialState("pixel", (first, minus.position[1], last), minus.velocity)
         run = simulate("linearized", 0.08, state, transient=3000, window=1000, batches=4, lyapunov_exponents=0)
-        branch = one["branch"].sel(first_position=first, last_position=last).item()
+        branch = plane["branch"].sel(first_position=first, last_position=last).item()
         assert run.mean_distance == pytest.approx(mean[branch], abs=2e-3)
 
 

@@ -16,28 +16,28 @@ def test_a_run_continues_as_a_catalogue():
     """The catalogue continues from the end of the run, with the events of one long run."""
     rough = InitialState("rough", {"random": "uniform", "low": -1.0, "high": -0.9, "seed": 1}, 0.0)
     run = simulate(MODEL, initial=rough, start="tested", transient=100.0, window=200.0, batches=2, lyapunov_exponents=0)
-    found = run.catalogue(500.0, transient=100.0)
+    catalogue = run.catalogue(500.0, transient=100.0)
     whole = record_events(MODEL, MODEL.begin(rough, "tested"), 900.0, begin=400.0)
-    assert (found.begin_time, found.end_time) == (400.0, 900.0)
-    assert len(found.time) > 100
-    np.testing.assert_allclose(found.time, whole.time, rtol=1e-12)
-    np.testing.assert_allclose(found.moment, whole.moment, rtol=1e-9)
+    assert (catalogue.begin_time, catalogue.end_time) == (400.0, 900.0)
+    assert len(catalogue.time) > 100
+    np.testing.assert_allclose(catalogue.time, whole.time, rtol=1e-12)
+    np.testing.assert_allclose(catalogue.moment, whole.moment, rtol=1e-9)
     with refused("window: got 0.0, expected a number above 0 and at most 1e+09"):
         run.catalogue(0.0)
 
 
 def test_the_dataset_and_the_picture():
-    found = record_events(MODEL, at_rest(MODEL), 600.0)
-    data = found.to_dataset()
+    catalogue = record_events(MODEL, at_rest(MODEL), 600.0)
+    data = catalogue.to_dataset()
     for name in ("time", "slip_time", "duration", "blocks", "moment", "magnitude", "interval"):
-        assert np.array_equal(data[name], getattr(found, name), equal_nan=True), name
+        assert np.array_equal(data[name], getattr(catalogue, name), equal_nan=True), name
     assert (data.attrs["begin_time"], data.attrs["end_time"]) == (0.0, 600.0)
-    figure = found.plot()
+    figure = catalogue.plot()
     (bars,) = figure.axes[0].collections
-    assert len(bars.get_segments()) == len(found.time)
-    fit = found.slope()
-    assert found.slope(fit.low, fit.high) == fit
-    inside = (found.magnitude >= fit.low) & (found.magnitude <= fit.high)
+    assert len(bars.get_segments()) == len(catalogue.time)
+    fit = catalogue.slope()
+    assert catalogue.slope(fit.low, fit.high) == fit
+    inside = (catalogue.magnitude >= fit.low) & (catalogue.magnitude <= fit.high)
     assert fit.count == inside.sum()
 
 
@@ -53,10 +53,10 @@ def test_solvers_have_the_same_events():
 def test_a_run_that_ends_early_has_no_rates():
     """Backward slip under the linearized law grows without limit."""
     model = Model(Chain(3), law_of("linearized", 2.5), 0.1, "symmetric")
-    found = record_events(model, model.begin(InitialState("own", (-1.0, -0.5, -0.8), (0.1, 0.0, 0.2))), 1000.0)
-    assert found.status.name == "DIVERGED"
-    summary = summarize([found.to_dataset()], ["linearized"], [2.5])
-    assert summary["status"].item() == found.status
+    catalogue = record_events(model, model.begin(InitialState("own", (-1.0, -0.5, -0.8), (0.1, 0.0, 0.2))), 1000.0)
+    assert catalogue.status.name == "DIVERGED"
+    summary = summarize([catalogue.to_dataset()], ["linearized"], [2.5])
+    assert summary["status"].item() == catalogue.status
     assert np.isnan(summary["event_rate"]).all()
     assert np.isnan(summary["slope"]).all()
 
@@ -71,16 +71,18 @@ def test_recurrence_on_grids_and_networks(form, tmp_path):
         chain = Chain(grid=(4, 3), coupling=9, pulling=1)
     model = Model(chain, law_of("carlson_langer", 3.0), v=0.01)
     catalogues = [record_events(model, at_rest(model), 600.0, profiles=profiles) for profiles in (True, False)]
-    known, unknown = (
-        summarize([found.to_dataset()], ["carlson_langer"], [3.0]).isel(law=0, a=0) for found in catalogues
+    summary, unknown = (
+        summarize([catalogue.to_dataset()], ["carlson_langer"], [3.0]).isel(law=0, a=0) for catalogue in catalogues
     )
     events = catalogues[0]
     parts = np.split(events.slip_block, events.slip_end[:-1])
     for block in range(1, chain.blocks + 1):
         gaps = np.diff([time for time, part in zip(events.time, parts, strict=True) if block in part])
-        assert known["block_event_count"].sel(block=block) == len(gaps) + 1
-        assert known["recurrence"].sel(block=block).item() == pytest.approx(gaps.mean())
-    assert known["block_event_count"].sum() == events.blocks.sum() < (events.last_block - events.first_block + 1).sum()
+        assert summary["block_event_count"].sel(block=block) == len(gaps) + 1
+        assert summary["recurrence"].sel(block=block).item() == pytest.approx(gaps.mean())
+    assert (
+        summary["block_event_count"].sum() == events.blocks.sum() < (events.last_block - events.first_block + 1).sum()
+    )
     assert (unknown["block_event_count"] == -1).all()
     assert np.isnan(unknown["recurrence"]).all()
     slips, recurrence, *_ = catalogues[1].plot().axes
@@ -98,23 +100,23 @@ def test_recurrence_on_grids_and_networks(form, tmp_path):
 
 def test_bars_across_the_seam_of_a_ring():
     model = Model(Chain(12, coupling=9, pulling=1, ends="ring"), law_of("carlson_langer", 3.0), v=0.01)
-    found = record_events(model, at_rest(model), 600.0)
-    over = found.first_block > found.last_block
+    catalogue = record_events(model, at_rest(model), 600.0)
+    over = catalogue.first_block > catalogue.last_block
     assert over.any()
-    (bars,) = found.plot().axes[0].collections
+    (bars,) = catalogue.plot().axes[0].collections
     ends = {(low[1], low[0] + 0.5, high[0] - 0.5) for low, high in bars.get_segments()}
     expected = set()
-    for time, first, last in zip(found.time, found.first_block, found.last_block, strict=True):
+    for time, first, last in zip(catalogue.time, catalogue.first_block, catalogue.last_block, strict=True):
         expected |= {(time, first, last)} if first <= last else {(time, first, 12), (time, 1, last)}
-    assert ends - {(found.time[k], 1, 12) for k in np.flatnonzero(over)} <= expected
-    assert len(bars.get_segments()) == len(found.time) + (over & (found.blocks < 12)).sum()
+    assert ends - {(catalogue.time[k], 1, 12) for k in np.flatnonzero(over)} <= expected
+    assert len(bars.get_segments()) == len(catalogue.time) + (over & (catalogue.blocks < 12)).sum()
 
 
 def test_without_events():
     model = Model(Chain(3), law_of("linearized", 0.1), 0.01)
-    found = record_events(model, at_rest(model, spread=0.01), 0.01)
-    summary = summarize([found.to_dataset()], ["linearized"], [0.1])
+    catalogue = record_events(model, at_rest(model, spread=0.01), 0.01)
+    summary = summarize([catalogue.to_dataset()], ["linearized"], [0.1])
     assert summary["event_count"].item() == summary["event_rate"].item() == 0
     assert summary.sizes["magnitude"] == summary.sizes["shown_event"] == 0
-    (panel,) = found.plot().axes
+    (panel,) = catalogue.plot().axes
     assert "No slip event" in " ".join(text.get_text() for text in panel.texts)

@@ -67,14 +67,14 @@ RESULTS = {
 @pytest.mark.parametrize("copied", COPIES.values(), ids=COPIES)
 @pytest.mark.parametrize("result", RESULTS.values(), ids=RESULTS)
 def test_a_copy_has_the_same_bits(result, copied):
-    made = result()
-    assert equal(copied(made), made)
+    original = result()
+    assert equal(copied(original), original)
 
 
 @pytest.mark.parametrize("copied", COPIES.values(), ids=COPIES)
 def test_cached_arrays_of_a_copy_are_read_only_too(copied):
     chain = Chain(3)
-    assert [each.driving.flags.writeable for each in (chain, copied(chain))] == [False, False]
+    assert [item.driving.flags.writeable for item in (chain, copied(chain))] == [False, False]
 
 
 CONTINUED = {
@@ -122,7 +122,7 @@ def test_runs_in_other_processes():
 
 
 def test_a_state_of_another_version_is_refused():
-    made = run().final.last_step[1]
-    for bytes_ in (b"", made.__getstate__()[:-1], made.__getstate__() + b"\0"):
+    step = run().final.last_step[1]
+    for bytes_ in (b"", step.__getstate__()[:-1], step.__getstate__() + b"\0"):
         with pytest.raises(ValueError, match=r"^state: got a state pickled by another version of the kernel"):
-            type(made).__new__(type(made)).__setstate__(bytes_)
+            type(step).__new__(type(step)).__setstate__(bytes_)

@@ -95,7 +95,7 @@ def test_other_objects_in_place_of_settings_are_refused():
 def test_names_that_editors_and_notebooks_complete_are_those_of_the_settings(function, named, kind, apart):
     types = typing.get_type_hints(named)
     assert types == {name: hint for name, hint in typing.get_type_hints(kind).items() if name not in apart}
-    shown = inspect.signature(function).parameters
+    parameters = inspect.signature(function).parameters
     fields = fields_of(kind)
-    assert set(fields) <= set(shown)
-    assert {name: shown[name].default for name in types} == {name: fields[name].default for name in types}
+    assert set(fields) <= set(parameters)
+    assert {name: parameters[name].default for name in types} == {name: fields[name].default for name in types}

@@ -137,7 +137,7 @@ def test_every_public_function_is_tried():
     assert public == set(CALLS)
 
 
-@pytest.mark.parametrize(("name", "argument"), [(name, key) for name, given in CALLS.items() for key in given])
+@pytest.mark.parametrize(("name", "argument"), [(name, key) for name, arguments in CALLS.items() for key in arguments])
 def test_a_wrong_type_is_refused_in_one_line(name, argument):
     call = getattr(burridge_knopoff, name)
     count = 0
@@ -182,12 +182,12 @@ INTERVALS = [("basin_map", "first_position"), ("basin_map", "last_position")]
 INTERVALS += [("follow", "interval"), ("follow_bifurcation", "interval")]
 
 
-def with_numbers(function, given):
+def with_numbers(function, arguments):
     """Return the parameters of a function that are numbers, or true or false."""
-    shown = inspect.signature(function).parameters
-    named = {name for name, item in shown.items() if re.search(rf"\b({'|'.join(TYPES)})\b", str(item.annotation))}
-    numbers = {name for name, value in given.items() if isinstance(value, int | float)}
-    varying = {name for name, item in shown.items() if item.kind == inspect.Parameter.VAR_KEYWORD}
+    parameters = inspect.signature(function).parameters
+    named = {name for name, item in parameters.items() if re.search(rf"\b({'|'.join(TYPES)})\b", str(item.annotation))}
+    numbers = {name for name, value in arguments.items() if isinstance(value, int | float)}
+    varying = {name for name, item in parameters.items() if item.kind == inspect.Parameter.VAR_KEYWORD}
     return sorted((named | numbers) - varying - {"initial", *(argument for _, argument in INTERVALS)})
 
 
@@ -204,7 +204,9 @@ def test_every_method_with_numbers_is_tried():
     assert numbered - FORMULAS <= {*METHODS}
 
 
-NUMBERS = [(name, key) for name, given in CALLS.items() for key in with_numbers(getattr(burridge_knopoff, name), given)]
+NUMBERS = [
+    (name, key) for name, arguments in CALLS.items() for key in with_numbers(getattr(burridge_knopoff, name), arguments)
+]
 OF_METHODS = [
     (name, key)
     for name, function in public_methods()
@@ -217,14 +219,14 @@ OF_METHODS = [
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 0, -1, "x", None, True, 1j])
 def test_a_number_that_is_none_is_refused(name, argument, value):
     """Every public function refuses it in a line that names the argument; 0 and negative numbers may be allowed."""
-    made, given = METHODS[name]() if name in METHODS else (burridge_knopoff, CALLS[name])
-    call = getattr(made, name.rpartition(".")[2])
-    shown = inspect.signature(call).parameters.get(argument)
-    truth = shown is not None and str(shown.annotation) == "bool"
-    default = shown.default if shown is not None else None
+    owner, arguments = METHODS[name]() if name in METHODS else (burridge_knopoff, CALLS[name])
+    call = getattr(owner, name.rpartition(".")[2])
+    parameter = inspect.signature(call).parameters.get(argument)
+    truth = parameter is not None and str(parameter.annotation) == "bool"
+    default = parameter.default if parameter is not None else None
     message = None
     try:
-        call(**{**given, argument: value})
+        call(**{**arguments, argument: value})
     except ValueError as error:
         message = str(error)
     except OrbitError:
@@ -250,8 +252,8 @@ def test_ends_that_are_no_interval_are_refused(name, argument, ends):
 
 @pytest.mark.parametrize("kind", ["Chain", "Model", "InitialState", "Settings", "SearchSettings", "MotionSettings"])
 def test_help_shows_plain_types(kind):
-    shown = inspect.getdoc(getattr(burridge_knopoff, kind)) + str(inspect.signature(getattr(burridge_knopoff, kind)))
-    assert "Annotated" not in shown
+    text = inspect.getdoc(getattr(burridge_knopoff, kind)) + str(inspect.signature(getattr(burridge_knopoff, kind)))
+    assert "Annotated" not in text
     assert ": " in str(inspect.signature(getattr(burridge_knopoff, kind)))
 
 

@@ -58,8 +58,8 @@ def done(*paths):
 
 
 def test_a_whole_study():
-    made = [POINT, "results/paper/points/b.nc", "results/paper/summary/claims.json", "results/paper/report.html"]
-    assert lines(*done(*made), wanted=(*RULES, "report"), seconds=312.0) == [
+    paths = [POINT, "results/paper/points/b.nc", "results/paper/summary/claims.json", "results/paper/report.html"]
+    assert lines(*done(*paths), wanted=(*RULES, "report"), seconds=312.0) == [
         "study paper: done in 5 min 12 s on 1 core",
         "files made in results/paper: points 2, summary 1, report.html",
         "12 independent claims of the paper: holds 1, holds loosely 0, depends on convention 1, fails 10, "
@@ -78,8 +78,8 @@ def test_a_whole_study():
 def test_catalogues_that_did_not_complete_or_have_no_events():
     path = FOLDER / "catalogue.nc"
     status = np.array([[0, 3, 0]], dtype="i1")
-    found = xr.Dataset({"status": (("law", "a"), status, flag("i1", STATUSES))})
-    found.assign(event_count=(("law", "a"), [[7, 0, 0]])).to_netcdf(path)
+    dataset = xr.Dataset({"status": (("law", "a"), status, flag("i1", STATUSES))})
+    dataset.assign(event_count=(("law", "a"), [[7, 0, 0]])).to_netcdf(path)
     assert lines(wanted=["catalogue"])[2:] == [
         f"catalogues: 1 of 3 did not complete: diverged 1 (status in {path})",
         f"catalogues: no slip event at 1 of 3 values: {NO_EVENT} (event_count in {path})",

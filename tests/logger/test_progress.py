@@ -80,8 +80,8 @@ def test_the_pace_of_lines():
 
 
 def test_the_cores_of_a_command_line():
-    given = {"-c2": 2, "--cores 4": 4, "-j 3": 3, "--cores all": 0, "-j": 0, "-n points": 0}
-    assert {line: cores_of_command_line(line.split()) for line in given} == given
+    expected = {"-c2": 2, "--cores 4": 4, "-j 3": 3, "--cores all": 0, "-j": 0, "-n points": 0}
+    assert {line: cores_of_command_line(line.split()) for line in expected} == expected
 
 
 class AJob(SimpleNamespace):
@@ -251,7 +251,7 @@ def test_an_announced_run_is_told_from_its_begin_to_its_end(written, monkeypatch
     # With --quiet progress the log does not contain the ends of jobs; with --quiet all nothing is written.
     assert written(*BEGUN, start(2), quiet={Quietness.PROGRESS}, **run) == [BEGIN, *last]
     assert written(*BEGUN, start(2), quiet={Quietness.ALL}, **run) == []
-    monkeypatch.setattr(plugin, "closing_lines", lambda *given, **options: 1 / 0)
+    monkeypatch.setattr(plugin, "closing_lines", lambda *arguments, **options: 1 / 0)
     assert "the results of the run cannot be determined: division by zero" in written(*ROUTINE, **run)
 
 
@@ -297,8 +297,8 @@ def test_a_reader_that_goes_ends_no_run(monkeypatch):
 
 def test_settings_of_snakemake_hold(written, tmp_path):
     said = written(*ROUTINE, printshellcmds=True)
-    own = {"Job stats:", "Select jobs to execute...", "Job 1: simulate it", "Finished jobid: 1"}
-    assert {*own, "Shell command: bk simulate"} <= set(said)
+    routine = {"Job stats:", "Select jobs to execute...", "Job 1: simulate it", "Finished jobid: 1"}
+    assert {*routine, "Shell command: bk simulate"} <= set(said)
     assert "Job stats:" in written(*ROUTINE, dryrun=True)
     assert written(*ROUTINE, FAILURE, quiet={Quietness.ALL}) == []
     (tmp_path / "x.log").write_text("because\n")

@@ -84,57 +84,57 @@ def test_a_running_job_counts_with_what_is_left_of_it():
 def test_a_running_job_that_reports_its_progress_takes_as_long_as_this_shows(tmp_path):
     """At first it counts as expected; from a quarter on, only its progress does."""
     log = tmp_path / "log"
-    made = run(job("long", state=RUNNING, log=[log]))
+    study = run(job("long", state=RUNNING, log=[log]))
     left = []
     for share in ("", "progress 0.125\n", "progress 0.250\n", "progress 0.500\n"):
         with log.open("a") as file:
             file.write(f"searched: 10, 5.0 s, the longest 1.0 s\n{share}")
-        left.append(made.forecast(8.0))
+        left.append(study.forecast(8.0))
     assert left == [2.0, 0.875 * (0.5 * 10.0 + 0.5 * 64.0), 24.0, 8.0]
-    assert made.stages(8.0)[-1].share_done == 0.5
+    assert study.stages(8.0)[-1].share_done == 0.5
     # Half of it was in the cache: the other half takes half of the time.
-    assert made.forecast(0.1) == 5.0
+    assert study.forecast(0.1) == 5.0
     # The log of an earlier run is none.
-    made.jobs[0].since = log.stat().st_mtime + 1.0
-    assert made.forecast(8.0) == 2.0
+    study.jobs[0].since = log.stat().st_mtime + 1.0
+    assert study.forecast(8.0) == 2.0
 
 
 def test_the_time_left_is_counted_down_until_it_is_worked_out_again():
-    made = run(job("long"), *[short()] * 20)
-    assert [made.time_left(now) for now in (0.0, 0.5)] == [30.0, 29.5]
-    made.jobs[0].state = FAILED
-    assert [made.time_left(now) for now in (1.5, 2.5)] == [28.5, 20.0]
+    study = run(job("long"), *[short()] * 20)
+    assert [study.time_left(now) for now in (0.0, 0.5)] == [30.0, 29.5]
+    study.jobs[0].state = FAILED
+    assert [study.time_left(now) for now in (1.5, 2.5)] == [28.5, 20.0]
 
 
 def test_the_share_done_is_one_of_time():
     """A long job counts as its seconds, a running one as the part that has passed; its counts are those of jobs."""
-    made = run(*[done(1.0)] * 10, job("long", state=RUNNING, threads=2), short(state=FAILED), short())
-    stage, total = made.stages(now=3.0)
+    study = run(*[done(1.0)] * 10, job("long", state=RUNNING, threads=2), short(state=FAILED), short())
+    stage, total = study.stages(now=3.0)
     assert (total.name, total.jobs, total.counts[DONE]) == ("all", 13, 10)
     assert total.share_done == stage.share_done == (10 + 2 * 3) / (10 + 10 + 1 + 1)
     # A job that takes longer than expected is not more than done.
-    assert made.stages(now=100.0)[-1].share_done == 20 / 22
+    assert study.stages(now=100.0)[-1].share_done == 20 / 22
     assert run().stages(0.0)[-1].share_done == 0.0
 
 
 def test_what_a_failed_job_blocks():
-    made = run(short(), short(), short(0, 1), short(2), short())
-    failed, other, after = (made.jobs[number] for number in (0, 1, 2))
+    study = run(short(), short(), short(0, 1), short(2), short())
+    failed, other, after = (study.jobs[number] for number in (0, 1, 2))
     failed.state, other.state = FAILED, RUNNING
-    assert (made.jobs_in(FAILED), made.blocked()) == ([failed], {2, 3})
+    assert (study.jobs_in(FAILED), study.blocked()) == ([failed], {2, 3})
     # Tried again, as on a cluster.
     failed.state = RUNNING
-    assert (made.jobs_in(FAILED), made.blocked()) == ([], set())
+    assert (study.jobs_in(FAILED), study.blocked()) == ([], set())
     failed.state, after.needs = FAILED, frozenset({1})
-    assert made.blocked() == set()
+    assert study.blocked() == set()
 
 
 def test_a_job_that_was_not_planned_is_added():
-    made = run()
-    walked = made.jobs
+    study = run()
+    walked = study.jobs
     for state, counts in ((WAITING, {WAITING: 1}), (RUNNING, {RUNNING: 1}), (DONE, {DONE: 1})):
-        made.job(7, "other").state = state
-        assert [(stage.name, stage.counts) for stage in made.stages(0.0)] == [("other", counts), ("all", counts)]
+        study.job(7, "other").state = state
+        assert [(stage.name, stage.counts) for stage in study.stages(0.0)] == [("other", counts), ("all", counts)]
     assert walked == {}
 
 

@@ -31,7 +31,7 @@ def write_table(path):
 
 
 @pytest.fixture(scope="module", params=["point", "table"])
-def made(request, tmp_path_factory):
+def file(request, tmp_path_factory):
     """A point file or a summary."""
     path = tmp_path_factory.mktemp("made") / f"{request.param}.nc"
     if request.param == "table":
@@ -42,8 +42,8 @@ def made(request, tmp_path_factory):
 
 
 @pytest.fixture
-def path(made, tmp_path):
-    return shutil.copy(made, tmp_path / made.name)
+def path(file, tmp_path):
+    return shutil.copy(file, tmp_path / file.name)
 
 
 def content(path):
@@ -139,20 +139,20 @@ def test_a_file_of_another_program_is_refused(path):
 def test_a_copy_in_another_form_is_whole(path, tmp_path):
     """Without compression, with other chunks and in the reverse order, as nccopy and h5repack may write it."""
     copy = tmp_path / "copy.nc"
-    with netCDF4.Dataset(path) as one, netCDF4.Dataset(copy, "w") as other:
-        one.set_auto_maskandscale(False)
-        one.set_auto_chartostring(False)
+    with netCDF4.Dataset(path) as source, netCDF4.Dataset(copy, "w") as other:
+        source.set_auto_maskandscale(False)
+        source.set_auto_chartostring(False)
         other.set_auto_chartostring(False)
-        for name, item in reversed(one.dimensions.items()):
+        for name, item in reversed(source.dimensions.items()):
             other.createDimension(name, len(item))
-        for name, item in reversed(one.variables.items()):
+        for name, item in reversed(source.variables.items()):
             kind = item.dtype.newbyteorder(">") if item.dtype.itemsize > 1 else item.dtype
             order = {"endian": "big"} if item.dtype.itemsize > 1 else {}
-            made = other.createVariable(name, kind, item.dimensions, fill_value=False, **order)
+            variable_copy = other.createVariable(name, kind, item.dimensions, fill_value=False, **order)
             for key, value in reversed(vars(item).items()):
-                made.setncattr(key, value)
-            made[...] = item[...]
-        for key, value in reversed(vars(one).items()):
+                variable_copy.setncattr(key, value)
+            variable_copy[...] = item[...]
+        for key, value in reversed(vars(source).items()):
             other.setncattr(key, value)
     with open_whole(copy) as dataset:
         assert dataset.checksum == netCDF4.Dataset(path).checksum
@@ -174,13 +174,13 @@ def test_a_copy_by_h5repack_is_whole(path, tmp_path):
         pass
 
 
-def test_the_same_content_has_the_same_bytes(made, tmp_path):
+def test_the_same_content_has_the_same_bytes(file, tmp_path):
     """The checksum is part of them."""
-    if made.name == "table.nc":
+    if file.name == "table.nc":
         write_table(tmp_path / "again.nc")
-        assert (tmp_path / "again.nc").read_bytes() == made.read_bytes()
-        assert open_summary(made)["name"].values[3] == "ä3"
+        assert (tmp_path / "again.nc").read_bytes() == file.read_bytes()
+        assert open_summary(file)["name"].values[3] == "ä3"
     else:
         model = Model(Chain(3), law_of("linearized", 0.08))
         write_point(simulate(model, initial="minus", transient=20.0, window=40.0, batches=2), tmp_path / "again.nc")
-        assert (tmp_path / "again.nc").read_bytes() == made.read_bytes()
+        assert (tmp_path / "again.nc").read_bytes() == file.read_bytes()

@@ -17,8 +17,8 @@ def machine(tmp_path, monkeypatch):
         path = tmp_path / "cpuinfo"
         path.unlink(missing_ok=True)
         if flags is not None:
-            one = f"processor\t: 0\nmodel name\t: Any\nflags\t\t: {flags}\n\n"
-            path.write_text(one + one)
+            core = f"processor\t: 0\nmodel name\t: Any\nflags\t\t: {flags}\n\n"
+            path.write_text(core + core)
         monkeypatch.setattr(processor, "CPUINFO", path)
 
     return becomes

@@ -191,12 +191,12 @@ def test_results_depend_on_the_modules_that_make_them():
 def test_the_fingerprint_is_of_the_code(tmp_path):
     script = tmp_path / "script.py"
     script.write_text("from burridge_knopoff.laws import LAWS\n")
-    one = source_fingerprint(script)
+    fingerprint = source_fingerprint(script)
     for text, same in (("# why\nfrom burridge_knopoff.laws import LAWS\n", True), ("x = 1\n", False)):
         other = tmp_path / str(same) / "script.py"
         other.parent.mkdir()
         other.write_text(text)
-        assert (source_fingerprint(other) == one) is same
+        assert (source_fingerprint(other) == fingerprint) is same
 
 
 #: Names for users and for the display, which no script that makes a result uses.

@@ -43,10 +43,10 @@ class Poor:
 def poor(tmp_path_factory) -> Poor:
     folder = tmp_path_factory.mktemp("poor") / "results" / "poor"
     small = run_study(folder, POOR, ("attractors", *OF_POINTS))
-    study, found = small.study, small.found
-    _fail(found)
+    study, datasets = small.study, small.summaries
+    _fail(datasets)
     for name in ("mean_distance", "lyapunov", "agreement"):
-        write_summary(found[name], folder / "summary" / f"{name}.nc")
+        write_summary(datasets[name], folder / "summary" / f"{name}.nc")
     (folder / "figures").mkdir()
     for name in ("mean_distance", "orbits", "motion_pair"):
         Image.new("RGBA", (900, 600), "white").save(folder / "figures" / f"{name}.png")
@@ -61,11 +61,11 @@ def poor(tmp_path_factory) -> Poor:
     )
     claims.write_text(as_json(content))
     files = (folder.glob(f"{place}/*.{suffix}") for place, suffix in (("summary", "nc"), ("figures", "png")))
-    summaries, figures = ({path.stem: path for path in one} for one in files)
+    summaries, figures = ({path.stem: path for path in paths} for paths in files)
     return Poor(study, Sources(claims, summaries, figures, folder / "none"), folder)
 
 
-def _fail(found) -> None:
+def _fail(datasets) -> None:
     """Let the run of the linearized law at the second a be one that did not complete."""
     lost = {"status": Status.DIVERGED, "mean_distance": np.nan}
     for summary, law, values in (
@@ -76,7 +76,7 @@ def _fail(found) -> None:
         ("agreement", "law", {"kind": -1}),
     ):
         for name, value in values.items():
-            found[summary][name][{law: 0, "initial": 0, "a": 1}] = value
+            datasets[summary][name][{law: 0, "initial": 0, "a": 1}] = value
 
 
 @pytest.fixture

@@ -114,18 +114,18 @@ def check_number(text, value, error):
 def check_run(page, results, law, initial, a):
     """Hold the panel against the point file of this run."""
     path = f"points/{law}/{initial}/a{a:.4f}.nc"
-    shown = detail(page)
+    fields = detail(page)
     assert page.locator("#run-file").get_attribute("href") == path
     with netCDF4.Dataset(results / path) as point:
         assert (point.law, point.initial, float(point["a"][...])) == (law, initial, a)
         mean, error = (float(point[name][...]) for name in ("mean_distance", "mean_distance_error"))
         exponents = point["lyapunov_exponent"][:].tolist()
         errors = point["lyapunov_error"][:].tolist()
-    check_number(shown["⟨J⟩"], mean, error)
-    lines = shown["Lyapunov exponents"].splitlines()
+    check_number(fields["⟨J⟩"], mean, error)
+    lines = fields["Lyapunov exponents"].splitlines()
     for line, value, spread in zip(lines, exponents, errors, strict=True):
         check_number(line.split(" = ")[1], value, spread)
-    assert unicodedata.normalize("NFKC", shown["Run"]) == f"{law} law, initial state {initial}, a = {a!r}"
+    assert unicodedata.normalize("NFKC", fields["Run"]) == f"{law} law, initial state {initial}, a = {a!r}"
     assert page.locator("#run-snakemake").inner_text() == (
         f"snakemake -c1 --force results/tiny/{path} --configfile study.yaml"
     )
@@ -337,7 +337,7 @@ def test_the_report_of_a_study_that_lacks_most(browser, poor):
     reader.draw_everything()
     reader.page.locator("#run-law").select_option("linearized")
     reader.page.locator("#run-a").select_option("0.2")
-    shown = detail(reader.page)
-    assert (shown["⟨J⟩"], shown["Status"]) == ("–", "diverged")
-    assert shown["Kind of motion"] == "undetermined"
+    fields = detail(reader.page)
+    assert (fields["⟨J⟩"], fields["Status"]) == ("–", "diverged")
+    assert fields["Kind of motion"] == "undetermined"
     reader.close()

@@ -82,12 +82,14 @@ def test_the_paper_comes_first_and_every_statement_has_its_place(poor):
 def test_the_main_claims_are_quoted_with_their_verdicts(poor, tmp_path):
     content = json.loads(CLAIMS.read_text())
     chosen = content["claims"][: len(MAIN)]
-    for name, one in zip(MAIN, chosen, strict=True):
-        one["name"] = name
+    for name, record in zip(MAIN, chosen, strict=True):
+        record["name"] = name
     (tmp_path / "claims.json").write_text(json.dumps(content))
     text = Page(render(poor.study, replace(poor.sources, claims=tmp_path / "claims.json"))).whole_text
     opening = text[text.index("independent statements of the paper") : text.index("is the time average")]
-    places = [opening.index(f"{SIGNS[one['verdict']]} {one['verdict']} {one['statement'][:6]}") for one in chosen]
+    places = [
+        opening.index(f"{SIGNS[record['verdict']]} {record['verdict']} {record['statement'][:6]}") for record in chosen
+    ]
     assert places == sorted(places)
 
 
@@ -103,10 +105,10 @@ def test_a_study_that_judges_nothing_does_not_open_with_the_paper(poor):
 
 def test_a_summary_of_other_sources_is_shown(poor):
     """With its fingerprint."""
-    found = xarray.load_dataset(poor.sources.summaries["orbits"]).assign_attrs(source_fingerprint="another")
+    dataset = xarray.load_dataset(poor.sources.summaries["orbits"]).assign_attrs(source_fingerprint="another")
     path = poor.folder / "old" / "orbits.nc"
     path.parent.mkdir(exist_ok=True)
-    write_summary(found, path)
+    write_summary(dataset, path)
     page = render(poor.study, replace(poor.sources, summaries={**poor.sources.summaries, "orbits": path}))
     assert "<td><code>another</code></td>" in page
 

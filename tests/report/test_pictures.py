@@ -22,8 +22,8 @@ def test_pictures_keep_their_size_and_their_colours(tmp_path):
     Image.fromarray(pixels).convert("RGBA").save(path)
     picture = read_picture(path)
     content = base64.b64decode(picture.data.split(",")[1])
-    shown = np.asarray(Image.open(io.BytesIO(content)).convert("RGB"))
-    assert np.abs(shown.astype(int) - pixels).max() <= 16
+    image = np.asarray(Image.open(io.BytesIO(content)).convert("RGB"))
+    assert np.abs(image.astype(int) - pixels).max() <= 16
     assert len(content) < 0.5 * path.stat().st_size
     assert (picture.width, picture.height) == (2100, 900)
     assert "W'" in picture.caption

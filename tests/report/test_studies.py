@@ -31,16 +31,16 @@ def small(request, small_studies):
     return small_studies(request.param)
 
 
-def rendered(study, found, claims, names, folder):
+def rendered(study, summaries, claims, names, folder):
     """Return the report of a study that has these summaries, without figures."""
     for name in names:
-        write_summary(found[name], folder / f"{name}.nc")
+        write_summary(summaries[name], folder / f"{name}.nc")
     return render(study, Sources(claims, {name: folder / f"{name}.nc" for name in names}, {}))
 
 
 @pytest.fixture(scope="module")
 def html(small, tmp_path_factory):
-    return rendered(small.study, small.found, CLAIMS, STORED, tmp_path_factory.mktemp("summaries"))
+    return rendered(small.study, small.summaries, CLAIMS, STORED, tmp_path_factory.mktemp("summaries"))
 
 
 def test_every_law_has_its_charts_and_its_formula(small, html):
@@ -63,7 +63,7 @@ def test_a_study_of_curves_alone(small_studies, tmp_path):
     """No attractors, no verdicts: what was left out is said, and no link leads to a file that is not there."""
     small = small_studies("one_law")
     study = load_study({**SMALL, **STUDIES["one_law"], "without": ["attractors", "claims"]}, "small.yaml")
-    html = rendered(study, small.found, None, STORED[:5], tmp_path)
+    html = rendered(study, small.summaries, None, STORED[:5], tmp_path)
     text = Page(html).whole_text
     assert "Left out by the config attractors, bifurcations, edges, basins, phases, claims" in text
     assert "This study does not search for attractors" in text
@@ -77,9 +77,9 @@ def test_what_does_not_hold_in_the_chain_is_said(small, html):
     assert ("a ring; coupling 1;" in html) == (chain.ends == "ring")
     assert ("coupling 1, 1.3; pulling 1.5; static friction 1, 1.1, 1.2" in html) == (not chain.is_mirror_symmetric)
     if not chain.is_mirror_symmetric:
-        assert (small.found["mean_distance"]["synchronized"] == 0).all()
-        assert (small.found["agreement"]["kind"] != 0).all()
-        assert (small.found["attractors"]["side"] == 0).all()
+        assert (small.summaries["mean_distance"]["synchronized"] == 0).all()
+        assert (small.summaries["agreement"]["kind"] != 0).all()
+        assert (small.summaries["attractors"]["side"] == 0).all()
 
 
 def test_the_embedded_runs_are_over_the_laws_of_the_study(small, html):
@@ -98,8 +98,8 @@ def test_every_chart_is_a_figure_of_plotly(html):
     ]
     packed = re.findall(r'data-figure="([^"]+)"', html)
     assert packed
-    for one in packed:
-        content = zlib.decompress(base64.b64decode(one)).decode()
+    for text in packed:
+        content = zlib.decompress(base64.b64decode(text)).decode()
         figure = go.Figure(json.loads(content))
         assert any(trace.y is not None and len(trace.y) for trace in figure.data)
         assert figure.layout.template.layout.font.color in dark

@@ -26,15 +26,15 @@ def test_the_blocks_move_as_in_the_point_files(poor):
         run = read_point(grid, point, ("position", "velocity"))
         position, velocity = (run[name][::-EVERY][: embedded["frames"][number] + 1][::-1] for name in run)
         count, unit = embedded["frames"][number], embedded["units"][number]
-        own = steps[start : start + 2 * count].reshape(2, count).T.astype(int)
-        start += own.size
-        ground = np.array(embedded["first"][number]) + unit * np.vstack([np.zeros(2), own.cumsum(axis=0)])
+        increments = steps[start : start + 2 * count].reshape(2, count).T.astype(int)
+        start += increments.size
+        ground = np.array(embedded["first"][number]) + unit * np.vstack([np.zeros(2), increments.cumsum(axis=0)])
         relative = ground - embedded["v"] * embedded["interval"] * np.arange(count + 1)[:, None]
         assert relative == pytest.approx(position, rel=0.0, abs=0.6 * unit + 1e-5)
         sticks = (velocity[1:] == 0.0) & (velocity[:-1] == 0.0)
-        moved += np.count_nonzero(own)
+        moved += np.count_nonzero(increments)
         # Between two instants of rest a block may slip, but it hardly ever does.
-        assert np.mean(own[sticks] == 0) > 0.9
+        assert np.mean(increments[sticks] == 0) > 0.9
     assert start == steps.size
     assert moved > 0
 

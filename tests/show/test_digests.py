@@ -28,7 +28,9 @@ A = np.array([0.0, 0.05, 0.1, 0.15])
 def of_runs(**variables):
     """Return a summary over one law, two initial states and a."""
     axes = {"law": ["linearized"], "initial": ["minus", "plus"], "a": A}
-    return xarray.Dataset({name: (tuple(axes), values, *more) for name, (values, *more) in variables.items()}, axes)
+    return xarray.Dataset(
+        {name: (tuple(axes), values, *attributes) for name, (values, *attributes) in variables.items()}, axes
+    )
 
 
 @pytest.mark.parametrize(
@@ -76,8 +78,8 @@ def test_catalogues_without_events():
     assert empty_catalogues(data) == f"no slip event at 1 of 3 values: {NO_EVENT}"
     assert empty_catalogues(data.isel(a=[0, 1])) == ""
     for events, state, words in ((0, 0, f"no slip event: {NO_EVENT}"), (0, 3, ""), (2, 0, "")):
-        one = xarray.Dataset({"status": ((), np.int8(state), STATUS_FLAG), "time": ("event", np.zeros(events))})
-        assert slip_events(one) == words
+        dataset = xarray.Dataset({"status": ((), np.int8(state), STATUS_FLAG), "time": ("event", np.zeros(events))})
+        assert slip_events(dataset) == words
     assert Status.COMPLETED == 0
 
 

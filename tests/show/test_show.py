@@ -47,7 +47,7 @@ def wide_terminal(monkeypatch):
     monkeypatch.setenv("COLUMNS", "1000")
 
 
-def shown(capsys, *arguments, code=0):
+def output_of(capsys, *arguments, code=0):
     """Return what `bk show` prints, or the one line with which it refuses."""
     assert main(["show", *map(str, arguments)]) == code
     out, error = capsys.readouterr()
@@ -56,7 +56,7 @@ def shown(capsys, *arguments, code=0):
 
 
 def test_a_point_in_words(point, capsys):
-    said = shown(capsys, point)
+    said = output_of(capsys, point)
     for words in (
         f"{point}: a run from plus, linearized law, a = 0.08\n",
         "3 blocks, open: coupling 1, pulling neighbours, threshold 1, mass 1\n",
@@ -78,17 +78,17 @@ def test_a_point_in_words(point, capsys):
 
 def test_a_page_fits_the_terminal(point, monkeypatch, capsys):
     """Except the command, which can be copied as one line."""
-    whole = shown(capsys, point)
+    whole = output_of(capsys, point)
     assert max(map(len, whole.splitlines())) > 100
     monkeypatch.setenv("COLUMNS", "70")
-    *lines, command = shown(capsys, point).splitlines()
+    *lines, command = output_of(capsys, point).splitlines()
     assert max(map(len, lines)) <= 70
     assert command in whole.splitlines()
     assert " ".join(" ".join([*lines, command]).split()).count("simulate") == whole.count("simulate")
 
 
 def test_a_point_as_a_picture(point, tmp_path, capsys):
-    said = shown(capsys, point, "--plot", tmp_path / "plus.png")
+    said = output_of(capsys, point, "--plot", tmp_path / "plus.png")
     assert said.endswith("plus.png: J, section points and velocities\n")
     picture = imread(tmp_path / "plus.png")[..., :3].min(axis=2)
     # There is ink in each of the four panels.
@@ -100,7 +100,7 @@ def test_a_point_as_a_picture(point, tmp_path, capsys):
 def test_a_run_that_failed(tmp_path, capsys):
     path = tmp_path / "failed.nc"
     write_point(simulate("linearized", 1.9, "minus", contact="symmetric", transient=0.0, window=1000.0), path)
-    said = shown(capsys, path, "--plot", tmp_path / "failed.png")
+    said = output_of(capsys, path, "--plot", tmp_path / "failed.png")
     for words in ("diverged at tau = 22.479\n", "undetermined\n", "5 samples, tau = 0 to 20\n", "at 0 times\n"):
         assert words in said
     assert (tmp_path / "failed.png").stat().st_size > 10_000
@@ -131,15 +131,15 @@ def test_every_summary_in_words(study):
 )
 def test_a_summary_as_its_figure(study, tmp_path, capsys, name, words):
     """With the other summaries and the properties of the study that the figure needs."""
-    assert f"x.pdf: {words} " in shown(capsys, study / f"summary/{name}.nc", "--plot", tmp_path / "x.pdf")
+    assert f"x.pdf: {words} " in output_of(capsys, study / f"summary/{name}.nc", "--plot", tmp_path / "x.pdf")
     assert (tmp_path / "x.pdf").read_bytes().startswith(b"%PDF")
 
 
 def test_what_cannot_be_drawn_is_said_in_a_line(study, tmp_path, capsys):
     alone = shutil.copy(study / "summary/basins.nc", tmp_path)
-    assert "its figure also needs attractors.nc" in shown(capsys, alone, "--plot", "x.png", code=2)
-    assert "x.doc: got '.doc', expected .png | .pdf | .svg" in shown(capsys, alone, "--plot", "x.doc", code=2)
-    assert "folder no does not exist" in shown(capsys, alone, "--plot", "no/x.png", code=2)
+    assert "its figure also needs attractors.nc" in output_of(capsys, alone, "--plot", "x.png", code=2)
+    assert "x.doc: got '.doc', expected .png | .pdf | .svg" in output_of(capsys, alone, "--plot", "x.doc", code=2)
+    assert "folder no does not exist" in output_of(capsys, alone, "--plot", "no/x.png", code=2)
 
 
 def test_a_part_of_a_summary_is_described_and_not_drawn(small_studies, tmp_path, capsys):
@@ -163,13 +163,13 @@ def test_a_part_of_a_summary_is_described_and_not_drawn(small_studies, tmp_path,
 
 
 def test_summaries_of_two_studies_are_not_drawn_together(small_studies, tmp_path, capsys):
-    found = small_studies("paper").found
-    write_summary(found["attractors"], tmp_path / "attractors.nc")
+    summaries = small_studies("paper").summaries
+    write_summary(summaries["attractors"], tmp_path / "attractors.nc")
     checksum = open_summary(tmp_path / "attractors.nc").attrs["checksum"]
     for other, code in ((checksum, 0), ("0" * 64, 2)):
         inputs = json.dumps({"summary/attractors.nc": other})
-        write_summary(found["basins"].assign_attrs(inputs=inputs), tmp_path / "basins.nc")
-        said = shown(capsys, tmp_path / "basins.nc", "--plot", tmp_path / "basins.png", code=code)
+        write_summary(summaries["basins"].assign_attrs(inputs=inputs), tmp_path / "basins.nc")
+        said = output_of(capsys, tmp_path / "basins.nc", "--plot", tmp_path / "basins.png", code=code)
         assert (f"but {tmp_path / 'attractors.nc'} is of another study" in said) == (code == 2)
 
 
@@ -194,7 +194,7 @@ def test_damaged_and_foreign_files_are_refused_in_a_line(point, study, tmp_path,
         (study / "study.json", "got a .json file, expected a netCDF file (.nc); "),
         (inside, f"remake it: cd {shlex.quote(str(root))} && snakemake -c2 -R {inside.relative_to(root)}"),
     ):
-        said = shown(capsys, path, code=2)
+        said = output_of(capsys, path, code=2)
         assert said.startswith(f"bk show: {path}: ")
         assert words in said
         assert ("remake" in said) == (path == inside)

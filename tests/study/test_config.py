@@ -160,10 +160,10 @@ def test_command_of_another_solver():
     study = load(solvers={"step": 0.02}, step=0.01, solver=solver, window=500)
     assert study.other_solvers("linearized") == ["series", "rk4"]
     assert study.other_solvers("nonlinear") == ["series"]
-    own = study.command("linearized", "plus", "0.0800").split()
-    assert "--lyapunov-exponents" not in own
+    options = study.command("linearized", "plus", "0.0800").split()
+    assert "--lyapunov-exponents" not in options
     series = study.command("linearized", "plus", "0.0800", "series").split()
-    assert [word for word in own if word not in series] == ["--solver", "map"]
+    assert [word for word in options if word not in series] == ["--solver", "map"]
     rk4 = study.command("linearized", "plus", "0.0800", "rk4")
     assert "--solver rk4 --step 0.02" in rk4
     assert "--lyapunov-exponents 0" in rk4

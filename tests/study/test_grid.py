@@ -32,8 +32,8 @@ def test_points_are_named_in_the_order_of_the_config_and_contain_their_parameter
     assert len({*names}) == len(names) == 2 * 2 * 4
     for point in points:
         model, _, _ = study.run_of(**point)
-        found = {"law": model.law.name, "v": model.v, "a": model.a, "coupling": model.chain.coupling}
-        assert found == {name: point["law"] if name == "law" else float(point[name]) for name in found}
+        parameters = {"law": model.law.name, "v": model.v, "a": model.a, "coupling": model.chain.coupling}
+        assert parameters == {name: point["law"] if name == "law" else float(point[name]) for name in parameters}
     command = study.command(**points[0])
     assert all(words in command for words in ("--a 0.2", "--v 0.05", "--coupling 0.5"))
 
@@ -51,8 +51,8 @@ def test_the_value_of_one_block_is_a_parameter():
     assert study.chain_description["mass"] == (1.0, 1.0)
     # A number for all blocks, and one for a single block.
     both = load(grid={"a": [0.2], "mass[2]": [1.0, 1.5], "mass": [1.0, 2.0]})
-    found = {tuple(both.run_of(**point)[0].chain.masses.tolist()) for point in all_points(both)}
-    assert found == {(1.0, 1.0), (1.0, 1.5), (2.0, 1.0), (2.0, 1.5)}
+    masses = {tuple(both.run_of(**point)[0].chain.masses.tolist()) for point in all_points(both)}
+    assert masses == {(1.0, 1.0), (1.0, 1.5), (2.0, 1.0), (2.0, 1.5)}
 
 
 def test_a_grid_of_a_alone_equals_the_key_a():
@@ -139,8 +139,8 @@ def test_the_record_of_a_study_is_read_again_and_its_leftovers_are_known(tmp_pat
     for name in files:
         (results / name).parent.mkdir(parents=True, exist_ok=True)
         (results / name).touch()
-    found = {path.relative_to(results).as_posix() for path in leftovers(results, small, read_study_record(results))}
-    assert found == {name for name, left in files.items() if left}
+    paths = {path.relative_to(results).as_posix() for path in leftovers(results, small, read_study_record(results))}
+    assert paths == {name for name, left in files.items() if left}
 
 
 def test_a_point_that_fails_is_named_with_its_command_and_the_others_are_made(tmp_path):

@@ -53,7 +53,7 @@ def test_at_another_v_they_have_other_commands_than_their_numbers(tmp_path, chan
 def test_of_several_v_only_that_of_the_paper_has_the_numbers():
     grid = {"a": [0.05], "v": [0.05, 0.1, 0.2]}
     short, long = (study_of(initial, grid=grid) for initial in ({"plus": {}}, {"plus": NUMBERS["plus"]}))
-    same = [own == other for own, other in zip(commands(short), commands(long), strict=True)]
+    same = [command == other for command, other in zip(commands(short), commands(long), strict=True)]
     assert same == [point["v"] == "0.1000" for point in all_points(short)]
 
 

@@ -47,8 +47,8 @@ def test_the_command_that_recreates_a_bad_file_is_not_part_of_the_reason(tmp_pat
 
 def test_the_progress_of_a_long_job_is_not_the_reason_of_its_failure(tmp_path, caplog):
     caplog.set_level("INFO")
-    with parallel_map(1, tmp_path / "kept") as each:
-        each("doubled", abs, [1, 2])
+    with parallel_map(1, tmp_path / "kept") as apply:
+        apply("doubled", abs, [1, 2])
     (tmp_path / "log").write_text(f"{caplog.messages[0]}\n")
     assert logged_error(tmp_path / "log") == ""
 

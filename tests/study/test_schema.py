@@ -70,4 +70,4 @@ def test_numbers_at_and_beyond_the_ends_of_their_range(key):
     *sections, name = key.split(".")
     for value in (*allowed, *beyond, math.nextafter(high, math.inf), math.inf, True, "1e-6"):
         changes = reduce(lambda inside, section: {section: inside}, reversed(sections), {name: value})
-        assert SCHEMA.is_valid({**GOOD, **changes}) == any(value is one for one in allowed), (key, value)
+        assert SCHEMA.is_valid({**GOOD, **changes}) == any(value is member for member in allowed), (key, value)

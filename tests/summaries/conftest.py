@@ -15,9 +15,9 @@ def one_law(monkeypatch):
     With a tested start the first state reaches no attractor.
     """
 
-    def label(model, found, starts, time_limit):
+    def label(model, candidates, starts, time_limit):
         assert time_limit == 1230.0
-        reached = [1 if len(found) else -1] * len(starts)
+        reached = [1 if len(candidates) else -1] * len(starts)
         # The states under one convention of the start, then under the other.
         for k in (0, len(starts) // 2):
             if starts[k].stuck.any():

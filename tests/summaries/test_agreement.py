@@ -33,27 +33,27 @@ def compare(runs, tmp_path):
     def compared(altered=(), **reached):
         grid = grid_of(tmp_path, ["minus"], {"0.0500": 0.05, "0.0800": 0.08}, **SETTINGS)
         for _, (law, initial, a) in grid:
-            here = law, grid.a[a]
-            write_point(dataclasses.replace(runs[here], **dict(altered).get(here, {})), grid.path(law, initial, a))
+            key = law, grid.a[a]
+            write_point(dataclasses.replace(runs[key], **dict(altered).get(key, {})), grid.path(law, initial, a))
         return grid, summarize_kinds(grid, attractors_of(grid, **reached))
 
     return compared
 
 
-def summarize_kinds(grid, *found, kind=None):
+def summarize_kinds(grid, *datasets, kind=None):
     """Return the comparison, of runs of a given kind if there is one."""
     of_runs = kinds(grid, MOTION)
     if kind is not None:
         of_runs["run_kind"][...] = kind
     read = scalars(grid), of_runs, agreement.compare_events(grid)
-    return agreement.summarize(*read, *found, synchronization_threshold=1e-6, agreement=AGREEMENT)
+    return agreement.summarize(*read, *datasets, synchronization_threshold=1e-6, agreement=AGREEMENT)
 
 
 def test_without_attractors_it_is_undetermined_which_runs_settled(compare):
-    grid, known = compare()
+    grid, dataset = compare()
     other = summarize_kinds(grid)
     assert (other["settled"] == -1).all()
-    xarray.testing.assert_identical(other.drop_vars("settled"), known.drop_vars("settled"))
+    xarray.testing.assert_identical(other.drop_vars("settled"), dataset.drop_vars("settled"))
 
 
 def attractors_of(grid, mean=0.0, error=0.0, branch=0, kind=-1, v=0.1):
@@ -61,8 +61,8 @@ def attractors_of(grid, mean=0.0, error=0.0, branch=0, kind=-1, v=0.1):
     laws, states, a = grid.laws, list(grid.initial), list(grid.a.values())
     labels = {"law": list(laws), "contact": ["here", "there"], "start": ["now", "then"], "initial": states, "a": a}
     slot = xarray.DataArray(np.zeros((len(laws), len(a), 2)), dims=("law", "a", "attractor"))
-    own = xarray.DataArray(np.full([len(item) for item in labels.values()], 9), labels, tuple(labels))
-    own.loc[{"contact": "there", "start": "now"}] = branch
+    initial_branch = xarray.DataArray(np.full([len(item) for item in labels.values()], 9), labels, tuple(labels))
+    initial_branch.loc[{"contact": "there", "start": "now"}] = branch
     return xarray.Dataset(
         {
             "branch": slot.copy(data=np.broadcast_to([-1, branch], slot.shape)),
@@ -71,8 +71,8 @@ def attractors_of(grid, mean=0.0, error=0.0, branch=0, kind=-1, v=0.1):
             "period": slot + 40.0,
             "mean_distance": slot + mean,
             "mean_distance_error": slot + error,
-            "initial_branch": own,
-            "initial_side": xarray.zeros_like(own),
+            "initial_branch": initial_branch,
+            "initial_side": xarray.zeros_like(initial_branch),
         },
         attrs={"contact": "there", "start": "now", "resolution": 1e-3, "v": v},
     )
@@ -100,11 +100,11 @@ def test_two_synchronized_laws_agree(compare, runs):
         "initial,a,mean_distance_linearized,mean_distance_nonlinear,difference,difference_error,section_distance,"
         "event_order_time,kind_linearized,kind_nonlinear,settled_linearized,settled_nonlinear,agrees"
     )
-    one = dataset.isel(initial=0, other_law=0, a=1)
+    point = dataset.isel(initial=0, other_law=0, a=1)
     assert rows[1] == (
-        f"minus,0.08,{one['mean_distance'].values[0]:.8e},{one['mean_distance'].values[1]:.8e},"
-        f"{one['difference'].item():.8e},{one['difference_error'].item():.2e},{one['section_distance'].item():.6e},"
-        f"{one['event_order_time'].item():.3f},synchronized,synchronized,yes,yes,yes"
+        f"minus,0.08,{point['mean_distance'].values[0]:.8e},{point['mean_distance'].values[1]:.8e},"
+        f"{point['difference'].item():.8e},{point['difference_error'].item():.2e},{point['section_distance'].item():.6e},"
+        f"{point['event_order_time'].item():.3f},synchronized,synchronized,yes,yes,yes"
     )
 
 
@@ -147,9 +147,9 @@ def test_the_order_of_events_is_compared_until_the_first_run_ends(compare, law):
     ],
 )
 def test_a_run_may_not_reach_the_attractor_of_its_state(runs, compare, mean, error, branch, settled):
-    given = {key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs}
-    _, found = compare(given, mean=mean, error=error, branch=branch)
-    assert (found["settled"] == settled).all()
+    values = {key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs}
+    _, dataset = compare(values, mean=mean, error=error, branch=branch)
+    assert (dataset["settled"] == settled).all()
 
 
 @pytest.mark.parametrize(
@@ -178,10 +178,10 @@ def test_a_run_may_not_reach_the_attractor_of_its_state(runs, compare, mean, err
 )
 def test_the_kind_of_a_run_is_that_of_its_attractor(runs, compare, own, of_attractor, mean, kind):
     grid, _ = compare({key: {"mean_distance": mean, "mean_distance_error": 0.0} for key in runs})
-    found = summarize_kinds(grid, attractors_of(grid, **of_attractor), kind=own)
-    assert (found["kind"] == kind).all()
+    dataset = summarize_kinds(grid, attractors_of(grid, **of_attractor), kind=own)
+    assert (dataset["kind"] == kind).all()
     of_attractor_taken = kind != own or (own, kind) == (2, 2)
-    assert of_attractor_taken or np.isnan(found["period"]).any() or (found["period"] != 40.0).any()
+    assert of_attractor_taken or np.isnan(dataset["period"]).any() or (dataset["period"] != 40.0).any()
 
 
 @pytest.mark.parametrize(
@@ -189,8 +189,8 @@ def test_the_kind_of_a_run_is_that_of_its_attractor(runs, compare, own, of_attra
 )
 def test_a_run_of_another_kind_is_not_on_the_attractor(runs, compare, own, of_attractor, settled):
     grid, _ = compare({key: {"mean_distance": 0.2, "mean_distance_error": 0.0} for key in runs})
-    found = summarize_kinds(grid, attractors_of(grid, kind=of_attractor, branch=4, mean=0.2), kind=own)
-    assert (found["settled"] == settled).all()
+    dataset = summarize_kinds(grid, attractors_of(grid, kind=of_attractor, branch=4, mean=0.2), kind=own)
+    assert (dataset["settled"] == settled).all()
 
 
 def test_a_run_without_result_agrees_with_nothing(compare):
@@ -206,10 +206,10 @@ def test_a_run_without_result_agrees_with_nothing(compare):
     assert f"no value of a could be compared. {reason}" in words
     assert agreement.table(dataset).count("undetermined") == 6
     assert (dataset["kind"].sel(law="linearized") == -1).all()
-    of_law = means(grid).sel(law="linearized")
-    assert np.isnan(of_law["mean_distance"]).all()
-    assert (of_law["synchronized"] == 0).all()
-    assert (of_law["status"] == 1).all()
+    part = means(grid).sel(law="linearized")
+    assert np.isnan(part["mean_distance"]).all()
+    assert (part["synchronized"] == 0).all()
+    assert (part["status"] == 1).all()
 
 
 def of_laws(folder, laws):
@@ -246,9 +246,9 @@ def test_a_single_law_is_not_compared(tmp_path):
     head = "initial,a,mean_distance_linearized,kind_linearized,settled_linearized"
     assert agreement.table(dataset).startswith(f"{head}\nminus,0.05,")
     write_summary(dataset, tmp_path / "agreement.nc")
-    found = open_summary(tmp_path / "agreement.nc")
-    assert found["difference"].shape == (0, 1, 2)
-    assert found["law"].values.tolist() == ["linearized"]
+    summary = open_summary(tmp_path / "agreement.nc")
+    assert summary["difference"].shape == (0, 1, 2)
+    assert summary["law"].values.tolist() == ["linearized"]
 
 
 @pytest.mark.parametrize(
@@ -282,16 +282,16 @@ def test_a_single_law_is_not_compared(tmp_path):
 def test_the_verdict_on_two_runs(means, errors, kinds, agrees):
     # At the second a the first law agrees with itself.
     same = {"mean_distance": 1.0, "mean_distance_error": 0.0, "kind": 3}
-    found = compared(
+    dataset = compared(
         {name: [[value, same[name]] for value in pair] for name, pair in zip(same, (means, errors, kinds), strict=True)}
     )
-    assert found["agrees"].values.tolist() == [[agrees, 1]]
-    assert found["same_kind"].values.tolist() == [
+    assert dataset["agrees"].values.tolist() == [[agrees, 1]]
+    assert dataset["same_kind"].values.tolist() == [
         [-1 if -1 in kinds else int(kinds in {(k, k) for k in range(4)} | {(1, 2)}), 1]
     ]
-    assert found["difference"].values == pytest.approx(np.array([[means[1] - means[0], 0.0]]), nan_ok=True)
-    assert found["difference_error"].values == pytest.approx(np.array([[np.hypot(*errors), 0.0]]), nan_ok=True)
-    assert found["parting_a"].values == pytest.approx([0.1 if agrees == 0 else np.nan], nan_ok=True)
+    assert dataset["difference"].values == pytest.approx(np.array([[means[1] - means[0], 0.0]]), nan_ok=True)
+    assert dataset["difference_error"].values == pytest.approx(np.array([[np.hypot(*errors), 0.0]]), nan_ok=True)
+    assert dataset["parting_a"].values == pytest.approx([0.1 if agrees == 0 else np.nan], nan_ok=True)
 
 
 def compared(motion):
@@ -303,7 +303,7 @@ def compared(motion):
 
 def test_parting_a_is_the_smallest_a_of_disagreement():
     means = [[1.0, 1.0, 1.0], [1.0, 2.0, 3.0], [1.0, 1.0, 3.0]]
-    found = compared({"mean_distance": means, "mean_distance_error": np.zeros((3, 3)), "kind": np.ones((3, 3), int)})
-    assert found["agrees"].values.tolist() == [[1, 0, 0], [1, 1, 0]]
-    assert found["same_mean_distance"].values.tolist() == [[1, 0, 0], [1, 1, 0]]
-    assert found["parting_a"].values == pytest.approx([0.2, 0.3])
+    dataset = compared({"mean_distance": means, "mean_distance_error": np.zeros((3, 3)), "kind": np.ones((3, 3), int)})
+    assert dataset["agrees"].values.tolist() == [[1, 0, 0], [1, 1, 0]]
+    assert dataset["same_mean_distance"].values.tolist() == [[1, 0, 0], [1, 1, 0]]
+    assert dataset["parting_a"].values == pytest.approx([0.2, 0.3])

@@ -34,8 +34,8 @@ def test_a_sweep_ends_on_the_branch(families, law):
 
 
 def test_a_sweep_gives_nan_where_end_blocks_do_not_stick_together(families):
-    found = sweep(families["linearized"], np.array([0.08, 0.25, 0.08]))
-    assert np.isnan(found).tolist() == [False, True, True]
+    amplitude = sweep(families["linearized"], np.array([0.08, 0.25, 0.08]))
+    assert np.isnan(amplitude).tolist() == [False, True, True]
 
 
 def test_power_law_of_a_power_law():

@@ -13,12 +13,12 @@ from burridge_knopoff.continuation.settings import RefinementSettings
 from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.motion.settings import MOTION
-from burridge_knopoff.summaries import all_laws, attractors, refined
+from burridge_knopoff.summaries import attractors, branch_numbering, refined
 from tests.summaries.continued import SETTINGS, STATES, continuation
 
 
 def test_features_are_sorted_by_branch_and_side(one_law):
-    found = one_law("linearized")
+    dataset = one_law("linearized")
     nan, none = np.nan, [-1, -1]
     expected = {
         "branch": [[0, 1], [1, 1], none],
@@ -44,16 +44,16 @@ def test_features_are_sorted_by_branch_and_side(one_law):
         "basin_fraction_high": [[fraction_interval(n, 4)[2] for n in row] for row in ([1, 2], [3, 1])] + [[nan, nan]],
     }
     for name, values in expected.items():
-        np.testing.assert_array_equal(found[name].values, values, name)
-    assert found["undetermined_count"].values.tolist() == [1, 0, 4]
-    assert found["stop_rate"].values[0].tolist() == [[0.1, 0.2, 0.1], [0.1, 0.0, 0.3]]
-    np.testing.assert_array_equal(found["lyapunov_exponent"].values[1], [[0.03, 0.0, nan]] * 2)
+        np.testing.assert_array_equal(dataset[name].values, values, name)
+    assert dataset["undetermined_count"].values.tolist() == [1, 0, 4]
+    assert dataset["stop_rate"].values[0].tolist() == [[0.1, 0.2, 0.1], [0.1, 0.0, 0.3]]
+    np.testing.assert_array_equal(dataset["lyapunov_exponent"].values[1], [[0.03, 0.0, nan]] * 2)
     # U of the last return: its x plus uniform sliding, −5/6, −2/3, −5/6 times the friction 1 − av.
-    assert found["position"].values[1, 0] == pytest.approx([2.0 - 0.98 * 5 / 6, -0.98 * 2 / 3, -0.98 * 5 / 6])
-    assert found["velocity"].values[0, 0].tolist() == [0.0, 0.5, 0.25]
-    assert found["block"].values.tolist() == [1, 2, 3]
-    given = {"law": "linearized", "v": 0.2, "contact": "one_sided", "start": "tested", "seed": 1}
-    assert {key: found.attrs[key] for key in given} == given
+    assert dataset["position"].values[1, 0] == pytest.approx([2.0 - 0.98 * 5 / 6, -0.98 * 2 / 3, -0.98 * 5 / 6])
+    assert dataset["velocity"].values[0, 0].tolist() == [0.0, 0.5, 0.25]
+    assert dataset["block"].values.tolist() == [1, 2, 3]
+    header = {"law": "linearized", "v": 0.2, "contact": "one_sided", "start": "tested", "seed": 1}
+    assert {key: dataset.attrs[key] for key in header} == header
 
 
 def test_there_are_as_many_slots_as_attractors_at_one_a():
@@ -63,27 +63,27 @@ def test_there_are_as_many_slots_as_attractors_at_one_a():
         names = ("attractors", "lifetimes", "branch", "side")
         few = {name: [row[:count] for row in getattr(both, name)] for name in names}
         few["upward"] = few["downward"] = [np.full(len(both.attractors[k][:count]), -1) for k in both.grid]
-        found = attractors.one_law(replace(both, **few), STATES, SETTINGS, MOTION, "tested")
-        assert found.sizes["attractor"] == 1
+        dataset = attractors.one_law(replace(both, **few), STATES, SETTINGS, MOTION, "tested")
+        assert dataset.sizes["attractor"] == 1
         for name in ("branch", "upward_branch", "downward_branch", "basin_count", "mean_distance"):
-            assert found[name].shape == (3, 1)
+            assert dataset[name].shape == (3, 1)
 
 
 def test_what_initial_states_and_sweeps_reach(one_law):
-    found = one_law("linearized")
-    reached, side = found["initial_branch"], found["initial_side"]
+    dataset = one_law("linearized")
+    reached, side = dataset["initial_branch"], dataset["initial_side"]
     for contact in ("one_sided", "symmetric"):
-        for start, here in (("moving", [0, 1, -1]), ("tested", [-1, -1, -1])):
+        for start, branches in (("moving", [0, 1, -1]), ("tested", [-1, -1, -1])):
             where = {"contact": contact, "start": start}
-            assert reached.sel(initial="here", **where).values.tolist() == here
+            assert reached.sel(initial="here", **where).values.tolist() == branches
             # A block that moves backward is allowed under a symmetric contact only.
             back = [0, 1, -1] if contact == "symmetric" else [-1, -1, -1]
             assert reached.sel(initial="back", **where).values.tolist() == back
             assert side.sel(initial="here", **where).values.tolist() == [0, int(start == "moving"), 0]
     # Upward from a = 0.05 in the order of the branches; downward from a = 0.1, the largest a with attractors.
-    assert found["sweep_branch"].sel(direction="upward").values.tolist() == [[0, -1, -1], [1, 1, -1]]
-    assert found["sweep_branch"].sel(direction="downward").values.tolist() == [[1, 1, -1], [1, 1, -1]]
-    mean = found["sweep_mean_distance"]
+    assert dataset["sweep_branch"].sel(direction="upward").values.tolist() == [[0, -1, -1], [1, 1, -1]]
+    assert dataset["sweep_branch"].sel(direction="downward").values.tolist() == [[1, 1, -1], [1, 1, -1]]
+    mean = dataset["sweep_mean_distance"]
     np.testing.assert_array_equal(mean.sel(direction="upward"), [[0.0, np.nan, np.nan], [0.14, 0.15, np.nan]])
     np.testing.assert_array_equal(mean.sel(direction="downward"), [[0.14, 0.15, np.nan]] * 2)
 
@@ -91,16 +91,16 @@ def test_what_initial_states_and_sweeps_reach(one_law):
 def test_rounded_states_are_the_corners_of_a_box_around_an_initial_state():
     state = PAPER_STATES["plus"]
     numbers = np.array([*state.position, *state.velocity])
-    found = attractors.corners(state, "one_sided", 3)
-    shifts = np.array([[*one.position, *one.velocity] for one in found]) - numbers
+    states = attractors.corners(state, "one_sided", 3)
+    shifts = np.array([[*corner.position, *corner.velocity] for corner in states]) - numbers
     assert np.abs(shifts) == pytest.approx(5e-4)
     assert len({tuple(row) for row in np.sign(shifts)}) == 64
     # With one-sided contact no block starts with a backward velocity.
     rest = InitialState("rest", (0.0, 0.0, 0.0), (0.0, 0.0, 0.1))
-    assert min(velocity for one in attractors.corners(rest, "one_sided", 3) for velocity in one.velocity) == 0.0
-    assert min(velocity for one in attractors.corners(rest, "symmetric", 3) for velocity in one.velocity) == -5e-4
+    assert min(velocity for corner in attractors.corners(rest, "one_sided", 3) for velocity in corner.velocity) == 0.0
+    assert min(velocity for corner in attractors.corners(rest, "symmetric", 3) for velocity in corner.velocity) == -5e-4
     four = InitialState("four", (0.0,) * 4, (0.1,) * 4)
-    assert len({one.position + one.velocity for one in attractors.corners(four, "one_sided", 4)}) == 64
+    assert len({corner.position + corner.velocity for corner in attractors.corners(four, "one_sided", 4)}) == 64
 
 
 def test_plus_lies_next_to_a_boundary_at_0_05_and_not_at_0_08():
@@ -108,38 +108,38 @@ def test_plus_lies_next_to_a_boundary_at_0_05_and_not_at_0_08():
     search = SearchSettings(samples=12, fraction_width=0.5, transient=1000, window=1000, seed=3)
     models = [Model(Chain(3), law_of("linearized", a)) for a in (0.05, 0.08)]
     states = [PAPER_STATES["minus"], PAPER_STATES["plus"]]
-    found = continue_attractors(models, search, refine=RefinementSettings(1.0), starts=states)
-    one = attractors.one_law(found, states, search, MOTION, "moving")
-    own = one["initial_branch"].sel(contact="one_sided", start="moving").values
-    rounded = one["rounded_branch"].values
-    assert (rounded[0] == own[0][:, None]).all()
-    assert (rounded[1, 1] == own[1, 1]).all()
-    differing = rounded[1, 0][rounded[1, 0] != own[1, 0]]
+    along_a = continue_attractors(models, search, refine=RefinementSettings(1.0), starts=states)
+    dataset = attractors.one_law(along_a, states, search, MOTION, "moving")
+    exact = dataset["initial_branch"].sel(contact="one_sided", start="moving").values
+    rounded = dataset["rounded_branch"].values
+    assert (rounded[0] == exact[0][:, None]).all()
+    assert (rounded[1, 1] == exact[1, 1]).all()
+    differing = rounded[1, 0][rounded[1, 0] != exact[1, 0]]
     assert 10 < len(differing) < 30
     assert set(differing) == {0}
 
 
 def test_chaos_that_is_shown_to_last_is_chaos():
     lasting = replace(continuation("linearized"), lifetimes=[[None] * 2, [None], [Lifetime(0, 1e5)] * 2, []])
-    found = attractors.one_law(lasting, STATES, SETTINGS, MOTION, "tested")
-    assert found["kind"].values[1].tolist() == [MotionKind.CHAOTIC] * 2
-    assert np.isinf(found["lifetime"].values[1]).all()
+    dataset = attractors.one_law(lasting, STATES, SETTINGS, MOTION, "tested")
+    assert dataset["kind"].values[1].tolist() == [MotionKind.CHAOTIC] * 2
+    assert np.isinf(dataset["lifetime"].values[1]).all()
 
 
 def test_all_values_of_a_are_in_the_refined_file():
-    given = (SETTINGS, MOTION, RefinementSettings(1e-3), "tested")
-    parts = [refined.one_law(continuation(law), *given) for law in ("linearized", "nonlinear")]
+    arguments = (SETTINGS, MOTION, RefinementSettings(1e-3), "tested")
+    parts = [refined.one_law(continuation(law), *arguments) for law in ("linearized", "nonlinear")]
     parts[1] = parts[1].isel(value=slice(0, 2))
-    found = all_laws.merge(parts, [{0: 0, 1: 1}, {0: 0, 1: 5}], refined.VARIABLES, "Refined")
-    np.testing.assert_array_equal(found["a"].values, [[0.05, 0.07, 0.1, 0.2], [0.05, 0.07, np.nan, np.nan]])
-    assert found["in_grid"].values.tolist() == [[1, 0, 1, 1], [1, 0, 0, 0]]
-    assert found["branch"].values.tolist() == [
+    dataset = branch_numbering.merge(parts, [{0: 0, 1: 1}, {0: 0, 1: 5}], refined.VARIABLES, "Refined")
+    np.testing.assert_array_equal(dataset["a"].values, [[0.05, 0.07, 0.1, 0.2], [0.05, 0.07, np.nan, np.nan]])
+    assert dataset["in_grid"].values.tolist() == [[1, 0, 1, 1], [1, 0, 0, 0]]
+    assert dataset["branch"].values.tolist() == [
         [[0, 1], [1, -1], [1, 1], [-1, -1]],
         [[0, 5], [5, -1], [-1, -1], [-1, -1]],
     ]
-    assert found["kind"].values[0, 2].tolist() == [MotionKind.TRANSIENT_CHAOS] * 2
-    assert found.attrs["refine_resolution"] == 1e-3
-    assert found["branch_number"].values.tolist() == [0, 1, 5]
+    assert dataset["kind"].values[0, 2].tolist() == [MotionKind.TRANSIENT_CHAOS] * 2
+    assert dataset.attrs["refine_resolution"] == 1e-3
+    assert dataset["branch_number"].values.tolist() == [0, 1, 5]
 
 
 def test_branches_are_named_by_symmetry_and_sticks():
@@ -161,7 +161,7 @@ def test_branches_are_named_by_symmetry_and_sticks():
 
 
 def test_a_single_value_of_a_has_slots_too():
-    found = continuation("linearized")
-    values = slot_values(found.models[:1], [found.rows(0)], 1e5, "a")
+    branches = continuation("linearized")
+    values = slot_values(branches.models[:1], [branches.rows(0)], 1e5, "a")
     assert values["stop_rate"].shape == (1, 2, 3)
     assert values["branch"].tolist() == [[0, 1]]

@@ -58,31 +58,31 @@ def test_a_tile_is_a_band_of_rows(ruled):
 
 
 def test_pairs_are_those_of_the_plane(ruled):
-    found = basins.pairs(KNOWN, PLANE, SEARCH.label_limit, SEARCH.seed, "moving")
+    dataset = basins.pairs(KNOWN, PLANE, SEARCH.label_limit, SEARCH.seed, "moving")
 
     def label(points):
         return rule(np.insert(points, 1, 0.0, axis=1))
 
     counts = follow_pairs(label, (-1.0, 3.0), (0.0, 2.0), 50, SEARCH.seed)
     expected = uncertainty_exponent(counts)
-    assert found["uncertain_count"].values.tolist() == counts.different_count.tolist()
-    assert found["pair_count"].values.tolist() == counts.labelled_count.tolist()
+    assert dataset["uncertain_count"].values.tolist() == counts.different_count.tolist()
+    assert dataset["pair_count"].values.tolist() == counts.labelled_count.tolist()
     parts = (expected.fraction, expected.local, expected.alpha, expected.change)
     names = ("uncertain_fraction", "local_exponent", "uncertainty_exponent", "exponent_change")
     for name, part in zip(names, parts, strict=True):
-        np.testing.assert_array_equal(found[name].values, part[0])
-        np.testing.assert_array_equal(found[f"{name}_error"].values, part[1])
-    assert found["exponent_kind"].item() == expected.kind
-    assert found["exponent_kind"].attrs["flag_meanings"] == "unknown varying single"
+        np.testing.assert_array_equal(dataset[name].values, part[0])
+        np.testing.assert_array_equal(dataset[f"{name}_error"].values, part[1])
+    assert dataset["exponent_kind"].item() == expected.kind
+    assert dataset["exponent_kind"].attrs["flag_meanings"] == "unknown varying single"
     # Parts of the width 4 of the first range.
-    assert found["separation"].values == pytest.approx(4.0 * np.array(SEPARATIONS))
-    assert found["separation"].values[[0, -1]] == pytest.approx([0.4, 0.4 / 3**12])
+    assert dataset["separation"].values == pytest.approx(4.0 * np.array(SEPARATIONS))
+    assert dataset["separation"].values[[0, -1]] == pytest.approx([0.4, 0.4 / 3**12])
 
 
 def test_maps_are_merged_and_described(ruled):
-    known, limit = [replace(KNOWN, model=model) for model in MODELS], SEARCH.label_limit
-    near = [basins.pairs(one, PLANE, limit, SEARCH.seed, "moving") for one in known]
-    tiles = [[basins.tile(one, k, PLANE, limit, "moving") for k in (0, 1)] for one in known]
+    candidates, limit = [replace(KNOWN, model=model) for model in MODELS], SEARCH.label_limit
+    near = [basins.pairs(candidate, PLANE, limit, SEARCH.seed, "moving") for candidate in candidates]
+    tiles = [[basins.tile(candidate, k, PLANE, limit, "moving") for k in (0, 1)] for candidate in candidates]
     maps = list(zip(MODELS, tiles, near, strict=True))
     near[0]["uncertainty_exponent"][...], near[0]["uncertainty_exponent_error"][...] = 0.8125, 0.025
     near[0]["exponent_kind"][...] = ExponentKind.SINGLE
@@ -92,22 +92,22 @@ def test_maps_are_merged_and_described(ruled):
     attractors = xr.Dataset(
         {"branch_number": ("number", [0, 5]), "branch_name": ("number", ["synchronized", "pair (5)"])}
     )
-    found = basins.merge(maps, attractors, PLANE, 7.0, "moving")
-    assert found["branch"].values.tolist() == [[[0, 0, 5, 5], [0, 5, 5, 5], [0, 5, 5, 5], [-1] * 4]] * 2
-    assert found["last_position"].values.tolist() == [0.25, 0.75, 1.25, 1.75]
-    assert found["first_position"].values.tolist() == [-0.5, 0.5, 1.5, 2.5]
-    assert found["undetermined_count"].values.tolist() == [4, 4]
+    dataset = basins.merge(maps, attractors, PLANE, 7.0, "moving")
+    assert dataset["branch"].values.tolist() == [[[0, 0, 5, 5], [0, 5, 5, 5], [0, 5, 5, 5], [-1] * 4]] * 2
+    assert dataset["last_position"].values.tolist() == [0.25, 0.75, 1.25, 1.75]
+    assert dataset["first_position"].values.tolist() == [-0.5, 0.5, 1.5, 2.5]
+    assert dataset["undetermined_count"].values.tolist() == [4, 4]
     for name in basins.PAIR_VARIABLES:
-        np.testing.assert_array_equal(found[name].values, [one[name].values for one in near])
-    assert found["local_exponent"].dims == ("map", "separation_step")
-    assert found["separation"].values == pytest.approx(4.0 * np.array(SEPARATIONS))
-    assert (found["law"].values.tolist(), found["a"].values.tolist()) == (["nonlinear", "linearized"], [0.1, 0.3])
-    assert found["decision_time"].values[0, 2].tolist() == [99.5, 100.5, 101.5, 102.5]
+        np.testing.assert_array_equal(dataset[name].values, [pairs[name].values for pairs in near])
+    assert dataset["local_exponent"].dims == ("map", "separation_step")
+    assert dataset["separation"].values == pytest.approx(4.0 * np.array(SEPARATIONS))
+    assert (dataset["law"].values.tolist(), dataset["a"].values.tolist()) == (["nonlinear", "linearized"], [0.1, 0.3])
+    assert dataset["decision_time"].values[0, 2].tolist() == [99.5, 100.5, 101.5, 102.5]
     expected = {"v": 0.2, "contact": "symmetric", "start": "moving", "label_limit": 7.0}
-    assert {key: found.attrs[key] for key in expected} == expected
-    assert [found.attrs[f"{name}_range"].tolist() for name in ("first", "last")] == [[-1.0, 3.0], [0.0, 2.0]]
+    assert {key: dataset.attrs[key] for key in expected} == expected
+    assert [dataset.attrs[f"{name}_range"].tolist() for name in ("first", "last")] == [[-1.0, 3.0], [0.0, 2.0]]
     shares = "undetermined 25.00 %, synchronized 25.00 %, pair (5−) 50.00 %"
-    decided = f"mean decision time {np.nanmean(found['decision_time'].values[0]):.0f}"
+    decided = f"mean decision time {np.nanmean(dataset['decision_time'].values[0]):.0f}"
     varying = (
         "no single uncertainty exponent: from the largest separation to the smallest it changes by 0.4375 +- 0.0625"
     )
@@ -115,11 +115,11 @@ def test_maps_are_merged_and_described(ruled):
         "uncertainty exponent 0.812 +- 0.025: if initial states are known 10 times as precisely, the fraction of them "
         "whose attractor is uncertain is divided by 6.5 (by 10 if the basin boundary is smooth)"
     )
-    assert basins.digest(found) == (
+    assert basins.digest(dataset) == (
         f"nonlinear, a = 0.1: {shares}; {single}; {decided}\nlinearized, a = 0.3: {shares}; {varying}; {decided}\n"
     )
-    found["exponent_kind"][...] = ExponentKind.UNKNOWN
-    assert basins.digest(found).count("; uncertainty exponent undetermined: too few pairs ") == 2
+    dataset["exponent_kind"][...] = ExponentKind.UNKNOWN
+    assert basins.digest(dataset).count("; uncertainty exponent undetermined: too few pairs ") == 2
 
 
 @pytest.mark.parametrize(("velocity", "alike"), [([0.1, 0.2, 0.1], 2), ([0.1, 0.2, 0.3], 0)])

@@ -54,15 +54,15 @@ def grid():
         runner.run(8000.0)
         assert runner.run(9000.0, halting_block=0) == Status.HALTED
         states.append((runner.state().position + model.sliding_offset, runner.state().velocity))
-    found = xr.Dataset({name: ("a", values) for name, values in FEATURES.items()}, {"a": A, "block": [1, 2, 3]})
+    attractors = xr.Dataset({name: ("a", values) for name, values in FEATURES.items()}, {"a": A, "block": [1, 2, 3]})
     for name, values in zip(("position", "velocity"), zip(*states, strict=True), strict=True):
-        found[name] = ("a", "block"), np.array(values)
-    return found.expand_dims("attractor", 1).assign_coords(law="linearized")
+        attractors[name] = ("a", "block"), np.array(values)
+    return attractors.expand_dims("attractor", 1).assign_coords(law="linearized")
 
 
-def at_all_values(found):
+def at_all_values(attractors):
     """Return attractors of the grid as those at all values of a, chaos with a lifetime, and one value missing."""
-    values = found.rename(a="value").drop_vars(["upward_branch", "downward_branch", "value"])
+    values = attractors.rename(a="value").drop_vars(["upward_branch", "downward_branch", "value"])
     missing = xr.zeros_like(values.isel(value=[0]))
     missing["branch"] -= 1
     values = xr.concat([values, missing], "value")
@@ -74,7 +74,7 @@ def at_all_values(found):
 
 
 @pytest.fixture(scope="module")
-def found(grid):
+def dataset(grid):
     return one_law(MODEL, grid, at_all_values(grid))
 
 
@@ -98,8 +98,8 @@ def attractors_of(rows, in_grid):
     values.attrs["refine_longest_period"] = 500.0
     values = values.assign(a=("value", np.arange(float(len(rows)))), in_grid=("value", in_grid))
     reached = [[10 * k, 10 * k + 1] for k in range(1, sum(in_grid) + 1)]
-    there = xr.Dataset(dict.fromkeys(("upward_branch", "downward_branch"), (("a", "attractor"), reached)))
-    return there, values
+    sweeps = xr.Dataset(dict.fromkeys(("upward_branch", "downward_branch"), (("a", "attractor"), reached)))
+    return sweeps, values
 
 
 @pytest.mark.parametrize(
@@ -121,39 +121,39 @@ def test_changes_of_branches_between_values_of_the_grid(rows, in_grid, expected)
     assert fields_of(branch_changes(*attractors_of(rows, in_grid))) == expected
 
 
-def test_every_change_has_an_entry(grid, found):
+def test_every_change_has_an_entry(grid, dataset):
     for change in branch_changes(grid, at_all_values(grid)):
-        same = (found["change"] == change.change) & (found["from_branch"] == change.from_branch)
-        same &= (found["grid_low"] == A[change.low]) & (found["grid_high"] == A[change.high])
-        assert (same & (found["to_branch"] == change.to_branch)).any()
+        same = (dataset["change"] == change.change) & (dataset["from_branch"] == change.from_branch)
+        same &= (dataset["grid_low"] == A[change.low]) & (dataset["grid_high"] == A[change.high])
+        assert (same & (dataset["to_branch"] == change.to_branch)).any()
 
 
-def test_bifurcations_have_the_lifetime_of_chaos(found):
-    chaotic = (found["motion_before"] == MotionKind.CHAOTIC) | (found["motion_after"] == MotionKind.CHAOTIC)
-    assert 0 < int(chaotic.sum()) < found.sizes["bifurcation"]
-    assert (found["lifetime_low"].values[chaotic] == 1e5).all()
-    assert (found["lifetime_high"].values[chaotic] == np.inf).all()
-    assert np.isnan(found["lifetime_low"].values[~chaotic]).all()
+def test_bifurcations_have_the_lifetime_of_chaos(dataset):
+    chaotic = (dataset["motion_before"] == MotionKind.CHAOTIC) | (dataset["motion_after"] == MotionKind.CHAOTIC)
+    assert 0 < int(chaotic.sum()) < dataset.sizes["bifurcation"]
+    assert (dataset["lifetime_low"].values[chaotic] == 1e5).all()
+    assert (dataset["lifetime_high"].values[chaotic] == np.inf).all()
+    assert np.isnan(dataset["lifetime_low"].values[~chaotic]).all()
 
 
-def test_bifurcations_are_those_of_the_orbits(found):
-    kind, a = found["kind"].values, found["a"].values
+def test_bifurcations_are_those_of_the_orbits(dataset):
+    kind, a = dataset["kind"].values, dataset["a"].values
     assert a[kind == BifurcationKind.PITCHFORK] == pytest.approx([0.0869729046661] * 2, abs=1e-10)
-    assert found["multiplier"].values[kind == BifurcationKind.PITCHFORK].tolist() == [[1.0, 0.0]] * 2
-    grazing = found.isel(
-        bifurcation=np.flatnonzero((kind == BifurcationKind.GRAZING) & (found["change"].values == Change.CHANGE))
+    assert dataset["multiplier"].values[kind == BifurcationKind.PITCHFORK].tolist() == [[1.0, 0.0]] * 2
+    grazing = dataset.isel(
+        bifurcation=np.flatnonzero((kind == BifurcationKind.GRAZING) & (dataset["change"].values == Change.CHANGE))
     )
     assert grazing["a"].values == pytest.approx([0.1122215462], abs=1e-9)
     assert grazing["stops"].values.tolist() == [[1, 1, 1]]
     assert grazing["stick_time"].item() == 0.0
     assert np.hypot(*grazing["multiplier"].values[0]) < 1.0 < np.hypot(*grazing["multiplier_beyond"].values[0])
-    assert (found["a_error"].values <= 1e-9).all()
+    assert (dataset["a_error"].values <= 1e-9).all()
 
 
-def test_a_bifurcation_lies_near_the_values_that_bracket_it(found):
+def test_a_bifurcation_lies_near_the_values_that_bracket_it(dataset):
     """A bifurcation belongs to a change within a step of the grid, or is passed between values on the branch."""
-    low, high, a = (found[name].values for name in ("grid_low", "grid_high", "a"))
-    passed = found["change"].values == Change.PASSED
+    low, high, a = (dataset[name].values for name in ("grid_low", "grid_high", "a"))
+    passed = dataset["change"].values == Change.PASSED
     step = max(np.diff(A))
     assert ((low - step <= a) & (a <= high + step))[~passed].all()
     assert not ((a < low) | (a > high))[passed].any()
@@ -162,8 +162,8 @@ def test_a_bifurcation_lies_near_the_values_that_bracket_it(found):
     assert a[first] == pytest.approx(0.0355, abs=1e-4)
     assert np.isnan(low[first])
     assert high[first] == A[0]
-    assert (found["motion_before"].values == found["motion_after"].values)[passed].all()
-    assert found["motion_before"].values[first] == MotionKind.SYNCHRONIZED
+    assert (dataset["motion_before"].values == dataset["motion_after"].values)[passed].all()
+    assert dataset["motion_before"].values[first] == MotionKind.SYNCHRONIZED
 
 
 def test_a_stable_motion_lies_on_a_stable_orbit():
@@ -186,10 +186,10 @@ def test_an_unstable_orbit_is_not_one_on_which_a_motion_has_settled():
     assert str(error) == "a = 0.09: the periodic orbit next to the motion is unstable"
 
 
-def test_the_values_next_to_a_bifurcation_are_those_of_the_attractors(found, grid):
+def test_the_values_next_to_a_bifurcation_are_those_of_the_attractors(dataset, grid):
     """They agree to the last bit, so that they can be looked up."""
     for name in ("grid_low", "grid_high"):
-        values = found[name].values
+        values = dataset[name].values
         assert np.isin(values[np.isfinite(values)], A).all()
     shifted = at_all_values(grid)
     shifted["a"] = shifted["a"] * (1.0 + 1e-15)
@@ -197,9 +197,9 @@ def test_the_values_next_to_a_bifurcation_are_those_of_the_attractors(found, gri
 
 
 @pytest.mark.parametrize("change", [-1e-13, 1e-13])
-def test_rows_are_ordered_by_the_written_digits(grid, found, monkeypatch, change):
+def test_rows_are_ordered_by_the_written_digits(grid, dataset, monkeypatch, change):
     """Further digits differ between linear-algebra libraries; several bifurcations have the same a."""
-    a = found["a"].values
+    a = dataset["a"].values
     assert (np.diff(a) >= 0.0).all()
     assert (np.diff(a) == 0.0).any()
 
@@ -210,19 +210,19 @@ def test_rows_are_ordered_by_the_written_digits(grid, found, monkeypatch, change
             yield replace(entry, bifurcation=moved)
 
     monkeypatch.setattr(bifurcations, "entries", otherwise)
-    xr.testing.assert_identical(one_law(MODEL, grid, at_all_values(grid)), found)
+    xr.testing.assert_identical(one_law(MODEL, grid, at_all_values(grid)), dataset)
 
 
-def test_numbers_are_rounded(found):
+def test_numbers_are_rounded(dataset):
     for name in ("a", "period", "orbit_a", "orbit_mean_distance"):
-        values = found[name].values
+        values = dataset[name].values
         assert [float(f"{value:.9e}") for value in values] == values.tolist()
         assert [float(f"{value:.8e}") for value in values] != values.tolist()
 
 
 @pytest.mark.parametrize(("name", "digits"), [("multiplier", 5), ("multiplier_beyond", 5), ("stick_time", 5)])
-def test_less_accurate_values_have_fewer_digits(found, name, digits):
-    values = found[name].values
+def test_less_accurate_values_have_fewer_digits(dataset, name, digits):
+    values = dataset[name].values
     values = values[np.abs(values) > 1e-5]
     assert [float(f"{value:.{digits - 1}e}") for value in values] == values.tolist()
     assert [float(f"{value:.{digits - 2}e}") for value in values] != values.tolist()
@@ -238,45 +238,45 @@ def test_near_0_eleven_decimal_places_are_kept():
     assert _round_digits(np.array([1.23456789e-8]), 10).tolist() == [1.235e-8]
 
 
-def test_orbits_are_stable_on_one_side_of_the_bifurcation(found):
-    stable = found["orbit_stable"].values == 1
+def test_orbits_are_stable_on_one_side_of_the_bifurcation(dataset):
+    stable = dataset["orbit_stable"].values == 1
     assert stable.any()
     assert (~stable).any()
-    assert (found["orbit_period"].values > 0.0).all()
+    assert (dataset["orbit_period"].values > 0.0).all()
 
 
 def test_a_bifurcation_without_an_orbit_has_no_values_of_an_orbit(grid, tmp_path):
     """With chaos on both sides of every bifurcation none is located; each is only bracketed by two values of a."""
     chaotic = grid.assign(kind=xr.full_like(grid["kind"], MotionKind.CHAOTIC))
-    found = one_law(MODEL, chaotic, at_all_values(chaotic))
-    assert found.sizes["orbit"] == 0
-    assert found["a"].values == pytest.approx([0.08375] * 2)
-    assert found["a_error"].values == pytest.approx([0.00375] * 2)
+    dataset = one_law(MODEL, chaotic, at_all_values(chaotic))
+    assert dataset.sizes["orbit"] == 0
+    assert dataset["a"].values == pytest.approx([0.08375] * 2)
+    assert dataset["a_error"].values == pytest.approx([0.00375] * 2)
     for name in ("stops", "stops_beyond", "turns"):
-        assert (found[name].values == -1).all()
+        assert (dataset[name].values == -1).all()
     for name in ("period", "mean_distance", "stick_time", "multiplier", "multiplier_beyond"):
-        assert np.isnan(found[name].values).all()
+        assert np.isnan(dataset[name].values).all()
     # Empty text variables are still text when the file is read.
-    write_summary(found, tmp_path / "none.nc")
+    write_summary(dataset, tmp_path / "none.nc")
     again = merge([open_summary(tmp_path / "none.nc")] * 2)
     assert again["law"].values.tolist() == ["linearized"] * 4
     assert again["orbit_law"].dtype.kind in "UO"
 
 
-def test_bifurcations_are_listed_law_by_law(found):
-    other = found.isel(bifurcation=[1], orbit=[0, 2]).assign_attrs(laws="mine")
+def test_bifurcations_are_listed_law_by_law(dataset):
+    other = dataset.isel(bifurcation=[1], orbit=[0, 2]).assign_attrs(laws="mine")
     other = other.assign(law=other["law"].copy(data=["mine"]), orbit_law=other["orbit_law"].copy(data=["mine"] * 2))
-    both = merge([found, other])
+    both = merge([dataset, other])
     assert both.attrs["laws"] == "linearized mine"
-    assert both["law"].values.tolist() == ["linearized"] * found.sizes["bifurcation"] + ["mine"]
-    assert both["orbit_law"].values.tolist() == ["linearized"] * found.sizes["orbit"] + ["mine"] * 2
-    np.testing.assert_array_equal(both["a"].values, [*found["a"].values, other["a"].item()])
+    assert both["law"].values.tolist() == ["linearized"] * dataset.sizes["bifurcation"] + ["mine"]
+    assert both["orbit_law"].values.tolist() == ["linearized"] * dataset.sizes["orbit"] + ["mine"] * 2
+    np.testing.assert_array_equal(both["a"].values, [*dataset["a"].values, other["a"].item()])
     np.testing.assert_array_equal(both["orbit_stops"].values[-2:], other["orbit_stops"].values)
 
 
-def test_bifurcations_in_words(found):
+def test_bifurcations_in_words(dataset):
     """Each bifurcation has a line."""
-    shown = xr.concat([found.isel(bifurcation=[0], orbit=[])] * 5, "bifurcation", data_vars="minimal").load()
+    rows = xr.concat([dataset.isel(bifurcation=[0], orbit=[])] * 5, "bifurcation", data_vars="minimal").load()
     values = {
         "law": ["linearized"] * 2 + ["mine"] * 3,
         "a": [0.0869729047, 0.1, 0.12345678912, 0.2, 0.20125],
@@ -301,8 +301,8 @@ def test_bifurcations_in_words(found):
         "lifetime_high": [np.nan, np.nan, np.nan, np.inf, np.nan],
     }
     for name, value in values.items():
-        shown[name] = found[name].dims, np.array(value)
-    assert digest(shown.assign_attrs(laws="linearized mine")).splitlines() == [
+        rows[name] = dataset[name].dims, np.array(value)
+    assert digest(rows.assign_attrs(laws="linearized mine")).splitlines() == [
         "linearized, a = 0.0869729047 +/- 1e-10: pitchfork; branch 0 ends, synchronized; at larger a it leads to "
         "branch 3; period 5.69123, stops 1 1 1, beyond it 1 1 1",
         "linearized, a = 0.1 +/- 1e-09: Neimark–Sacker; branch 3 changes from periodic to quasiperiodic; period 5.7, "
@@ -314,9 +314,9 @@ def test_bifurcations_in_words(found):
     ]
 
 
-def test_no_bifurcation_in_words(found):
+def test_no_bifurcation_in_words(dataset):
     """An empty text could not be distinguished from a truncated one."""
-    assert digest(found.isel(bifurcation=[])) == "No bifurcation was found between the values of a.\n"
+    assert digest(dataset.isel(bifurcation=[])) == "No bifurcation was found between the values of a.\n"
 
 
 def test_a_segment_belongs_to_the_branch_of_most_of_its_attractors():

@@ -77,8 +77,8 @@ def test_fractions_count_outcomes(files):
     assert point["synchronized_high"] == fraction_interval(3, 5)[2]
     assert point["state"].values.tolist() == [1, 2, 3, 4, 5]
     assert point["symmetric_state"].values.tolist() == [1]
-    given = {"confidence": 0.95, "v": 0.1, "contact": "one_sided", "seed": 1, "samples": 5, "start": "moving"}
-    assert {key: point.attrs[key] for key in given} == given
+    expected = {"confidence": 0.95, "v": 0.1, "contact": "one_sided", "seed": 1, "samples": 5, "start": "moving"}
+    assert {key: point.attrs[key] for key in expected} == expected
     assert "blocks" not in point.attrs
 
 
@@ -92,8 +92,8 @@ def test_two_blocks_agree_where_both_synchronize(compared):
     mean = compared["mean_distance"].values
     assert np.array_equal(compared["difference"].values, mean[:, 1:] - mean[:, :1])
     for chain, other, a in product(range(2), range(2), range(3)):
-        given = [compared[f"agreeing_{name}"].values[chain, other, a] for name in ("fraction", "low", "high")]
-        assert given == pytest.approx(judgement.agreeing_fraction(compared["agrees"].values[chain, other, :, a]))
+        fractions = [compared[f"agreeing_{name}"].values[chain, other, a] for name in ("fraction", "low", "high")]
+        assert fractions == pytest.approx(judgement.agreeing_fraction(compared["agrees"].values[chain, other, :, a]))
     assert len(np.unique(compared["agreeing_fraction"])) > 1
 
 
@@ -116,27 +116,27 @@ def test_two_blocks_are_described_by_their_asymptotic_motion(compared):
         assert tuple(compared["initial_velocity"].values[j]) == state.velocity
         both = [chain(model).at(a) for model in models(2, LAWS)]
         for i, model in enumerate(both):
-            given = {name: compared[name].values[c, i, j, k] for name in two_blocks.MOTION_VARIABLES}
-            assert given == asdict(asymptotic_states(model, STATES, SEARCH)[j])
+            motion = {name: compared[name].values[c, i, j, k] for name in two_blocks.MOTION_VARIABLES}
+            assert motion == asdict(asymptotic_states(model, STATES, SEARCH)[j])
         runs = [simulate(model, initial=state, settings=SETTINGS) for model in both]
         first, *others = [(run.event_time, run.event_block, run.event_kind) for run in runs]
         for i, other in enumerate(others):
             count, until = common_order(first, other)
             assert compared["event_order_count"].values[c, i, j, k] == count
             assert compared["event_order_time"].values[c, i, j, k] == min(until, 1900.0)
-    given = {
+    expected = {
         "transient": 1500.0,
         "search_transient": 3000.0,
         "agreement_standard_errors": 3.0,
         "motion_longest_period": 2000.0,
     }
-    assert {name: compared.attrs[name] for name in given} == given
+    assert {name: compared.attrs[name] for name in expected} == expected
     assert compared["state"].values.tolist() == [1, 2]
 
 
 def test_a_single_law_is_not_compared():
-    given = two_blocks.run_settings(transient=200.0, window=100.0), SEARCH, MOTION, AGREEMENT
-    alone = two_blocks.summarize(models(2, ["exponential"]), STATES[:1], [0.03], *given)
+    arguments = two_blocks.run_settings(transient=200.0, window=100.0), SEARCH, MOTION, AGREEMENT
+    alone = two_blocks.summarize(models(2, ["exponential"]), STATES[:1], [0.03], *arguments)
     assert alone["agrees"].shape == (2, 0, 1, 1)
     assert alone["mean_distance"].shape == (2, 1, 1, 1)
 
@@ -145,5 +145,5 @@ def test_the_figure_shows_the_fractions(files):
     summary = chains.merge([open_summary(path) for path in files])
     titled = [panel for panel in draw(summary).axes if panel.get_title(loc="left")]
     assert [panel.get_title(loc="left")[:8] for panel in titled] == ["(a) $N=2", "(b) $N=1"]
-    shown = titled[0].get_lines()[0].get_ydata()
-    assert shown.tolist() == summary["synchronized_fraction"].sel(blocks=2).values[0].tolist()
+    curve = titled[0].get_lines()[0].get_ydata()
+    assert curve.tolist() == summary["synchronized_fraction"].sel(blocks=2).values[0].tolist()

@@ -16,19 +16,19 @@ def frequencies_of_branch_1(law: str, a: float, detuning: float) -> DetunedMotio
     return detuned_motion(model, Runner(model).state_after(model.begin(PAPER_STATES["plus"]), 3000.0), detuning, 3)
 
 
-def attracts(found: DetunedMotion) -> bool:
-    return bool(found.exponent[2] < -3.0 * found.exponent_error[2])
+def attracts(motion: DetunedMotion) -> bool:
+    return bool(motion.exponent[2] < -3.0 * motion.exponent_error[2])
 
 
 @pytest.mark.parametrize(("law", "a"), [("linearized", 0.03), ("linearized", 0.06), ("nonlinear", 0.08)])
 @pytest.mark.parametrize("detuning", [0.1, 0.3])
 def test_the_end_blocks_keep_one_frequency_with_unequal_masses(law: str, a: float, detuning: float) -> None:
     """Alone, the heavier block would be slower by 5 or 12 %: two frequencies would differ by 0.01 or more."""
-    found = frequencies_of_branch_1(law, a, detuning)
-    assert found.frequency[2] == pytest.approx(found.frequency[0], abs=1e-8)
-    assert found.frequency[1] > 1.5 * found.frequency[0]
-    assert (found.frequency_error < 1e-5).all()
-    assert attracts(found)
+    motion = frequencies_of_branch_1(law, a, detuning)
+    assert motion.frequency[2] == pytest.approx(motion.frequency[0], abs=1e-8)
+    assert motion.frequency[1] > 1.5 * motion.frequency[0]
+    assert (motion.frequency_error < 1e-5).all()
+    assert attracts(motion)
 
 
 @pytest.mark.parametrize("detuning", [0.1, 0.3])
@@ -36,18 +36,18 @@ def test_blocks_moved_by_springs_alone_keep_one_frequency_but_are_not_locked(det
     """At a = 0 friction is constant: small oscillations about sliding are those of the springs, without any locking."""
     model = Model(Chain(3), law_of("linearized", 0.0))
     antiphase = ChainState(np.array([0.05, 0.0, -0.05]), np.full(3, model.v), np.zeros(3, bool))
-    found = detuned_motion(model, antiphase, detuning, 3)
+    motion = detuned_motion(model, antiphase, detuning, 3)
     masses = 1.0 + np.array([0.0, 0.0, detuning])
     squares, shapes = eigh(model.chain.stiffness, np.diag(masses))
     # The mode with the largest part of the initial displacement, in the norm of the masses.
     largest = np.abs(shapes.T @ (masses * antiphase.position)).argmax()
-    assert found.frequency[[0, 2]] == pytest.approx(np.sqrt(squares[largest]) / (2.0 * np.pi), abs=1e-9)
-    assert not attracts(found)
-    assert (np.abs(found.exponent) < 1e-3).all()
+    assert motion.frequency[[0, 2]] == pytest.approx(np.sqrt(squares[largest]) / (2.0 * np.pi), abs=1e-9)
+    assert not attracts(motion)
+    assert (np.abs(motion.exponent) < 1e-3).all()
     ratio = shapes[2, largest] / shapes[0, largest]
-    assert found.end_ratio == pytest.approx(abs(ratio), abs=1e-6)
-    assert found.end_phase == pytest.approx(180.0 if ratio < 0.0 else 0.0, abs=1e-4)
-    assert found.mode_share[largest] == pytest.approx(1.0, abs=1e-9)
+    assert motion.end_ratio == pytest.approx(abs(ratio), abs=1e-6)
+    assert motion.end_phase == pytest.approx(180.0 if ratio < 0.0 else 0.0, abs=1e-4)
+    assert motion.mode_share[largest] == pytest.approx(1.0, abs=1e-9)
 
 
 def antiphase(law: str, a: float) -> tuple[Model, ChainState]:
@@ -69,14 +69,14 @@ def test_as_a_vanishes_the_motion_is_that_of_the_mode_of_unequal_masses(law: str
             for step in np.linspace(0.03, a, 4):
                 model = model.at(step)
                 start = Runner(model).state_after(start, 3000.0)
-        found = detuned_motion(model, start, 0.3, 3)
-        assert has_one_frequency(found.frequency)
+        motion = detuned_motion(model, start, 0.3, 3)
+        assert has_one_frequency(motion.frequency)
         squares, shapes = eigh(model.chain.stiffness, np.diag([1.0, 1.0, 1.3]))
         mode, ratio = np.sqrt(squares[1]) / (2.0 * np.pi), shapes[2, 1] / shapes[0, 1]
         assert ratio == pytest.approx(-0.569, abs=1e-3)
-        assert found.mode_share.argmax() == 1
+        assert motion.mode_share.argmax() == 1
         deviations.append(
-            (found.frequency[0] - mode, found.end_ratio + ratio, found.end_phase - 180.0, found.mode_share[1] - 1.0)
+            (motion.frequency[0] - mode, motion.end_ratio + ratio, motion.end_phase - 180.0, motion.mode_share[1] - 1.0)
         )
     first, second = np.abs(deviations)
     assert (first < (1e-3, 0.02, 6.0, 2e-3)).all()
@@ -91,12 +91,12 @@ def test_the_phase_does_not_drift_towards_an_edge(branch: int) -> None:
         state = Runner(model).state_after(model.begin(PAPER_STATES["plus"]), 3000.0)
     shifts, ratios = [], []
     for detuning in (0.1, 0.3, 0.5):
-        found = detuned_motion(model, state, detuning, 3)
-        state = found.final
-        assert has_one_frequency(found.frequency)
-        assert found.mode_share.max() > 0.99
-        shifts.append(abs(found.end_phase - 180.0))
-        ratios.append(found.end_ratio)
+        motion = detuned_motion(model, state, detuning, 3)
+        state = motion.final
+        assert has_one_frequency(motion.frequency)
+        assert motion.mode_share.max() > 0.99
+        shifts.append(abs(motion.end_phase - 180.0))
+        ratios.append(motion.end_ratio)
     assert max(shifts) < 12.0
     assert shifts[2] <= max(shifts[:2])
     assert ratios[2] < ratios[1] < ratios[0] < 0.9
@@ -104,10 +104,10 @@ def test_the_phase_does_not_drift_towards_an_edge(branch: int) -> None:
 
 def test_at_large_detunings_they_have_two_frequencies() -> None:
     """An independent integrator gives 0.2036 and 0.1467."""
-    found = frequencies_of_branch_1("linearized", 0.06, 0.8)
-    assert found.frequency[[0, 2]] == pytest.approx([0.2036, 0.1467], abs=1e-4)
+    motion = frequencies_of_branch_1("linearized", 0.06, 0.8)
+    assert motion.frequency[[0, 2]] == pytest.approx([0.2036, 0.1467], abs=1e-4)
 
 
 def test_at_equal_masses_their_frequencies_are_equal_by_symmetry() -> None:
-    found = frequencies_of_branch_1("linearized", 0.06, 0.0)
-    assert found.frequency[0] == pytest.approx(found.frequency[2], abs=1e-8)
+    motion = frequencies_of_branch_1("linearized", 0.06, 0.0)
+    assert motion.frequency[0] == pytest.approx(motion.frequency[2], abs=1e-8)

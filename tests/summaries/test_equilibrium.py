@@ -11,7 +11,7 @@ MODELS = [Model(Chain(3), law_of(law, 0.0)) for law in PAPER_LAWS]
 
 
 @pytest.fixture(scope="module")
-def found():
+def dataset():
     return summarize(MODELS, [0.0, 0.08, 0.3])
 
 
@@ -23,12 +23,12 @@ def jacobian(model):
     return np.block([[np.zeros((n, n)), np.eye(n)], [-model.chain.stiffness, slope * np.diag(model.chain.thresholds)]])
 
 
-def test_the_positions_of_the_paper(found):
+def test_the_positions_of_the_paper(dataset):
     for a in (0.0, 0.08, 0.3):
         friction = {"linearized": 1.0 - 0.1 * a, "nonlinear": 1.0 / (1.0 + 0.1 * a)}
         for law in PAPER_LAWS:
             expected = -friction[law] * np.array([5 / 6, 2 / 3, 5 / 6])
-            assert found["equilibrium_position"].sel(law=law, a=a).values == pytest.approx(expected, abs=1e-15)
+            assert dataset["equilibrium_position"].sel(law=law, a=a).values == pytest.approx(expected, abs=1e-15)
 
 
 @pytest.mark.parametrize(
@@ -82,15 +82,15 @@ def test_a_large_chain_has_no_modes_in_the_summary():
     assert np.isnan(summarize([Model(Chain(2000), law_of("linearized", 0.1))], [0.1])["eigenvalue"]).all()
 
 
-def test_eigenvalues_and_growth_rates(found):
-    real, imaginary = (found["eigenvalue"].sel(part=part) for part in ("real", "imaginary"))
+def test_eigenvalues_and_growth_rates(dataset):
+    real, imaginary = (dataset["eigenvalue"].sel(part=part) for part in ("real", "imaginary"))
     assert real.sel(law="linearized", a=0.3).values.tolist() == [0.15] * 6
     assert real.sel(law="nonlinear", a=0.3).values == pytest.approx([0.15 / 1.03**2] * 6, rel=1e-15)
     assert (real.sel(a=0.0) == 0.0).all()
     squares = np.repeat([3.0 - 3.0**0.5, 2.0, 3.0 + 3.0**0.5], 2)
     assert imaginary.sel(law="linearized", a=0.0).values ** 2 == pytest.approx(squares, abs=1e-11)
-    assert abs(found["growth_rate"] - real.max("mode")).max() < 1e-11
-    assert (found["equilibrium_drift"] < 1e-13).all()
+    assert abs(dataset["growth_rate"] - real.max("mode")).max() < 1e-11
+    assert (dataset["equilibrium_drift"] < 1e-13).all()
 
 
 def test_other_positions_are_not_an_equilibrium():
@@ -110,16 +110,16 @@ def growth(model, mode, rate, duration, push):
 
 
 @pytest.mark.parametrize("periods", [1, 3])
-def test_a_small_perturbation_grows_at_the_growth_rate(found, periods):
-    rate, frequency = found.sel(law="linearized", a=0.3)["eigenvalue"].sel(mode=3).values
+def test_a_small_perturbation_grows_at_the_growth_rate(dataset, periods):
+    rate, frequency = dataset.sel(law="linearized", a=0.3)["eigenvalue"].sel(mode=3).values
     duration = periods * 2 * np.pi / frequency
     # κ = 2: the mode's eigenvector is (1, 0, −1).
     grown = growth(Model(Chain(3), law_of("linearized", 0.3)), (1.0, 0.0, -1.0), rate, duration, 1e-5)
     assert grown == pytest.approx(np.exp(rate * duration), rel=1e-8)
 
 
-def test_the_numbers_are_reproducible(found):
-    assert found.identical(summarize(MODELS, [0.0, 0.08, 0.3]))
+def test_the_numbers_are_reproducible(dataset):
+    assert dataset.identical(summarize(MODELS, [0.0, 0.08, 0.3]))
 
 
 @pytest.mark.parametrize(
@@ -135,19 +135,21 @@ def test_the_numbers_are_reproducible(found):
 def test_the_growth_rate_is_that_of_a_simulated_perturbation(law, rate):
     """At v = 0.5 the slower mirror-symmetric perturbation grows or decays at this rate."""
     model = Model(Chain(2), law, 0.5)
-    found = eigenvalues(model)
-    assert found.real == pytest.approx([rate] * 4, abs=1e-12)
+    spectrum = eigenvalues(model)
+    assert spectrum.real == pytest.approx([rate] * 4, abs=1e-12)
     assert simulate_sliding(model, sliding_position(model))[1] == pytest.approx(rate, abs=1e-10)
     # K = [[2, −1], [−1, 2]]: the mode (1, 1) has κ = 1.
-    period = 2 * np.pi / found[0].imag
+    period = 2 * np.pi / spectrum[0].imag
     assert np.log(growth(model, (1.0, 1.0), rate, period, 1e-6)) / period == pytest.approx(rate, abs=1e-6)
 
 
 def test_strong_damping_has_modes_that_do_not_oscillate():
     """κ = 1 and 3 with g = 2.5: g²/4 lies between."""
     model = Model(Chain(2), law_of("linearized", 2.5))
-    found = eigenvalues(model)
-    assert found == pytest.approx([1.25 + 0.75, 1.25 - 0.75, *(1.25 + s * 1j * (3 - 1.25**2) ** 0.5 for s in (1, -1))])
+    spectrum = eigenvalues(model)
+    assert spectrum == pytest.approx(
+        [1.25 + 0.75, 1.25 - 0.75, *(1.25 + s * 1j * (3 - 1.25**2) ** 0.5 for s in (1, -1))]
+    )
     drift, rate = simulate_sliding(model, sliding_position(model))
     assert rate == pytest.approx(2.0, abs=1e-9)
     assert drift < 1e-5

@@ -37,23 +37,23 @@ def test_settling_times_of_runs(tmp_path):
     run = simulate("linearized", 0.08, "minus", **settings)
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, **settings)
     ended = {"linearized": "completed", "nonlinear": "step_limit"}
-    write_points(grid, lambda own: dataclasses.replace(own, status=ended[own.model.law.name]))
-    found = means(grid)["settling_time"]
+    write_points(grid, lambda trajectory: dataclasses.replace(trajectory, status=ended[trajectory.model.law.name]))
+    times = means(grid)["settling_time"]
     # Near synchrony J decays like the transverse multiplier to the power of the number of periods.
-    settled = found.sel(law="linearized", initial="minus", a=0.08)
+    settled = times.sel(law="linearized", initial="minus", a=0.08)
     np.testing.assert_array_equal(settled.values, settling_time(run.time, run.distance, LEVELS))
     assert 500.0 < settled.sel(level=1e-6).item() < 1500.0
     assert settled.sel(level=1e-2) <= settled.sel(level=1e-3) < settled.sel(level=1e-6)
-    assert np.isnan(found.sel(law="nonlinear")).all()
+    assert np.isnan(times.sel(law="nonlinear")).all()
 
 
 def test_the_least_friction_in_the_window_is_not_that_of_the_transient(tmp_path):
     """From plus, the first slips are eight times as fast as those on the attractor."""
     grid = grid_of(tmp_path, ["plus"], {"0.0800": 0.08}, transient=500.0, window=100.0, batches=2)
     write_points(grid)
-    found = means(grid).sel(initial="plus", a=0.08)
+    dataset = means(grid).sel(initial="plus", a=0.08)
     for law in ("linearized", "nonlinear"):
-        whole, window = (found[name].sel(law=law).item() for name in ("least_friction", "window_least_friction"))
+        whole, window = (dataset[name].sel(law=law).item() for name in ("least_friction", "window_least_friction"))
         assert whole < 0.9 < 0.97 < window < 1.0
 
 
@@ -85,11 +85,11 @@ def test_only_a_chain_that_is_its_own_mirror_image_synchronizes(tmp_path, thresh
     """This holds whatever J is: here the runs have been given the J of synchrony."""
     models = {"laws": {"linearized": {}}, "chain": {**PAPER_MODELS["chain"], "threshold": thresholds}}
     grid = grid_of(tmp_path, ["minus"], {"0.0800": 0.08}, models, **SHORT)
-    given = {"mean_distance": 1e-9, "lyapunov_exponent": np.array([0.0, -0.1, -0.2])}
-    write_points(grid, lambda trajectory: same_section(trajectory, **given))
-    found = means(grid)["synchronized"]
-    assert found.values.ravel().tolist() == [synchronized]
-    assert ("not defined" in found.attrs["comment"]) == (not synchronized)
+    values = {"mean_distance": 1e-9, "lyapunov_exponent": np.array([0.0, -0.1, -0.2])}
+    write_points(grid, lambda trajectory: same_section(trajectory, **values))
+    answers = means(grid)["synchronized"]
+    assert answers.values.ravel().tolist() == [synchronized]
+    assert ("not defined" in answers.attrs["comment"]) == (not synchronized)
     kind = kinds(grid, MOTION)["run_kind"]
     assert kind.item() == (MotionKind.SYNCHRONIZED if synchronized else MotionKind.PERIODIC)
 
@@ -123,9 +123,9 @@ def points(tmp_path):
 
 
 def test_kinds_of_motion_of_runs(points):
-    found = kinds(points, MOTION)
-    assert (found.attrs["synchronization_threshold"], found.attrs["longest_period"]) == (1e-6, 2000.0)
-    for point in (found.sel(law=law, initial=state) for law in found["law"].values for state in ("minus", "plus")):
+    dataset = kinds(points, MOTION)
+    assert (dataset.attrs["synchronization_threshold"], dataset.attrs["longest_period"]) == (1e-6, 2000.0)
+    for point in (dataset.sel(law=law, initial=state) for law in dataset["law"].values for state in ("minus", "plus")):
         expected = list(zip(*RUNS.values(), strict=True))
         assert point["lyapunov_exponent"].values.tolist() == [list(exponent) for exponent in expected[0]]
         assert (point["lyapunov_error"] == 1e-5).all()
@@ -136,19 +136,19 @@ def test_kinds_of_motion_of_runs(points):
 
 
 def test_section_points_are_kept_run_by_run(points):
-    found = bifurcation_diagram.summarize(points)
+    dataset = bifurcation_diagram.summarize(points)
     counts = [2 * len(upward) for _, upward, *_ in RUNS.values()]
-    assert found["crossing_count"].values.tolist() == 4 * counts
-    assert found["a"].values.tolist() == 4 * list(RUNS)
-    assert found["law"].values.tolist() == ["linearized"] * 10 + ["nonlinear"] * 10
-    assert found["initial"].values.tolist() == 2 * (["minus"] * 5 + ["plus"] * 5)
+    assert dataset["crossing_count"].values.tolist() == 4 * counts
+    assert dataset["a"].values.tolist() == 4 * list(RUNS)
+    assert dataset["law"].values.tolist() == ["linearized"] * 10 + ["nonlinear"] * 10
+    assert dataset["initial"].values.tolist() == 2 * (["minus"] * 5 + ["plus"] * 5)
     # Each run of the second state and law has its own velocities.
-    chosen = (found["law"].values == "nonlinear") & (found["initial"].values == "plus")
-    chosen = np.repeat(chosen, found["crossing_count"].values)
-    found["crossing_velocity"].values[chosen] *= 2.0
+    chosen = (dataset["law"].values == "nonlinear") & (dataset["initial"].values == "plus")
+    chosen = np.repeat(chosen, dataset["crossing_count"].values)
+    dataset["crossing_velocity"].values[chosen] *= 2.0
     upward = np.concatenate([item[1] for item in RUNS.values()])
     for law, initial, factor in (("nonlinear", "plus", 2.0), ("nonlinear", "minus", 1.0), ("linearized", "plus", 1.0)):
-        a, velocity = bifurcation_diagram.section_points(found, law, initial, 1)
+        a, velocity = bifurcation_diagram.section_points(dataset, law, initial, 1)
         assert velocity.tolist() == (factor * upward).tolist()
         assert a.tolist() == np.repeat(list(RUNS), np.array(counts) // 2).tolist()
-        assert (bifurcation_diagram.section_points(found, law, initial, -1)[1] <= -1.0).all()
+        assert (bifurcation_diagram.section_points(dataset, law, initial, -1)[1] <= -1.0).all()

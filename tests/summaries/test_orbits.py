@@ -28,17 +28,17 @@ def models(laws=PAPER_LAWS, chain=None, **options):
 
 
 @pytest.fixture(scope="module")
-def found():
+def dataset():
     return summarize(models(), [0.0, 0.05, 0.1])
 
 
-def test_curves_agree_with_the_orbits(found):
-    assert found["status"].values.tolist() == [[1, 0, 0]] * 2
-    assert found.attrs["v"] == 0.1
+def test_curves_agree_with_the_orbits(dataset):
+    assert dataset["status"].values.tolist() == [[1, 0, 0]] * 2
+    assert dataset.attrs["v"] == 0.1
     for law in PAPER_LAWS:
         for a in (0.05, 0.1):
             orbit = synchronized_orbits(Model(Chain(3), law_of(law, 0.0))).at(a)
-            point = found.sel(law=law, a=a)
+            point = dataset.sel(law=law, a=a)
             values = point["multiplier"].sel(part="real").values + 1j * point["multiplier"].sel(part="imaginary").values
             expected = multipliers(orbit)
             assert values[0] == pytest.approx(expected.transverse, abs=1e-12)
@@ -49,30 +49,30 @@ def test_curves_agree_with_the_orbits(found):
             assert point["period"].item() == pytest.approx(orbit.period, abs=1e-13)
             assert point["lateral_slip_time"].item() == pytest.approx(orbit.period - orbit.stick_time(0), abs=1e-12)
             assert point["residual"].item() <= 1e-14
-    assert np.isnan(found["period"].sel(a=0.0)).all()
+    assert np.isnan(dataset["period"].sel(a=0.0)).all()
 
 
-def test_the_bifurcation_follows_from_the_orbits(found):
-    assert (found["bifurcation_kind"] == BifurcationKind.PITCHFORK).all()
-    assert (found["bifurcation_side"] == BifurcationSide.SUPERCRITICAL).all()
-    assert (found["branch_offset"] > 0.0).all()
-    assert (found["branch_multiplier"] < 1.0).all()
-    assert (found["branch_residual"] <= 1e-14).all()
-    assert (abs(found["amplitude_exponent"] - 0.5) < 1e-5).all()
-    assert (found["hysteresis"] < 1e-9).all()
-    assert (found["sweep_asymmetry"].sel(sweep_offset=found["sweep_offset"] > 0) > 4e-3).all()
+def test_the_bifurcation_follows_from_the_orbits(dataset):
+    assert (dataset["bifurcation_kind"] == BifurcationKind.PITCHFORK).all()
+    assert (dataset["bifurcation_side"] == BifurcationSide.SUPERCRITICAL).all()
+    assert (dataset["branch_offset"] > 0.0).all()
+    assert (dataset["branch_multiplier"] < 1.0).all()
+    assert (dataset["branch_residual"] <= 1e-14).all()
+    assert (abs(dataset["amplitude_exponent"] - 0.5) < 1e-5).all()
+    assert (dataset["hysteresis"] < 1e-9).all()
+    assert (dataset["sweep_asymmetry"].sel(sweep_offset=dataset["sweep_offset"] > 0) > 4e-3).all()
 
 
-def test_the_transition_is_recomputed(found):
+def test_the_transition_is_recomputed(dataset):
     """Each number is recomputed, the fit with another routine."""
-    family, one = synchronized_orbits(models()[1]), found.sel(law="nonlinear")
+    family, part = synchronized_orbits(models()[1]), dataset.sel(law="nonlinear")
     edges = bifurcations_of(family)
     critical = critical_a(edges)
-    assert one["critical_a"].item() == pytest.approx(critical, abs=1e-14)
-    assert one["critical_a_error"].item() == pytest.approx(critical_a_error(family, critical), abs=1e-11)
-    assert one["grazing_a"].item() == pytest.approx(grazing_a(edges, block=1), abs=1e-12)
-    assert one["symmetric_period_doubling_a"].item() == pytest.approx(symmetric_period_doubling_a(edges), abs=1e-12)
-    d = one["branch_asymmetry"].values
+    assert part["critical_a"].item() == pytest.approx(critical, abs=1e-14)
+    assert part["critical_a_error"].item() == pytest.approx(critical_a_error(family, critical), abs=1e-11)
+    assert part["grazing_a"].item() == pytest.approx(grazing_a(edges, block=1), abs=1e-12)
+    assert part["symmetric_period_doubling_a"].item() == pytest.approx(symmetric_period_doubling_a(edges), abs=1e-12)
+    d = part["branch_asymmetry"].values
     # Five values per decade, starting at a thousandth of v.
     assert d == pytest.approx(0.1 * 10 ** (np.arange(13) / 5 - 3), rel=1e-3)
     assert d[::5] == pytest.approx([1e-4, 1e-3, 1e-2], rel=1e-12)
@@ -84,33 +84,33 @@ def test_the_transition_is_recomputed(found):
         "multiplier": abs(multipliers(orbit).whole[0]),
         "mean_distance": orbit.mean_distance,
     }.items():
-        assert one[f"branch_{name}"].values[7] == pytest.approx(value, rel=1e-7, abs=1e-14), name
+        assert part[f"branch_{name}"].values[7] == pytest.approx(value, rel=1e-7, abs=1e-14), name
     small = slice(0, 6)
-    line, covariance = np.polyfit(np.log(one["branch_offset"].values[small]), np.log(d[small]), 1, cov=True)
-    assert one["amplitude_exponent"].item() == pytest.approx(line[0], abs=1e-9)
-    assert one["amplitude_exponent_error"].item() == pytest.approx(covariance[0, 0] ** 0.5, rel=1e-3)
-    assert one["amplitude_coefficient"].item() == pytest.approx(np.exp(line[1]), rel=1e-8)
+    line, covariance = np.polyfit(np.log(part["branch_offset"].values[small]), np.log(d[small]), 1, cov=True)
+    assert part["amplitude_exponent"].item() == pytest.approx(line[0], abs=1e-9)
+    assert part["amplitude_exponent_error"].item() == pytest.approx(covariance[0, 0] ** 0.5, rel=1e-3)
+    assert part["amplitude_coefficient"].item() == pytest.approx(np.exp(line[1]), rel=1e-8)
     offsets = [-2e-3, -1e-3, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2]
-    assert one["sweep_offset"].values.tolist() == offsets
-    up, down = (one["sweep_asymmetry"].sel(direction=name).values for name in ("upward", "downward"))
+    assert part["sweep_offset"].values.tolist() == offsets
+    up, down = (part["sweep_asymmetry"].sel(direction=name).values for name in ("upward", "downward"))
     assert up == pytest.approx(sweep(family, critical + np.array(offsets)), abs=1e-9)
     assert down == pytest.approx(sweep(family, critical + np.array(offsets[::-1]))[::-1], abs=1e-9)
-    assert one["hysteresis"].item() == np.abs(up - down).max()
+    assert part["hysteresis"].item() == np.abs(up - down).max()
 
 
-def test_laws_with_the_same_slope_are_compared(found):
+def test_laws_with_the_same_slope_are_compared(dataset):
     """The stored differences agree with those of independently computed orbits."""
     nonlinear = models()[1]
     scaled = effective_a(nonlinear, 0.1)
     assert scaled == pytest.approx(0.1 / 1.01**2, rel=1e-15)
     pair = [synchronized_orbits(model).at(a) for model, a in zip(models(), (scaled, 0.1), strict=True)]
-    point = found.sel(a=0.1)
+    point = dataset.sel(a=0.1)
     assert point["effective_a"].item() == scaled
     expected = (multipliers(pair[1]).transverse - multipliers(pair[0]).transverse).real
     assert point["effective_multiplier_difference"].item() == pytest.approx(expected, abs=1e-12)
     assert point["effective_period_difference"].item() == pytest.approx(pair[1].period - pair[0].period, abs=1e-12)
-    critical = found["critical_a"].values
-    assert found["effective_critical_a_difference"].item() == effective_a(nonlinear, critical[1]) - critical[0]
+    critical = dataset["critical_a"].values
+    assert dataset["effective_critical_a_difference"].item() == effective_a(nonlinear, critical[1]) - critical[0]
 
 
 @pytest.mark.parametrize(("blocks", "v", "status"), [(2, 0.1, 3), (5, 0.1, 3), (3, 1000.0, 2)])
@@ -124,7 +124,7 @@ def test_a_missing_orbit_is_a_flag(blocks, v, status):
     assert (none["bifurcation_side"] == -1).all()
 
 
-def test_other_laws_are_included(found, monkeypatch):
+def test_other_laws_are_included(dataset, monkeypatch):
     """The laws have the order of the study, and the comparison of the paper's laws is missing."""
     # Branching orbits are computed for the paper's laws only.
     monkeypatch.setattr(orbits, "ASYMMETRIES", orbits.ASYMMETRIES[:2])
@@ -134,15 +134,15 @@ def test_other_laws_are_included(found, monkeypatch):
     # Friction that drops at the start of a slip drives the motion at a = 0 as well.
     assert other["status"].values.tolist() == [[1, 0], [1, 0], [2, 0]]
     assert not set(COMPARISON) & set(other)
-    assert set(COMPARISON) < set(found)
+    assert set(COMPARISON) < set(dataset)
     for name in ("period", "transverse_multiplier", "center_stick_time"):
-        same = found[name].sel(law="nonlinear", a=0.1), other[name].sel(law="nonlinear", a=0.1)
+        same = dataset[name].sel(law="nonlinear", a=0.1), other[name].sel(law="nonlinear", a=0.1)
         assert same[0].item() == pytest.approx(same[1].item(), abs=1e-12)
     critical = other["critical_a"].sel(law="exponential").item()
     # If friction drops, a stick of block 2 does not begin with duration 0: the orbit ends or jumps.
     assert np.isnan(other["grazing_a"].sel(law="carlson_langer"))
     # Φ = exp(−aU') weakens less than 1 − aU' and more than 1/(1 + aU').
-    assert found["critical_a"].values[0] < critical < found["critical_a"].values[1]
+    assert dataset["critical_a"].values[0] < critical < dataset["critical_a"].values[1]
 
 
 def test_an_asymmetric_chain_has_no_synchronized_orbit():
@@ -187,8 +187,8 @@ def test_orbits_that_branch_off_where_synchrony_is_unstable_are_supercritical(mo
     values = {name: np.full((1, len(orbits.ASYMMETRIES)), np.nan) for name in names}
     values["bifurcation_side"] = np.array([-1])
     values |= {name: np.array([np.nan]) for name in names if name.startswith("amplitude_")}
-    known = SimpleNamespace(at=lambda a: SimpleNamespace(a=a))
-    orbits._fill_branch(values, 0, known, critical, 0.1 * np.array(orbits.ASYMMETRIES))
+    family = SimpleNamespace(at=lambda a: SimpleNamespace(a=a))
+    orbits._fill_branch(values, 0, family, critical, 0.1 * np.array(orbits.ASYMMETRIES))
     supercritical = side * expected > 0
     assert values["bifurcation_side"][0] == BifurcationSide[("SUB", "SUPER")[supercritical] + "CRITICAL"]
     assert values["amplitude_exponent"][0] == pytest.approx(0.5)

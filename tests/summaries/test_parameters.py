@@ -27,44 +27,44 @@ def summary(folder, law, state=PAIR, **parameters):
     return kinds(write_points(grid)).squeeze(("law", "initial"))
 
 
-def per_velocity(found):
+def per_velocity(dataset):
     """Return <J> in units of v."""
-    return (found["mean_distance"] / found["v"]).values
+    return (dataset["mean_distance"] / dataset["v"]).values
 
 
 def test_each_point_has_the_run_of_its_parameters(tmp_path):
-    found = summary(tmp_path, "nonlinear", coupling=[0.5, 2.0], a=[0.1, 0.4])
-    assert found["lyapunov_exponent"].dims == ("coupling", "a", "exponent")
+    dataset = summary(tmp_path, "nonlinear", coupling=[0.5, 2.0], a=[0.1, 0.4])
+    assert dataset["lyapunov_exponent"].dims == ("coupling", "a", "exponent")
     for coupling in (0.5, 2.0):
         for a in (0.1, 0.4):
-            own = simulate("nonlinear", a, PAIR, chain=Chain(2, coupling=coupling), **RUN)
-            here = found.sel(a=a, coupling=coupling)
-            assert here["mean_distance"].item() == own.mean_distance
-            assert np.array_equal(here["lyapunov_exponent"], own.lyapunov_exponent)
+            trajectory = simulate("nonlinear", a, PAIR, chain=Chain(2, coupling=coupling), **RUN)
+            point = dataset.sel(a=a, coupling=coupling)
+            assert point["mean_distance"].item() == trajectory.mean_distance
+            assert np.array_equal(point["lyapunov_exponent"], trajectory.lyapunov_exponent)
 
 
 def test_only_end_blocks_of_one_mass_synchronize(tmp_path):
     """The chain is its own mirror image only at one of the masses, in either order."""
-    found = summary(tmp_path, "linearized", InitialState("same", (-0.9, -0.9), (0.1, 0.1)), a=[0.01], **MASSES)
-    assert found["mean_distance"].dims == ("a", "mass_2")
-    assert found["mass_2"].values.tolist() == [0.999999999, 1.0]
-    assert found["run_kind"].values[0].tolist() == [MotionKind.PERIODIC, MotionKind.SYNCHRONIZED]
-    assert (found["mean_distance"].values < THRESHOLD).all()
+    dataset = summary(tmp_path, "linearized", InitialState("same", (-0.9, -0.9), (0.1, 0.1)), a=[0.01], **MASSES)
+    assert dataset["mean_distance"].dims == ("a", "mass_2")
+    assert dataset["mass_2"].values.tolist() == [0.999999999, 1.0]
+    assert dataset["run_kind"].values[0].tolist() == [MotionKind.PERIODIC, MotionKind.SYNCHRONIZED]
+    assert (dataset["mean_distance"].values < THRESHOLD).all()
 
 
 def test_v_is_a_scale_of_the_linearized_law(tmp_path):
     """In units of v the equations of motion contain only these positions and velocities."""
-    found = {}
+    datasets = {}
     for v in (0.05, 0.1, 0.2):
         offset = Model(Chain(2), law_of("linearized", 0.1), v).chain.sliding_offset(1.0)
         state = InitialState("pair", tuple(offset + v * np.array([1.0, -1.5])), (1.2 * v, 0.7 * v))
-        found[v] = summary(tmp_path / f"{v}", "linearized", state, a=[0.05, 0.3], v=[v]).squeeze("v")
+        datasets[v] = summary(tmp_path / f"{v}", "linearized", state, a=[0.05, 0.3], v=[v]).squeeze("v")
     for v in (0.05, 0.2):
         # Rounding differs after a single step, and chaos would amplify the difference.
-        regular = found[0.1]["run_kind"].values != MotionKind.CHAOTIC
+        regular = datasets[0.1]["run_kind"].values != MotionKind.CHAOTIC
         assert regular.any()
-        assert per_velocity(found[v])[regular] == pytest.approx(per_velocity(found[0.1])[regular], rel=1e-9)
-        assert (found[v]["run_kind"] == found[0.1]["run_kind"]).all()
+        assert per_velocity(datasets[v])[regular] == pytest.approx(per_velocity(datasets[0.1])[regular], rel=1e-9)
+        assert (datasets[v]["run_kind"] == datasets[0.1]["run_kind"]).all()
 
 
 def test_the_nonlinear_law_has_two_products_of_its_parameters(tmp_path):

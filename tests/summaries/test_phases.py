@@ -41,68 +41,70 @@ def ruled(monkeypatch):
     )
 
 
-def known(model):
+def candidates(model):
     """Return three attractors; only the rule determines which one a state reaches."""
-    one = type("One", (), {"motion": type("Motion", (), {"state": staticmethod(lambda: None)})})
-    return KnownAttractors(model, [one] * 3, np.array([0, 7, 7]), np.array([0, 1, -1]))
+    attractor = type("One", (), {"motion": type("Motion", (), {"state": staticmethod(lambda: None)})})
+    return KnownAttractors(model, [attractor] * 3, np.array([0, 7, 7]), np.array([0, 1, -1]))
 
 
 def test_states_are_counted_by_what_they_reach(ruled):
-    parts = [phases.one_law([known(model.at(a)) for a in (0.05, 0.08)], PHASES, SEARCH.label_limit) for model in MODELS]
-    found = phases.merge(parts)
-    assert found["branch"].dims == ("law", "a", "inner_share", "amplitude", "phase_difference", "state")
-    assert found["branch"].shape == (2, 2, 2, 2, 3, 5)
-    assert found["law"].values.tolist() == ["linearized", "nonlinear"]
-    assert found["phase_difference"].values.tolist() == [30.0, 90.0, 180.0]
-    assert found["phase_difference"].attrs["units"] == "degree"
-    assert found["inner_share"].values.tolist() == [0.0, 0.5]
-    assert found["inner_block"].values.tolist() == [2]
+    parts = [
+        phases.one_law([candidates(model.at(a)) for a in (0.05, 0.08)], PHASES, SEARCH.label_limit) for model in MODELS
+    ]
+    dataset = phases.merge(parts)
+    assert dataset["branch"].dims == ("law", "a", "inner_share", "amplitude", "phase_difference", "state")
+    assert dataset["branch"].shape == (2, 2, 2, 2, 3, 5)
+    assert dataset["law"].values.tolist() == ["linearized", "nonlinear"]
+    assert dataset["phase_difference"].values.tolist() == [30.0, 90.0, 180.0]
+    assert dataset["phase_difference"].attrs["units"] == "degree"
+    assert dataset["inner_share"].values.tolist() == [0.0, 0.5]
+    assert dataset["inner_block"].values.tolist() == [2]
     for a, share in product((0.05, 0.08), (0.0, 0.5)):
         common, inner = common_phases(a, (2, 3, 5), 3), inner_phases(a, (2, 3, 5, 1), 3)
-        assert (found["common_phase"].sel(a=a).values == common).all()
-        assert (found["inner_phase"].sel(a=a).values == inner).all()
+        assert (dataset["common_phase"].sel(a=a).values == common).all()
+        assert (dataset["inner_phase"].sel(a=a).values == inner).all()
         swing = np.cos(np.radians(common)) + share * np.cos(np.radians(inner[..., 0]))
-        x = found["amplitude"].values[:, None, None] * swing
-        for law in found["law"].values:
-            one = found.sel(law=law, a=a, inner_share=share)
-            assert (one["branch"].values == np.select([x > 0.04, x < -0.4], [0, -1], 7)).all()
-            assert (one["side"].values == np.select([x > 0.04, x < -0.4], [0, 0], -1)).all()
+        x = dataset["amplitude"].values[:, None, None] * swing
+        for law in dataset["law"].values:
+            part = dataset.sel(law=law, a=a, inner_share=share)
+            assert (part["branch"].values == np.select([x > 0.04, x < -0.4], [0, -1], 7)).all()
+            assert (part["side"].values == np.select([x > 0.04, x < -0.4], [0, 0], -1)).all()
             correlation = np.select([x > 0.04, x < -0.4], [1.0, np.nan], -0.7)
-            np.testing.assert_array_equal(one["velocity_correlation"].values, correlation)
+            np.testing.assert_array_equal(part["velocity_correlation"].values, correlation)
             for index in np.ndindex(2, 3):
                 hits, unknown = int((x[index] > 0.04).sum()), int((x[index] < -0.4).sum())
-                shares = [one[f"synchronized_{name}"].values[index] for name in ("fraction", "low", "high")]
+                shares = [part[f"synchronized_{name}"].values[index] for name in ("fraction", "low", "high")]
                 assert shares == [*fraction_interval(hits, 5)[:2], fraction_interval(hits + unknown, 5)[2]]
-                assert one["undetermined_count"].values[index] == unknown
-    assert found["undetermined_count"].sum() > 0
+                assert part["undetermined_count"].values[index] == unknown
+    assert dataset["undetermined_count"].sum() > 0
     # With A = 0.05 no velocity becomes negative; with A = 0.5 those of most states do.
-    assert found["standing_count"].sel(amplitude=0.05).sum() == 0
-    for share in found["inner_share"].values:
-        assert 15 < found["standing_count"].sel(amplitude=0.5, inner_share=share).sum() <= 30
-    assert found["slipping_amplitude"].values == pytest.approx([0.1 / np.sqrt(2.0)] * 2)
+    assert dataset["standing_count"].sel(amplitude=0.05).sum() == 0
+    for share in dataset["inner_share"].values:
+        assert 15 < dataset["standing_count"].sel(amplitude=0.5, inner_share=share).sum() <= 30
+    assert dataset["slipping_amplitude"].values == pytest.approx([0.1 / np.sqrt(2.0)] * 2)
 
 
 def test_states_do_not_depend_on_the_other_shares(ruled):
     """The states with uniformly sliding inner blocks do not change when other shares are added."""
-    alone = phases.one_law([known(MODELS[0])], replace(PHASES, inner_share=(0.5,)), SEARCH.label_limit)
-    both = phases.one_law([known(MODELS[0])], PHASES, SEARCH.label_limit)
+    alone = phases.one_law([candidates(MODELS[0])], replace(PHASES, inner_share=(0.5,)), SEARCH.label_limit)
+    both = phases.one_law([candidates(MODELS[0])], PHASES, SEARCH.label_limit)
     assert both.sel(inner_share=[0.5]).drop_attrs().equals(alone.drop_attrs())
 
 
 def test_a_study_determines_the_outcome_of_its_phases(small_studies):
     """The attractors are found with short runs; in synchrony the velocities are identical."""
-    found = small_studies("paper").found["phases"]
-    assert found["a"].values.tolist() == [0.05]
-    found = found.sel(inner_share=0.0)
-    synchronized = found["branch"] == 0
+    dataset = small_studies("paper").summaries["phases"]
+    assert dataset["a"].values.tolist() == [0.05]
+    dataset = dataset.sel(inner_share=0.0)
+    synchronized = dataset["branch"] == 0
     assert synchronized.sel(amplitude=0.05, phase_difference=30.0).all()
     assert not synchronized.sel(amplitude=0.05, phase_difference=180.0).any()
-    assert found["velocity_correlation"].where(synchronized).min() == pytest.approx(1.0)
+    assert dataset["velocity_correlation"].where(synchronized).min() == pytest.approx(1.0)
     # The two sampled states have not reached the attractor with opposite phases.
-    lost = found.sel(amplitude=0.05, phase_difference=180.0)
+    lost = dataset.sel(amplitude=0.05, phase_difference=180.0)
     assert (lost["undetermined_count"] == 2).all()
     assert lost["velocity_correlation"].isnull().all()
-    assert "phases" not in small_studies("ring").found
+    assert "phases" not in small_studies("ring").summaries
 
 
 @pytest.mark.parametrize(("difference", "least", "most"), [(20.0, 1.0 - 1e-9, 1.0), (180.0, -1.0, -0.99)])

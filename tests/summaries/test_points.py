@@ -39,15 +39,15 @@ def test_a_grid_is_its_points_in_order(grid, tmp_path):
     assert {law: item.solver for law, item in other.settings.items()} == {"linearized": "map"}
     assert other.folder == tmp_path / "other"
     assert (other.initial, other.a, other.models) == (grid.initial, grid.a, grid.models)
-    given = {
+    config = {
         "initial": {"plus": {}},
         "parameters": grid.parameters,
         "settings": dict.fromkeys(grid.laws, SETTINGS),
         **grid.models,
     }
-    assert Grid.from_points(tmp_path, given) == grid
-    own = {"plus": {"position": [0.989, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1023]}}
-    assert Grid.from_points(tmp_path, {**given, "initial": own}).command(*POINT) != grid.command(*POINT)
+    assert Grid.from_points(tmp_path, config) == grid
+    states = {"plus": {"position": [0.989, -0.993, -0.991], "velocity": [0.099, 0.1012, 0.1023]}}
+    assert Grid.from_points(tmp_path, {**config, "initial": states}).command(*POINT) != grid.command(*POINT)
 
 
 def test_points_are_read_back(grid):

@@ -13,7 +13,7 @@ MODEL = Model(Chain(3), law_of("linearized", 0.05))
 
 
 @pytest.fixture(scope="module")
-def found():
+def dataset():
     """Branch 2 in the first slot, branch 1 in the second, and at a second a between the values of the grid."""
     runner = Runner(MODEL)
     antiphase = ChainState(np.array([0.07, 0.0, -0.07]), np.full(3, MODEL.v), np.zeros(3, bool))
@@ -36,9 +36,9 @@ def found():
     return summarize(refined, [MODEL]).sel(law="linearized")
 
 
-def test_branches_are_detuned_at_values_of_the_grid(found):
-    assert found["branch"].values.tolist() == [1, 2]
-    one, two = (found.sel(branch=branch).isel(value=0) for branch in (1, 2))
+def test_branches_are_detuned_at_values_of_the_grid(dataset):
+    assert dataset["branch"].values.tolist() == [1, 2]
+    one, two = (dataset.sel(branch=branch).isel(value=0) for branch in (1, 2))
     # The middle block oscillates in the fast mode on branch 1, and as the end blocks do on branch 2.
     assert (one["detuned_frequency"][:2, 1] > 0.33).all()
     assert two["detuned_frequency"].values[:2] == pytest.approx(
@@ -49,15 +49,15 @@ def test_branches_are_detuned_at_values_of_the_grid(found):
         assert branch["detuned_end_phase"].values[:2] == pytest.approx([173.0, 173.0], abs=4.0)
         assert (branch["detuned_mode_share"].values[:2, 1] > 0.99).all()
         assert (branch["detuned_exponent"].values[:2, 2] < -0.01).all()
-    assert np.isnan(found["detuned_frequency"].isel(value=1)).all()
+    assert np.isnan(dataset["detuned_frequency"].isel(value=1)).all()
 
 
-def test_the_rotation_number_is_that_of_branch_1(found):
-    assert found["rotation_number"].values == pytest.approx([0.649, 0.649], abs=1e-3)
-    assert found["locked"].values.tolist() == [0, 0]
+def test_the_rotation_number_is_that_of_branch_1(dataset):
+    assert dataset["rotation_number"].values == pytest.approx([0.649, 0.649], abs=1e-3)
+    assert dataset["locked"].values.tolist() == [0, 0]
 
 
-def test_the_modes_are_those_of_the_unequal_masses(found):
+def test_the_modes_are_those_of_the_unequal_masses(dataset):
     """Frequencies of the middle mode, to the digits that an independent eigenvalue problem gives."""
-    assert found["mode_frequency"].values[:, 1] == pytest.approx([0.22017, 0.21375, 0.20711], abs=5e-6)
-    assert found["mode_end_ratio"].values[:, 1] == pytest.approx([-0.820, -0.569, -0.293], abs=5e-4)
+    assert dataset["mode_frequency"].values[:, 1] == pytest.approx([0.22017, 0.21375, 0.20711], abs=5e-6)
+    assert dataset["mode_end_ratio"].values[:, 1] == pytest.approx([-0.820, -0.569, -0.293], abs=5e-4)

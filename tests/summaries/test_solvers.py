@@ -30,16 +30,16 @@ def runs():
 @pytest.fixture
 def files(tmp_path, runs):
     for (law, solver, name), run in runs.items():
-        own = solver == SOLVERS[law][0]
-        folder = tmp_path / "points" if own else tmp_path / "solvers" / solver
+        is_main = solver == SOLVERS[law][0]
+        folder = tmp_path / "points" if is_main else tmp_path / "solvers" / solver
         write_point(run, folder / law / "plus" / f"a{name}.nc")
-    own = {law: Settings(**settings(solvers[0])) for law, solvers in SOLVERS.items()}
-    grid = Grid(tmp_path / "points", {"plus": PAPER_STATES["plus"]}, {"a": A}, own, PAPER_MODELS)
-    others = {}
+    main_settings = {law: Settings(**settings(solvers[0])) for law, solvers in SOLVERS.items()}
+    grid = Grid(tmp_path / "points", {"plus": PAPER_STATES["plus"]}, {"a": A}, main_settings, PAPER_MODELS)
+    other_grids = {}
     for solver in ("series", "rk4"):
-        known = {law: Settings(**settings(solver)) for law, solvers in SOLVERS.items() if solver in solvers[1:]}
-        others[solver] = grid.copy_with(tmp_path / "solvers" / solver, known)
-    return grid, others
+        law_settings = {law: Settings(**settings(solver)) for law, solvers in SOLVERS.items() if solver in solvers[1:]}
+        other_grids[solver] = grid.copy_with(tmp_path / "solvers" / solver, law_settings)
+    return grid, other_grids
 
 
 def test_the_runs_are_compared(files, runs):
@@ -47,15 +47,15 @@ def test_the_runs_are_compared(files, runs):
     assert dict(dataset.sizes) == {"law": 2, "solver": 3, "initial": 1, "a": 2}
     assert dataset.attrs["solver_linearized"] == "map"
     for (law, solver, name), run in runs.items():
-        own = runs[law, SOLVERS[law][0], name]
+        reference = runs[law, SOLVERS[law][0], name]
         point = dataset.sel(law=law, solver=solver, initial="plus", a=A[name])
         assert point["mean_distance"].item() == run.mean_distance
-        assert point["difference"].item() == run.mean_distance - own.mean_distance
+        assert point["difference"].item() == run.mean_distance - reference.mean_distance
         assert point["step_count"].item() == run.step_count
         assert point["status"].item() == 0
-        expected = 0.0 if run is own else np.hypot(run.mean_distance_error, own.mean_distance_error)
+        expected = 0.0 if run is reference else np.hypot(run.mean_distance_error, reference.mean_distance_error)
         assert point["difference_error"].item() == expected
-        if run is own:
+        if run is reference:
             assert point["event_order_count"].item() == run.event_count
             assert point["event_order_time"].item() == run.end_time == 500.0
     torus = dataset.sel(law="linearized", initial="plus", a=0.08)
@@ -75,20 +75,20 @@ def test_a_solver_that_does_not_accept_a_law_has_no_numbers(files):
 
 
 def test_a_file_of_another_solver_is_refused(files):
-    grid, others = files
-    series, rk4 = (others[solver].path("linearized", "plus", "0.0800") for solver in ("series", "rk4"))
+    grid, other_grids = files
+    series, rk4 = (other_grids[solver].path("linearized", "plus", "0.0800") for solver in ("series", "rk4"))
     series.write_bytes(rk4.read_bytes())
     reason = r"series/linearized/plus/a0\.0800\.nc: is another run: solver: got rk4, expected nothing"
     with pytest.raises(BadFile, match=reason):
-        summarize(grid, others, 0.01)
+        summarize(grid, other_grids, 0.01)
 
 
 def test_the_figure_draws_every_solver(files):
     dataset = summarize(*files, 0.01)
     panels = figure.draw(dataset).axes
-    shown = [line.get_xdata().tolist() for line in panels[0].get_lines() if len(line.get_xdata()) == 2]
+    curves = [line.get_xdata().tolist() for line in panels[0].get_lines() if len(line.get_xdata()) == 2]
     for solver in SOLVERS["linearized"]:
-        assert dataset["mean_distance"].sel(law="linearized", solver=solver, initial="plus").values.tolist() in shown
+        assert dataset["mean_distance"].sel(law="linearized", solver=solver, initial="plus").values.tolist() in curves
     symbols = [line for line in panels[1].get_lines() if line.get_marker() not in ("|", "None")]
     assert len(symbols) == len(SOLVERS["linearized"]) - 1
     assert panels[4].get_title(loc="left") == "(e) nonlinear law: difference"

@@ -57,8 +57,8 @@ def test_cycle_time_of_hand_made_lists(stops, batches, mean, error):
     ],
 )
 def test_stick_fraction_of_hand_made_lists(time, kind, ends_stuck, expected):
-    found = stick_fraction(np.array(time), np.array(kind, dtype=int), 10.0, 20.0, ends_stuck)
-    assert found == pytest.approx(expected, abs=1e-15)
+    fraction = stick_fraction(np.array(time), np.array(kind, dtype=int), 10.0, 20.0, ends_stuck)
+    assert fraction == pytest.approx(expected, abs=1e-15)
 
 
 @pytest.mark.parametrize("frequency", [0.1, 0.1763, 0.35, 1.234])
@@ -189,16 +189,18 @@ def velocities(law, a, initial, **settings):
 def test_frequencies_are_those_of_the_motion(law, a, initial):
     """Compare with samples of the whole motion, 0.1 apart."""
     run, kept, model = velocities(law, a, initial)
-    found, duration = long_velocity(kept, model, 500.0)
+    velocity, duration = long_velocity(kept, model, 500.0)
     assert duration == pytest.approx(600.0, rel=0.02)
     for block in range(run.velocity.shape[1]):
         expected = leading_frequency(run.velocity[:, block], np.ptp(run.trajectory_time))
-        assert leading_frequency(found[:, block], duration) == pytest.approx(expected, abs=1e-4)
-    assert correlation(found[:, 0], found[:, -1]) == pytest.approx(correlation(*run.velocity.T[[0, -1]]), abs=0.02)
+        assert leading_frequency(velocity[:, block], duration) == pytest.approx(expected, abs=1e-4)
+    assert correlation(velocity[:, 0], velocity[:, -1]) == pytest.approx(
+        correlation(*run.velocity.T[[0, -1]]), abs=0.02
+    )
     # If the samples last longer than the events, even slightly, they are returned.
     assert long_velocity(vars(run), model, 500.0)[0] is run.velocity
-    for more, taken in ((1e-3, True), (-1e-3, False)):
-        samples = {**kept, "trajectory_time": np.array([0.0, duration + more])}
+    for excess, taken in ((1e-3, True), (-1e-3, False)):
+        samples = {**kept, "trajectory_time": np.array([0.0, duration + excess])}
         assert (long_velocity(samples, model, 500.0)[0] is kept["velocity"]) == taken
     none = {
         name: np.zeros((0, *kept[name].shape[1:]))
@@ -228,10 +230,10 @@ def test_frequencies_are_those_of_the_same_motion_in_other_units():
 def test_events_before_the_window_do_not_affect_frequencies():
     _, kept, model = velocities("linearized", 0.0475, "plus", transient=300.0, window=200.0, events="all")
     assert kept["event_time"][0] < 10.0
-    found, duration = long_velocity(kept, model, 300.0)
+    velocity, duration = long_velocity(kept, model, 300.0)
     assert 190.0 < duration <= 200.0
     later = {name: kept[name][kept["event_time"] >= 300.0] for name in kept if name in EVENT_STATES}
-    assert (long_velocity({**kept, **later}, model, 300.0)[0] == found).all()
+    assert (long_velocity({**kept, **later}, model, 300.0)[0] == velocity).all()
 
 
 def test_a_block_at_rest_has_no_frequency():

@@ -99,10 +99,12 @@ class Study:
 
 def run_once(factory: pytest.TempPathFactory, name: str, config: str) -> Study:
     """Return a study that has run to its end, once for all workers, with its `output`."""
-    made = made_once(factory, name, lambda folder: (folder / "output").write_text(Study(folder / "study", config).ok()))
+    source = made_once(
+        factory, name, lambda folder: (folder / "output").write_text(Study(folder / "study", config).ok())
+    )
     # Snakemake locks its folder: each worker has a copy.
-    study = copied(made / "study", factory.mktemp(name) / "study")
-    study.output = (made / "output").read_text()
+    study = copied(source / "study", factory.mktemp(name) / "study")
+    study.output = (source / "output").read_text()
     return study
 
 

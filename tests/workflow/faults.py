@@ -39,13 +39,13 @@ def running(study: Study) -> list[str]:
     """Return the files, below results/<study>, that jobs are making: those that the last run noted as incomplete."""
     folder = study.folder / ".snakemake" / "incomplete"
     begun = (study.folder / BEGUN).stat().st_mtime_ns
-    found = []
+    names = []
     for path in folder.rglob("*"):
         # Snakemake may be removing these records.
         with contextlib.suppress(FileNotFoundError):
             if path.is_file() and path.stat().st_mtime_ns > begun:
-                found.append(base64.urlsafe_b64decode(path.name).decode().split("/", 2)[2])
-    return sorted(found)
+                names.append(base64.urlsafe_b64decode(path.name).decode().split("/", 2)[2])
+    return sorted(names)
 
 
 def stages_running(study: Study) -> set[str]:
@@ -61,12 +61,12 @@ def temporaries(study: Study) -> list[str]:
 
 def processes(study: Study) -> dict[int, str]:
     """Return {number: command} of the processes that run in the folder of a study."""
-    found = {}
+    commands = {}
     for process in psutil.process_iter():
         with contextlib.suppress(psutil.Error, OSError):
             if Path(process.cwd()) == study.folder:
-                found[process.pid] = " ".join(process.cmdline())
-    return found
+                commands[process.pid] = " ".join(process.cmdline())
+    return commands
 
 
 def begin(study: Study, *arguments: str, environment: Mapping[str, str] | None = None) -> subprocess.Popen[bytes]:
@@ -128,10 +128,10 @@ def resume(study: Study, *arguments: str) -> list[str]:
 def failures(text: str) -> dict[str, str]:
     """Return {log below results/<study>/logs: reason} from the lines in which a run reports its failures."""
     assert re.search(r"^study \w+: stopped", text, re.MULTILINE), text
-    found = re.findall(r"^failed: (.+?): (.*) \(log results/\w+/logs/(\S+)\)$", text, re.MULTILINE)
-    reasons = {job: reason for job, reason, _ in found}
+    matches = re.findall(r"^failed: (.+?): (.*) \(log results/\w+/logs/(\S+)\)$", text, re.MULTILINE)
+    reasons = {job: reason for job, reason, _ in matches}
     same = "for the same reason as "
-    return {log: reasons.get(reason.removeprefix(same), reason) for _, reason, log in found}
+    return {log: reasons.get(reason.removeprefix(same), reason) for _, reason, log in matches}
 
 
 def remedies(text: str) -> list[str]:
@@ -141,7 +141,7 @@ def remedies(text: str) -> list[str]:
 
 def differences(study: Study, other: Study, *folders: str) -> list[str]:
     """Return the files in which two studies differ, and temporary files."""
-    mine, theirs = (each.files(*(folders or COMPARED)) for each in (study, other))
+    mine, theirs = (tree.files(*(folders or COMPARED)) for tree in (study, other))
     if not folders:
         mine["report.html"], theirs["report.html"] = map(report_without_times, (study, other))
     return sorted(name for name in mine.keys() | theirs.keys() if mine.get(name) != theirs.get(name))

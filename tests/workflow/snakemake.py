@@ -115,8 +115,8 @@ def _servers(seed: str) -> tuple[socket.socket, socket.socket]:
     """
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "PYTHONHASHSEED": seed}
     pairs = (socket.socketpair(type=socket.SOCK_SEQPACKET) for _ in range(4))
-    (elsewhere, one), (here, two), (asked, script), (asked_here, script_here) = pairs
-    for program, *ends in ((SNAKEMAKE, one, two, asked, asked_here), (SCRIPTS, script, script_here)):
+    (elsewhere, end_elsewhere), (here, end_here), (asked, script), (asked_here, script_here) = pairs
+    for program, *ends in ((SNAKEMAKE, end_elsewhere, end_here, asked, asked_here), (SCRIPTS, script, script_here)):
         numbers = [end.fileno() for end in ends]
         command = [sys.executable, "-P", "-c", program, *map(str, numbers)]
         subprocess.Popen(command, pass_fds=numbers, env=environment, stdin=subprocess.DEVNULL)

@@ -58,11 +58,11 @@ def test_the_stage_makes_its_files(study):
 
 def test_the_sum_of_moments_is_supplied_by_the_driver(study):
     """All blocks are at rest at both times, so the difference between supply and slip is strain of the springs."""
-    known = load_study(read_yaml(study.config), "study.yaml")
+    loaded = load_study(read_yaml(study.config), "study.yaml")
     for a in (2.0, 3.0):
         events = open_result(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
-        model = known.model("carlson_langer", a)
-        start = model.begin(known.state("rough"), "tested")
+        model = loaded.model("carlson_langer", a)
+        start = model.begin(loaded.state("rough"), "tested")
         assert start.stuck.all()
         time, stop = events["time"].values, (events["time"] + events["duration"]).values
         # A late time at which no block slips.
@@ -99,30 +99,30 @@ def test_the_columns_are_consistent(study):
 
 
 def test_the_statistics_are_those_of_the_events(study):
-    found = open_result(study, "summary/catalogue.nc").sel(law="carlson_langer")
+    summary = open_result(study, "summary/catalogue.nc").sel(law="carlson_langer")
     for a in (2.0, 3.0):
-        one, events = found.sel(a=a), open_result(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
+        part, events = summary.sel(a=a), open_result(study, f"catalogues/carlson_langer/a{a:.4f}.nc")
         magnitude = events["magnitude"].values
-        assert one["event_count"] == len(magnitude) == one["magnitude_count"].sum()
-        assert one["event_rate"] == len(magnitude) / 800.0
-        assert one["magnitude_rate"].sum() * 0.5 == pytest.approx(one["event_rate"])
-        fit = fit_slope(magnitude, one["slope_low"].item(), one["slope_high"].item())
+        assert part["event_count"] == len(magnitude) == part["magnitude_count"].sum()
+        assert part["event_rate"] == len(magnitude) / 800.0
+        assert part["magnitude_rate"].sum() * 0.5 == pytest.approx(part["event_rate"])
+        fit = fit_slope(magnitude, part["slope_low"].item(), part["slope_high"].item())
         names = {"slope": fit.b, "slope_error": fit.error, "slope_count": fit.count, "slope_p_value": fit.p_value}
-        assert {name: one[name].item() for name in names} == names
-        assert one["block_event_count"].sum() == events["blocks"].sum()
-        assert one["shown_magnitude"].max() == one["largest_magnitude"] == magnitude.max()
+        assert {name: part[name].item() for name in names} == names
+        assert part["block_event_count"].sum() == events["blocks"].sum()
+        assert part["shown_magnitude"].max() == part["largest_magnitude"] == magnitude.max()
 
 
 @pytest.mark.slow
 def test_a_picture_does_not_depend_on_the_users_settings_of_matplotlib(study):
     """Settings come from a matplotlibrc or from a notebook that starts snakemake. The program itself is started."""
     before = study.files("figures")
-    own = study.folder / "matplotlibrc"
-    own.write_text("text.usetex: True\nsavefig.bbox: tight\naxes.spines.top: False\nfigure.autolayout: True\n")
+    settings = study.folder / "matplotlibrc"
+    settings.write_text("text.usetex: True\nsavefig.bbox: tight\naxes.spines.top: False\nfigure.autolayout: True\n")
     environment = {**study.environment(), "MPLBACKEND": "module://matplotlib_inline.backend_inline"}
     command = study.command("-R", "figure_catalogue", "--", TARGETS[1])
     run = subprocess.run(command, cwd=study.folder, env=environment, capture_output=True, text=True)
-    own.unlink()
+    settings.unlink()
     assert run.returncode == 0, run.stderr
     assert "figures/catalogue.png" in run.stderr
     assert study.files("figures") == before

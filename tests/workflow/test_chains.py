@@ -31,8 +31,8 @@ def study(tmp_path_factory):
 
 
 def test_the_target_makes_its_files_and_no_points(study):
-    made = set(study.files("chains", "summary", "figures", "points"))
-    assert made == {
+    paths = set(study.files("chains", "summary", "figures", "points"))
+    assert paths == {
         *("chains/blocks2.nc", "chains/blocks3.nc", "summary/chains.nc"),
         *("figures/chains.pdf", "figures/chains.png"),
     }

@@ -50,8 +50,8 @@ def before():
 
 def counts(before, changes):
     """Return {rule: number of its jobs whose files differ from before}."""
-    found = [rule for (rule, files), about in origins(changes).items() if before.get((rule, files)) != about]
-    return {rule: found.count(rule) for rule in found}
+    rules = [rule for (rule, files), about in origins(changes).items() if before.get((rule, files)) != about]
+    return {rule: rules.count(rule) for rule in rules}
 
 
 @pytest.fixture(scope="module")
@@ -62,12 +62,14 @@ def jobs():
 
 def jobs_after(jobs, *roots):
     """Return {rule: number of its jobs} for some rules and all rules that need their output."""
-    found, more = set(), {*roots}
-    while more:
-        found |= more
-        files = {file for job in jobs if job.rule in found for file in job.output}
-        more = {job.rule for job in jobs if files & {file for read in job.inputs.values() for file in read}} - found
-    return {rule: sum(job.rule == rule for job in jobs) for rule in found}
+    rules, following = set(), {*roots}
+    while following:
+        rules |= following
+        files = {file for job in jobs if job.rule in rules for file in job.output}
+        following = {
+            job.rule for job in jobs if files & {file for read in job.inputs.values() for file in read}
+        } - rules
+    return {rule: sum(job.rule == rule for job in jobs) for rule in rules}
 
 
 #: Changes of keys that make the same rules run again, besides the report.
@@ -138,9 +140,11 @@ RESHAPED = [
 
 def test_every_key_has_a_case():
     """A new key of the config needs a row here, or its own test."""
-    known = {key.split(".")[0] for key in (*(key for keys, _ in KEYS for key in keys), *(key for key, *_ in RESHAPED))}
+    tested_keys = {
+        key.split(".")[0] for key in (*(key for keys, _ in KEYS for key in keys), *(key for key, *_ in RESHAPED))
+    }
     elsewhere = {"study", "initial", "solver", "without", "grid", "catalogue", "edges"}
-    assert known | elsewhere == set(CONFIG.fields)
+    assert tested_keys | elsewhere == set(CONFIG.fields)
 
 
 @pytest.mark.parametrize(("changes", "roots"), KEYS, ids=["+".join(keys) for keys, _ in KEYS])
@@ -151,14 +155,14 @@ def test_a_key_invalidates_only_what_uses_it(before, jobs, changes, roots):
 
 @pytest.mark.parametrize(("key", "value", "expected", "spared"), RESHAPED, ids=[key for key, *_ in RESHAPED])
 def test_a_key_that_adds_or_removes_jobs(before, key, value, expected, spared):
-    found = counts(before, {key: value})
-    assert {name: found.get(name) for name in expected} == expected
-    assert not set(spared) & set(found)
+    job_counts = counts(before, {key: value})
+    assert {name: job_counts.get(name) for name in expected} == expected
+    assert not set(spared) & set(job_counts)
 
 
 def test_the_solver_of_a_law_invalidates_only_that_law(before):
-    found = counts(before, {"solver": {"nonlinear": "rk4"}})
-    assert found["simulate"] == 8
+    job_counts = counts(before, {"solver": {"nonlinear": "rk4"}})
+    assert job_counts["simulate"] == 8
 
 
 def entries(job):

@@ -47,8 +47,8 @@ def bk(study, *words):
 
 def times(study):
     """Return {point file: when it was written}."""
-    found = (study.folder / RESULTS / "points").rglob("[!.]*.nc")
-    return {path.relative_to(study.folder).as_posix(): path.stat().st_mtime_ns for path in found}
+    paths = (study.folder / RESULTS / "points").rglob("[!.]*.nc")
+    return {path.relative_to(study.folder).as_posix(): path.stat().st_mtime_ns for path in paths}
 
 
 def test_the_whole_study_is_computed_and_read(plane):
@@ -67,8 +67,8 @@ def test_the_whole_study_is_computed_and_read(plane):
     assert dict(summary.sizes) == {"law": 2, "initial": 1, "a": 2, "v": 2, "exponent": 3}
     tree = open_study(results)
     assert tree["summary/runs"].mean_distance.equals(summary.mean_distance)
-    one = tree["points/nonlinear/pair/a0.3000_v0.0500"]
-    assert (one.a.item(), one.v.item()) == (0.3, 0.05)
+    point = tree["points/nonlinear/pair/a0.3000_v0.0500"]
+    assert (point.a.item(), point.v.item()) == (0.3, 0.05)
     page = (results / "report.html").read_text()
     assert "figures/grid_kinds.pdf" in page
     assert "v = 0.05, 0.1" in re.sub("<[^>]+>", "", page).replace("\xa0", " ")

@@ -55,8 +55,8 @@ def test_every_stage_stops_at_a_bad_file(limited, tmp_path):
         *("runs.log", "bifurcation_diagram.log", "stick_slip.log", "solvers.log"),
         *("figure_distance.log", "figure_motion_minus.log", "attractors.log"),
     }
-    found = [re.fullmatch(r"results/limits/(\S+): [^;]+", reason)[1] for reason in reasons.values()]
-    assert {*found} == spoiled.keys()
+    names = [re.fullmatch(r"results/limits/(\S+): [^;]+", reason)[1] for reason in reasons.values()]
+    assert {*names} == spoiled.keys()
     assert not (results / "summary/runs.nc").exists()
     assert remade(study, run.stderr, *targets) == spoiled.keys()
     check_end(study, limited, *targets)
@@ -120,9 +120,9 @@ def test_damaged_and_lost_texts_and_pictures_are_made_again(copy, finished):
     # These do not run the study either.
     for flag in ("--rulegraph", "--summary"):
         copy.ok(flag)
-    found = {finding.path.name: finding.kind for finding in check_study(results).findings}
+    findings = {finding.path.name: finding.kind for finding in check_study(results).findings}
     kinds = {**dict.fromkeys(("claims.json", "orbits.png", "agreement.txt"), "corrupt"), "orbits.pdf": "missing"}
-    assert kinds.items() <= found.items()
+    assert kinds.items() <= findings.items()
     output = copy.ok()
     assert "results/tiny/figures/orbits.png: was changed after it was written: it is made again" in output
     assert (results / "figures/orbits.png.damaged").read_bytes() == cut((results / "figures/orbits.png").read_bytes())

@@ -20,7 +20,7 @@ def summaries(tmp_path_factory):
     folder = tmp_path_factory.mktemp("limits")
     return run_study(
         folder / "results/limits", yaml.safe_load(LIMITS), ("attractors", "mean_distance", "lyapunov", "agreement")
-    ).found
+    ).summaries
 
 
 @pytest.mark.slow
@@ -31,13 +31,13 @@ def test_the_study_ends_and_its_last_lines_count_them(limited):
 
 
 def test_summaries_contain_the_status_and_no_value(summaries):
-    found, agreement = summaries["mean_distance"], summaries["agreement"]
-    failed = decode_flags(found["status"]) == "diverged"
+    means, agreement = summaries["mean_distance"], summaries["agreement"]
+    failed = decode_flags(means["status"]) == "diverged"
     assert failed.sel(law="linearized").values.tolist() == [[False, True], [False, True]]
     assert not failed.sel(law="nonlinear").any()
     for name in ("mean_distance", "mean_distance_error"):
-        assert (np.isnan(found[name]) == failed).all()
-    assert (found["synchronized"].where(failed, 0) == 0).all()
+        assert (np.isnan(means[name]) == failed).all()
+    assert (means["synchronized"].where(failed, 0) == 0).all()
     assert (decode_flags(agreement["kind"]).values[failed.values] == "undetermined").all()
     assert (agreement["agrees"].sel(a=2.5) == -1).all()
     assert np.isnan(agreement["difference"].sel(a=2.5)).all()

@@ -77,9 +77,9 @@ def test_interrupted_and_terminated(finished, study):
         assert process.wait() == 1
         wait_for(lambda: not processes(study))
         assert "study tiny: stopped" in (study.folder / "screen").read_text()
-        made = study.folder / ATTRACTORS
-        assert not made.exists() or made.read_bytes() == (finished.folder / ATTRACTORS).read_bytes()
-        made.unlink(missing_ok=True)
+        path = study.folder / ATTRACTORS
+        assert not path.exists() or path.read_bytes() == (finished.folder / ATTRACTORS).read_bytes()
+        path.unlink(missing_ok=True)
     assert resume(study, ATTRACTORS) == []
     assert (study.folder / ATTRACTORS).read_bytes() == (finished.folder / ATTRACTORS).read_bytes()
     assert temporaries(study) == []

@@ -70,8 +70,8 @@ def test_a_summary_that_no_figure_shows_is_checked(with_unseen):
 
 def test_all_files_of_rules_are_checked(study):
     """This covers the whole study and its optional stage."""
-    made = study.ok("--summary", "all", "chains")
-    paths = set(re.findall(r"^results/tiny/(\S+)\t", made, re.MULTILINE))
+    listing = study.ok("--summary", "all", "chains")
+    paths = set(re.findall(r"^results/tiny/(\S+)\t", listing, re.MULTILINE))
     of_points = {path for path in paths if path.startswith(("points/", "solvers/"))}
     assert len(of_points) == 22
     assert paths - of_points == planned(read_yaml(study.config)).files.keys()
@@ -79,6 +79,6 @@ def test_all_files_of_rules_are_checked(study):
 
 def test_verdicts_wait_for_the_inputs_of_judges(study):
     """No statement of the paper is about maps of basins: the longest jobs of a study."""
-    found = jobs(study.ok("-n", "-p", "results/tiny/summary/claims.json"))
-    assert {"attractors", "phases", "two_blocks", "stick_slip"} <= found.keys()
-    assert not found.keys() & {"basins", "basin_tile", "basin_pairs"}
+    rules = jobs(study.ok("-n", "-p", "results/tiny/summary/claims.json"))
+    assert {"attractors", "phases", "two_blocks", "stick_slip"} <= rules.keys()
+    assert not rules.keys() & {"basins", "basin_tile", "basin_pairs"}

@@ -51,6 +51,6 @@ def test_groups_of_points_are_the_same_in_every_run(tmp_path):
 
 
 def test_points_of_other_solvers_are_grouped_too(tmp_path):
-    found = groups(Study(tmp_path), "solver_points=4", 1, rule="simulate_solver")
-    assert sorted(map(len, found)) == [2, 4]
-    assert len(frozenset.union(*found)) == 6
+    sets = groups(Study(tmp_path), "solver_points=4", 1, rule="simulate_solver")
+    assert sorted(map(len, sets)) == [2, 4]
+    assert len(frozenset.union(*sets)) == 6

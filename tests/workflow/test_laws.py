@@ -64,8 +64,8 @@ def laws(tmp_path_factory):
 def test_points_of_four_laws(laws, law):
     from burridge_knopoff.model.initial import PAPER_STATES
 
-    found = sorted(str(path.relative_to(laws / "points" / law)) for path in (laws / "points" / law).rglob("*.nc"))
-    assert found == [f"plus/a{a}.nc" for a in ("0.2000", "2.5000")]
+    paths = sorted(str(path.relative_to(laws / "points" / law)) for path in (laws / "points" / law).rglob("*.nc"))
+    assert paths == [f"plus/a{a}.nc" for a in ("0.2000", "2.5000")]
     settings = Settings(transient=20.0, window=30.0, batches=2)
     for a in (0.2, 2.5):
         model = Model(Chain(3), law_of(law, a, DESCRIPTIONS[law]))

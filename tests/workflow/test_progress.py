@@ -102,8 +102,8 @@ def test_without_a_terminal(finished):
 
 def test_last_lines_of_a_study(finished):
     lines = finished.output.splitlines()
-    made = next(line for line in lines if line.startswith("files made in results/tiny: "))
-    counts = set(made.partition(": ")[2].split(", "))
+    summary_line = next(line for line in lines if line.startswith("files made in results/tiny: "))
+    counts = set(summary_line.partition(": ")[2].split(", "))
     results = finished.folder / "results" / "tiny"
     folders = {"points": 16} | {name: len(list((results / name).glob("[!.]*"))) for name in ("summary", "figures")}
     assert counts == {f"{name} {count}" for name, count in folders.items()} | {

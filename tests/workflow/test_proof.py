@@ -11,9 +11,9 @@ from tests.workflow.conftest import TINY, Study
 @pytest.mark.slow
 def test_the_target_makes_its_files_and_nothing_else(finished, study):
     study.ok("proof", cores=1)
-    made = study.files("points", "summary", "figures")
-    assert set(made) == {"summary/proof.nc", "summary/proof.txt"}
-    assert made.items() <= finished.files("summary").items()
+    files = study.files("points", "summary", "figures")
+    assert set(files) == {"summary/proof.nc", "summary/proof.txt"}
+    assert files.items() <= finished.files("summary").items()
     assert (study.folder / "results" / "tiny" / "logs" / "proof.log").read_text() == ""
 
 

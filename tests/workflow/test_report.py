@@ -51,8 +51,8 @@ def test_every_figure_and_text_has_its_category_and_caption(report, finished, re
         for category, parts in embedded_variable(page, "categories").items()
     }
     assert listed == CATEGORIES
-    made = {path.name for path in (finished.folder / "results" / "tiny" / "figures").glob("*.png")}
-    assert made == {name for names in CATEGORIES.values() for name in names if name.endswith(".png")}
+    pictures = {path.name for path in (finished.folder / "results" / "tiny" / "figures").glob("*.png")}
+    assert pictures == {name for names in CATEGORIES.values() for name in names if name.endswith(".png")}
     captions = {entry["caption"] for entry in results.values()}
     # Both motions have one caption, which names the initial state.
     assert len(captions) == len(results)
@@ -64,9 +64,9 @@ def test_every_figure_and_text_has_its_category_and_caption(report, finished, re
         content = base64.b64decode(entry["data_uri"].partition("base64,")[2])
         assert content == (finished.folder / path).read_bytes()
     assert "Study <strong>tiny</strong>" in embedded_variable(page, "workflow_desc")
-    shown = " ".join(re.sub(r"<[^>]+>", "", html.unescape(" ".join(captions))).split())
+    caption_text = " ".join(re.sub(r"<[^>]+>", "", html.unescape(" ".join(captions))).split())
     written = {path.stem: path.read_text() for path in (repository / "workflow" / "report").glob("*.rst")}
-    unused = {name for name, text in written.items() if " ".join(text.split()[:6]) not in shown}
+    unused = {name for name, text in written.items() if " ".join(text.split()[:6]) not in caption_text}
     # The stage of edge states is off.
     assert unused == {"figure", "workflow", "edges_txt"}
 

@@ -33,8 +33,8 @@ def results(finished):
 
 def test_exactly_the_points_of_the_config_exist(results):
     """There is no other point: omitted keys of a config are not taken from config/paper.yaml."""
-    found = sorted(str(path.relative_to(results / "points")) for path in (results / "points").rglob("*.nc"))
-    assert found == sorted(
+    paths = sorted(str(path.relative_to(results / "points")) for path in (results / "points").rglob("*.nc"))
+    assert paths == sorted(
         f"{law}/{initial}/a{a}.nc"
         for law in ("linearized", "nonlinear")
         for initial in ("minus", "plus")
@@ -116,15 +116,15 @@ def test_attractors_and_basins(results):
         # Both runs are on a known attractor.
         assert (there["initial_branch"].sel(contact="one_sided", start="moving") >= 0).all()
         branches = set(there["branch"].values.tolist())
-        known = set(attractors["branch_number"].values.tolist())
+        numbers = set(attractors["branch_number"].values.tolist())
     with xr.open_dataset(results / "summary" / "refined.nc") as refined:
         # The study inserts no values.
         assert refined["a"].values.tolist() == [GRID, GRID]
         assert (refined["in_grid"] == 1).all()
-        assert set(refined["branch"].values.ravel().tolist()) <= known | {-1}
+        assert set(refined["branch"].values.ravel().tolist()) <= numbers | {-1}
     with xr.open_dataset(results / "summary" / "basins.nc") as basins:
         steps = {"separation": 13, "separation_step": 12}
-        steps["number"] = len(known)
+        steps["number"] = len(numbers)
         assert dict(basins.sizes) == {"map": 3, "last_position": 8, "first_position": 8, **steps}
         assert list(zip(basins["law"].values.tolist(), basins["a"].values.tolist(), strict=True)) == [
             ("linearized", 0.05),
@@ -142,8 +142,8 @@ def test_phases_summary(results):
         small = phases["branch"].sel(amplitude=0.03)
         assert (small.sel(phase_difference=20.0) == 0).all()
         assert (small.sel(phase_difference=180.0) != 0).all()
-        with xr.open_dataset(results / "phases" / "nonlinear.nc") as one:
-            assert (phases["branch"].sel(law="nonlinear") == one["branch"]).all()
+        with xr.open_dataset(results / "phases" / "nonlinear.nc") as part:
+            assert (phases["branch"].sel(law="nonlinear") == part["branch"]).all()
 
 
 def test_agreement_summary(results):
@@ -183,9 +183,9 @@ def test_stick_slip_summary(results):
         point = cycles.sel(law="nonlinear", initial="plus", a=0.22)
         for block in (1, 2, 3):
             stops = run.event_time[(run.event_block == block) & (run.event_kind == 0) & (run.event_time >= 100.0)]
-            one = point.sel(block=block)
-            assert one["stop_rate"].item() == len(stops) / 200.0 > 0.0
-            assert one["cycle_time"].item() == pytest.approx(np.diff(stops).mean(), rel=1e-12)
+            block_data = point.sel(block=block)
+            assert block_data["stop_rate"].item() == len(stops) / 200.0 > 0.0
+            assert block_data["cycle_time"].item() == pytest.approx(np.diff(stops).mean(), rel=1e-12)
         # The whole window, except before the first stop and after the last event.
         whole = simulate("nonlinear", 0.22, "plus", **{**OPTIONS, "trajectory": 200.0})
         expected = np.corrcoef(whole.velocity[:, 0], whole.velocity[:, 2])[0, 1]
@@ -208,8 +208,8 @@ def test_solvers_summary(results):
         assert point["mean_distance"].item() == run.mean_distance
         assert point["step_count"].item() == run.step_count
         assert abs(solvers["difference"].sel(solver="map")).max() < 1e-11
-    found = {str(path.relative_to(results / "solvers").parent) for path in (results / "solvers").rglob("a*.nc")}
-    assert found == {
+    folders = {str(path.relative_to(results / "solvers").parent) for path in (results / "solvers").rglob("a*.nc")}
+    assert folders == {
         f"{way}/{initial}"
         for way in ("map/linearized", "rk4/linearized", "rk4/nonlinear")
         for initial in ("minus", "plus")

@@ -43,7 +43,7 @@ def test_the_same_bytes_on_one_core_and_in_a_second_checkout(limited, tmp_path, 
     output = study.ok("points", "summary", *figures, "--verbose", cores=1)
     # The scheduler checks for ready jobs when one has ended, and not more and more often.
     assert 0 < output.count("Resources before job selection") <= output.count("Finished jobid") + 5
-    mine, other = (each.files("points", "summary", "figures") for each in (study, limited))
+    mine, other = (copy.files("points", "summary", "figures") for copy in (study, limited))
     assert len(mine) == 8 + 21 + 4
     assert [name for name in mine if mine[name] != other[name]] == []
 
@@ -52,13 +52,13 @@ def test_one_point_by_its_path_and_by_hand(finished, study):
     target = "results/tiny/points/linearized/plus/a0.0800.nc"
     output = study.ok(target, "-p")
     assert list(study.files("points")) == ["points/linearized/plus/a0.0800.nc"]
-    made = (study.folder / target).read_bytes()
-    assert made == (finished.folder / target).read_bytes()
+    content = (study.folder / target).read_bytes()
+    assert content == (finished.folder / target).read_bytes()
     command = re.search(r"bk simulate .*", output)[0].split(" > ")[0].split()
     (study.folder / target).unlink()
     command[0] = os.path.join(os.path.dirname(study.command()[0]), "bk")
     subprocess.run(command, check=True, cwd=study.folder)
-    assert (study.folder / target).read_bytes() == made
+    assert (study.folder / target).read_bytes() == content
 
 
 MODULE = """

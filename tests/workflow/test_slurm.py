@@ -160,7 +160,7 @@ def test_a_study_survives_kills_cancellations_and_time_limits(finished, cluster,
     subprocess.run(["scancel", cancelled], check=True)
     log = second.end()
 
-    mine, other = (each.files("points", "summary", "figures", "attractors", "basins") for each in (study, finished))
+    mine, other = (copy.files("points", "summary", "figures", "attractors", "basins") for copy in (study, finished))
     assert mine == other
     runs = runs_of_each_target(cluster, {**first.makes, **second.makes})
     assert len(runs) == int(re.search(r"(\d+) jobs:", finished.output)[1])

@@ -70,9 +70,9 @@ def test_comments_docstrings_and_plumbing_invalidate_nothing(studied):
 def test_code_invalidates_what_depends_on_it(studied, name, roots):
     """Only the roots and the jobs that need them run again."""
     with edit(studied.repository / PACKAGE / name, CODE):
-        found = jobs(studied.ok("-n", "-p"))
-    assert set(roots) <= set(found)
-    assert found == jobs(studied.ok("-n", "-p", "-R", *roots))
+        planned = jobs(studied.ok("-n", "-p"))
+    assert set(roots) <= set(planned)
+    assert planned == jobs(studied.ok("-n", "-p", "-R", *roots))
 
 
 def test_an_edited_kernel_is_refused_until_it_is_built(studied):
@@ -93,8 +93,8 @@ def test_a_kernel_that_is_not_built_starts_no_study(studied, tmp_path):
     assert run.returncode != 0
     assert run.stderr.splitlines()[-1] == "the kernel is not compiled: run `make kernel`"
     with edit(study.repository / PACKAGE / "kernel/module.cpp", "\nint more;\n"):
-        found = jobs(study.ok("-n", "-p"))
-    assert {"simulate", "attractors_of_law", "orbits", "two_blocks", "proof", "claims", "report"} <= set(found)
+        planned = jobs(study.ok("-n", "-p"))
+    assert {"simulate", "attractors_of_law", "orbits", "two_blocks", "proof", "claims", "report"} <= set(planned)
 
 
 @pytest.fixture(scope="module")
@@ -129,9 +129,9 @@ def change_config(edited, changes):
     ],
 )
 def test_a_key_invalidates_only_what_uses_it(edited, before, changes):
-    found = jobs(change_config(edited, changes).ok("-n", "-p"))
-    del found["all"]
-    assert found == counts(before, changes)
+    planned = jobs(change_config(edited, changes).ok("-n", "-p"))
+    del planned["all"]
+    assert planned == counts(before, changes)
 
 
 def test_the_reason_of_a_rerun_is_a_line(edited):

@@ -33,7 +33,7 @@ def slurm(monkeypatch, tmp_path):
 
     def script_answers(**answers):
         """Let each program of Slurm give its answers in turn; return the list of commands."""
-        left, asked = {name: iter(each) for name, each in answers.items()}, []
+        left, asked = {name: iter(replies) for name, replies in answers.items()}, []
 
         def ask(*command, **_):
             asked.append(command)

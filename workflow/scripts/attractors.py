@@ -4,7 +4,7 @@ from burridge_knopoff.job import Job
 
 job = Job(snakemake)
 
-from burridge_knopoff.summaries.all_laws import digest, merge_laws
+from burridge_knopoff.summaries.branch_numbering import digest, merge_laws
 
 parts, refined_parts = job.summaries("attractors"), job.summaries("refined")
 attractors, refined, rotation = merge_laws(job.config, parts, refined_parts, job.cores)

@@ -6,5 +6,5 @@ job = Job(snakemake)
 
 from burridge_knopoff.summaries.basins import pairs_of_map
 
-known = job.summary("attractors"), job.summary("returns")
-job.write(pairs_of_map(job.config, job.law, *known, job.cores))
+datasets = job.summary("attractors"), job.summary("returns")
+job.write(pairs_of_map(job.config, job.law, *datasets, job.cores))

@@ -6,5 +6,5 @@ job = Job(snakemake)
 
 from burridge_knopoff.summaries.basins import tile_of_map
 
-known = job.summary("attractors"), job.summary("returns")
-job.write(tile_of_map(job.config, job.law, *known, int(job.wildcards.tile), job.cores))
+datasets = job.summary("attractors"), job.summary("returns")
+job.write(tile_of_map(job.config, job.law, *datasets, int(job.wildcards.tile), job.cores))

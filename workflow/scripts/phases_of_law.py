@@ -6,5 +6,5 @@ job = Job(snakemake)
 
 from burridge_knopoff.summaries.phases import phases_of_law
 
-known = job.summary("attractors"), job.summary("returns")
-job.write(phases_of_law(job.config, job.law, *known, job.cores))
+datasets = job.summary("attractors"), job.summary("returns")
+job.write(phases_of_law(job.config, job.law, *datasets, job.cores))

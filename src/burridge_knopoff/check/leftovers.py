@@ -28,13 +28,13 @@ def run_logs(study: Study) -> dict[str, str]:
 def leftovers(results: Path, study: Study, record: Mapping[str, Any]) -> list[Path]:
     """Return results, logs and benchmarks of jobs that the study no longer has; record : of its last run."""
     files, whole = {**record["files"], **run_logs(study)}, results.resolve()
-    known = {*files, *_logs(files.values())}
+    expected_names = {*files, *_logs(files.values())}
     left = {*record["left"], *_logs(record["left"].values())}
     names = {path: path.relative_to(results).as_posix() for path in sorted(results.rglob("*"))}
     return [
         path
         for path, name in names.items()
-        if name not in known
+        if name not in expected_names
         and (name in left or _OF_RUNS.fullmatch(name))
         # The target of a link does not belong to the study.
         and path.resolve() == whole / name
@@ -44,8 +44,8 @@ def leftovers(results: Path, study: Study, record: Mapping[str, Any]) -> list[Pa
 
 def _logs(logs: Iterable[str]) -> set[str]:
     """Return logs, and the benchmarks of the same jobs."""
-    known = set(logs)
-    return known | {f"benchmarks{log.removeprefix('logs').removesuffix('.log')}.tsv" for log in known}
+    names = set(logs)
+    return names | {f"benchmarks{log.removeprefix('logs').removesuffix('.log')}.tsv" for log in names}
 
 
 def missing_files(results: Path, record: Mapping[str, Any]) -> dict[str, Path]:

@@ -133,10 +133,10 @@ def check_study(results: str | Path) -> Check:
         files = format_count(len(left), "file")
         notes.append(f"left over, with logs and benchmarks: {files}; delete: bk prune {results}")
     missing = missing_files(results, record)
-    made = [name for name in record["files"] if not name.endswith(".done")]
-    rest = {name: missing.get(name, Path()) for name in made if name in missing or (results / name).is_file()}
+    file_names = [name for name in record["files"] if not name.endswith(".done")]
+    rest = {name: missing.get(name, Path()) for name in file_names if name in missing or (results / name).is_file()}
     unknown = {path.relative_to(results).as_posix() for path in results.rglob("*.nc") if not path.name.startswith(".")}
-    unknown -= {*runs, *made, *(path.relative_to(results).as_posix() for path in left)}
+    unknown -= {*runs, *file_names, *(path.relative_to(results).as_posix() for path in left)}
     return Check(
         results,
         ", ".join(

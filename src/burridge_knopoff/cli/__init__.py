@@ -94,11 +94,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         reserve_room(sys.stderr)
     # Pictures are written to files. A notebook may name a backend that is not installed, and matplotlib would not load.
     os.environ.pop("MPLBACKEND", None)
-    given = join_signed(sys.argv[1:] if arguments is None else arguments)
-    parser = build_parser(next((word for word in given if not word.startswith("-")), ""))
-    options = parser.parse_args(given)
-    options.given = given
-    names = [word.partition("=")[0] for word in given if word.startswith("--")]
+    argv = join_signed(sys.argv[1:] if arguments is None else arguments)
+    parser = build_parser(next((word for word in argv if not word.startswith("-")), ""))
+    options = parser.parse_args(argv)
+    options.given = argv
+    names = [word.partition("=")[0] for word in argv if word.startswith("--")]
     for name in names:
         if names.count(name) > 1 and name != "--number":
             parser.error(f"{name}: given {names.count(name)} times, expected once")

@@ -39,14 +39,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_search(parser: argparse.ArgumentParser, *more: str, **defaults: Any) -> None:
+def add_search(parser: argparse.ArgumentParser, *extra_names: str, **defaults: Any) -> None:
     """Add the settings of the search and of the kinds of motion, and the choice of `start`.
 
-    more : additional settings of the search; defaults : values that replace the settings' own defaults
+    extra_names : additional settings of the search; defaults : values that replace the settings' own defaults
     """
     search = parser.add_argument_group("search")
     add_settings(search, Settings, "start")
-    names = ("samples", *more, "seed", "transient", "window", "time_limit", "resolution")
+    names = ("samples", *extra_names, "seed", "transient", "window", "time_limit", "resolution")
     add_settings(search, SearchSettings, *names, **defaults)
     add_settings(search, SearchSettings, "perturbations", "lifetime")
     add_settings(search, SearchSettings, "position", "velocity", suffix="_box")
@@ -67,23 +67,23 @@ def run(options: argparse.Namespace) -> int:
     state, search = state_of(options), search_of(options)
     model, motion = model_of(options, state), settings_of(MotionSettings, options)
     starts = [] if state is None else [state]
-    found, _ = coexisting_attractors(model, search, motion, starts=starts, start=options.start)
-    count, drawn = int((found["branch"] >= 0).sum()), int(found["sample_count"].sum())
+    attractors, _ = coexisting_attractors(model, search, motion, starts=starts, start=options.start)
+    count, drawn = int((attractors["branch"] >= 0).sum()), int(attractors["sample_count"].sum())
     print(f"{model_line(model)}: {'one attractor' if count == 1 else f'{count} attractors'}\n")
     names = ("", "_low", "_high")
-    shares = np.stack([100.0 * found[f"basin_fraction{name}"].values[0, 0][:count] for name in names], axis=1)
+    shares = np.stack([100.0 * attractors[f"basin_fraction{name}"].values[0, 0][:count] for name in names], axis=1)
     column = [f"{share:.1f} ({low:.1f} to {high:.1f}) %" for share, low, high in shares]
-    print("\n".join(attractor_table(found, {f"of {drawn} states (95 % interval)": column} if drawn else {})))
+    print("\n".join(attractor_table(attractors, {f"of {drawn} states (95 % interval)": column} if drawn else {})))
     if drawn:
-        lost = int(found["undetermined_count"].sum())
+        lost = int(attractors["undetermined_count"].sum())
         why = f": they reach none of these by tau = {search.label_limit:g}, or still drift" if lost else ""
         print(f"\nundetermined: {lost} of {drawn} states{why}")
     if state is not None:
-        reached = found.isel(law=0, a=0).sel(contact=model.contact, start=options.start, initial=state.name)
+        reached = attractors.isel(law=0, a=0).sel(contact=model.contact, start=options.start, initial=state.name)
         branch = reached["initial_branch"].item()
-        name = branch_label(found, branch, reached["initial_side"].item()) if branch >= 0 else "none of them"
+        name = branch_label(attractors, branch, reached["initial_side"].item()) if branch >= 0 else "none of them"
         print(f"{state.name} reaches: {name}")
     if options.out:
-        write_summary(found.assign_attrs(history=command_of(options)), options.out)
+        write_summary(attractors.assign_attrs(history=command_of(options)), options.out)
         print(f"written: {options.out}")
     return 0

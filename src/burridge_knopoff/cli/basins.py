@@ -65,8 +65,8 @@ def run(options: argparse.Namespace) -> int:
     motion = settings_of(MotionSettings, options)
     basins, attractors = burridge_knopoff.basin_map(model, None, state, **plane, **search, motion=motion)
     branch, side = (basins[name].values[0] for name in ("branch", "side"))
-    found = attractors.isel(law=0, a=0)
-    reached = zip(found["branch"].values.tolist(), found["side"].values.tolist(), strict=True)
+    slots = attractors.isel(law=0, a=0)
+    reached = zip(slots["branch"].values.tolist(), slots["side"].values.tolist(), strict=True)
     shares = [f"{100 * ((branch == number) & (side == of)).mean():.2f} %" for number, of in reached]
     first, last = ("{:g} to {:g}".format(*getattr(options, f"{end}_position")) for end in ("first", "last"))
     pixels = options.pixels

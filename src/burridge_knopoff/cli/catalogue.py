@@ -55,17 +55,17 @@ def run(options: argparse.Namespace) -> int:
     state = state_of(options) or PAPER_STATES["minus"]
     model, settings = model_of(options, state), settings_of(CatalogueSettings, options)
     events = catalogue_of_run(model, state, settings, options.start, options.solver, options.step)
-    found = summarize([events], [model.law.name], [model.a], settings.low, settings.high).isel(law=0, a=0)
-    status = Status(found["status"].item())
-    count = found["event_count"].item()
+    summary = summarize([events], [model.law.name], [model.a], settings.low, settings.high).isel(law=0, a=0)
+    status = Status(summary["status"].item())
+    count = summary["event_count"].item()
     print(f"{model_line(model)}, from {state.name}: {status.name.lower()}\n")
     print(f"events      {count} from tau = {settings.transient:g} to {settings.end:g}")
     if count:
         magnitude, blocks = events["magnitude"].values, events["blocks"].values
-        print(f"rate        {found['event_rate'].item():.6g} per unit of tau")
+        print(f"rate        {summary['event_rate'].item():.6g} per unit of tau")
         print(f"magnitude   {magnitude.min():.4g} to {magnitude.max():.4g}; {blocks.min()} to {blocks.max()} blocks")
         names = ("slope", "slope_error", "slope_low", "slope_high", "slope_count", "slope_p_value")
-        slope, error, low, high, fitted, p_value = (found[name].item() for name in names)
+        slope, error, low, high, fitted, p_value = (summary[name].item() for name in names)
         where = f"{fitted} events from {low:g} to {high:g}"
         fit = f"{to_ascii(with_error(slope, error))}, {format_p_value(p_value)}, of" if slope == slope else "none:"
         print(f"slope       {fit} {where}")

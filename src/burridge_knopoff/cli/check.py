@@ -25,8 +25,8 @@ def run(options: argparse.Namespace) -> int:
 
     codes = set()
     for results in options.results:
-        found = check_study(results)
-        for line in found.paths if options.paths else found.lines():
+        check = check_study(results)
+        for line in check.paths if options.paths else check.lines():
             print(line)
-        codes.add(found.exit_code)
+        codes.add(check.exit_code)
     return 1 if 1 in codes else max(codes)

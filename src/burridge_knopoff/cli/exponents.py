@@ -53,8 +53,8 @@ def run(options: argparse.Namespace) -> int:
         verb = "is" if infinite == 1 else "are"
         print(f"at least {infinite} of the {2 * model.blocks} exponents {verb} -infinity: blocks stick")
     motion = motion.scaled_to_velocity(model.v)
-    found = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
-    print(f"\nmotion: {format_motion(found, motion)}")
+    outcome = motion_of_run(vars(trajectory), model.chain.is_mirror_symmetric, motion)
+    print(f"\nmotion: {format_motion(outcome, motion)}")
     print(f"<J> = {to_ascii(with_error(trajectory.mean_distance, trajectory.mean_distance_error))}")
     if model.chain.is_mirror_symmetric:
         start = model.begin(state, options.start)

@@ -116,13 +116,13 @@ def add_settings(group: Group, kind: type, *names: str, suffix: str = "", **defa
             continue
         default = defaults.get(name, None if field.default in (REQUIRED, FOLLOWS) else field.default)
         words = field.description.replace("%", "%%")
-        shown = ",".join(f"{item:g}" for item in default) if isinstance(default, tuple) else default
+        text = ",".join(f"{item:g}" for item in default) if isinstance(default, tuple) else default
         option = group.add_argument(
             f"--{key.replace('_', '-')}",
             type=_read_wholes if name == "grid" else _READERS.get(type(field.range), str),
             default=default,
             metavar="LOW,HIGH" if isinstance(field.range, Interval) else _METAVARS.get(key),
-            help=words if default is None else f"{words} (default: {shown})",
+            help=words if default is None else f"{words} (default: {text})",
         )
         if isinstance(field.range, OneOf):
             _complete(option, field.range.words)
@@ -133,10 +133,10 @@ def _complete(option: argparse.Action, words: Iterable[str]) -> None:
     option.words = tuple(words)  # type: ignore[attr-defined]
 
 
-def settings_of(kind: type[_T], options: argparse.Namespace, **others: Any) -> _T:
-    """Return settings of a class from the options given and from `others`; raises ValueError as the class does."""
-    given = {name: value for name, value in vars(options).items() if name in fields_of(kind)}
-    return kind(**{**given, **others})
+def settings_of(kind: type[_T], options: argparse.Namespace, **overrides: Any) -> _T:
+    """Return settings of a class from the options given and from `overrides`; raises ValueError as the class does."""
+    values = {name: value for name, value in vars(options).items() if name in fields_of(kind)}
+    return kind(**{**values, **overrides})
 
 
 def add_model(parser: argparse.ArgumentParser) -> None:
@@ -189,27 +189,27 @@ def state_of(options: argparse.Namespace) -> InitialState | None:
 
     Raises ValueError as `initial_state` does, and if a name of the paper's states is given other numbers.
     """
-    name, given = options.initial, (options.position, options.velocity)
+    name, pair = options.initial, (options.position, options.velocity)
     if name is None:
-        if given == (None, None):
+        if pair == (None, None):
             return None
         usual = PAPER_STATES["minus"]
-        known = given[1] if given[0] is None else given[0]
-        if None in given and not (isinstance(known, tuple) and len(known) == usual.blocks):
-            missing = "position" if given[0] is None else "velocity"
+        array = pair[1] if pair[0] is None else pair[0]
+        if None in pair and not (isinstance(array, tuple) and len(array) == usual.blocks):
+            missing = "position" if pair[0] is None else "velocity"
             raise ValueError(f"{missing}: missing, expected one number per block; only three blocks have defaults")
         name = OWN
-        if None in given:
+        if None in pair:
             position, velocity = model_of(options, usual).initial_coordinates(usual)
-            given = (
-                position.tolist() if given[0] is None else given[0],
-                velocity.tolist() if given[1] is None else given[1],
+            pair = (
+                position.tolist() if pair[0] is None else pair[0],
+                velocity.tolist() if pair[1] is None else pair[1],
             )
-    elif name in PAPER_STATES and (given[0] is None) != (given[1] is None):
+    elif name in PAPER_STATES and (pair[0] is None) != (pair[1] is None):
         raise ValueError(
             f"initial: got {format_value(name)} with numbers other than the paper's, expected another name or none"
         )
-    return initial_state(name, *given)
+    return initial_state(name, *pair)
 
 
 def simulated_law(options: argparse.Namespace) -> Law:

@@ -89,20 +89,22 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
     from burridge_knopoff.study.formatting import format_count
     from burridge_knopoff.summaries.text_table import table
 
-    found = multipliers(orbit)
+    spectrum = multipliers(orbit)
     stability = (
-        f"unstable: {format_count(found.unstable_count, 'multiplier')}"
-        if found.unstable_count
+        f"unstable: {format_count(spectrum.unstable_count, 'multiplier')}"
+        if spectrum.unstable_count
         else "stable: no multiplier"
     )
     lines = [
         f"symmetry     {orbit.symmetry.name.lower()}",
         f"period       {orbit.period:.9f}",
         f"stability    {stability} outside the unit circle",
-        f"multipliers  1 (the flow), {_complex(found.whole)}; the others are 0",
+        f"multipliers  1 (the flow), {_complex(spectrum.whole)}; the others are 0",
     ]
-    if len(found.symmetry_breaking):
-        lines.append(f"             mirror-breaking perturbations: {_complex(found.symmetry_breaking**found.power)}")
+    if len(spectrum.symmetry_breaking):
+        lines.append(
+            f"             mirror-breaking perturbations: {_complex(spectrum.symmetry_breaking**spectrum.power)}"
+        )
     lines += [
         f"stops        {' '.join(map(str, orbit.stop_counts))} (each block, in a period)",
         f"residual     {orbit.residual:.1e} after a return",
@@ -115,6 +117,6 @@ def _lines(orbit: PeriodicOrbit, most: int) -> list[str]:
 
 def _complex(values: np.ndarray) -> str:
     """Format multipliers, conjugate pairs as one, except those that are 0."""
-    shown = [value for value in values.tolist() if abs(value) > ZERO and value.imag >= 0.0]
-    words = [f"{value.real:.6g} +- {value.imag:.6g}i" if value.imag else f"{value.real:.6g}" for value in shown]
+    numbers = [value for value in values.tolist() if abs(value) > ZERO and value.imag >= 0.0]
+    words = [f"{value.real:.6g} +- {value.imag:.6g}i" if value.imag else f"{value.real:.6g}" for value in numbers]
     return ", ".join(words) or "0"

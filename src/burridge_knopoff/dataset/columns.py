@@ -45,7 +45,7 @@ def column_values(
     values = empty_columns(columns, sizes)
     for name, column in columns.items():
         for place, item in items.items():
-            found = column.value(item)
-            if found is not None:
-                values[name][(*place, *map(slice, np.shape(found)))] = found
+            value = column.value(item)
+            if value is not None:
+                values[name][(*place, *map(slice, np.shape(value)))] = value
     return values

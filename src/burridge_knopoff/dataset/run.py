@@ -25,8 +25,8 @@ def open_run(path: str | Path, command: str) -> Iterator[netCDF4.Dataset]:
     Raises BadFile, one line, if the file is missing, damaged, or another run. Files that other sources made are opened.
     """
     with open_whole(path) as dataset:
-        if (made := getattr(dataset, "history", "")) != command:
-            words = difference(_options(made), _options(command)) or f"got `{made}`, expected `{command}`"
+        if (history := getattr(dataset, "history", "")) != command:
+            words = difference(_options(history), _options(command)) or f"got `{history}`, expected `{command}`"
             raise BadFile(path, f"is another run: {words}")
         yield dataset
 

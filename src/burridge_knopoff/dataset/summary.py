@@ -39,10 +39,10 @@ def axes(further: Mapping[str, Variable] | None = None, /, **values: Any) -> dic
 
     The coordinate of the parameter `mass[3]` is `mass_3`: netCDF names have letters, digits and underscores only.
     """
-    coordinates, known = {}, {**AXES, **(further or {})}
+    coordinates, variables = {}, {**AXES, **(further or {})}
     for name, along in values.items():
         plain = plain_name(name)
-        item = known.get(name, Variable((plain,), "f8", f"parameter {name}", coordinate=True))
+        item = variables.get(name, Variable((plain,), "f8", f"parameter {name}", coordinate=True))
         coordinates[plain] = item.dimensions, np.array(along, dtype=item.dtype), item.all_attributes()
     return coordinates
 

@@ -68,14 +68,14 @@ def global_attributes(title: str, attributes: Mapping[str, Any], *, module: str,
     contents : one or several sentences on the contents of the file, if the title does not suffice
     module : name of the module that computes the values
     """
-    own = {
+    common = {
         "Conventions": CONVENTIONS,
         "title": title,
         "summary": f"{contents or f'{title}.'} {SIMULATED}",
         "keywords": KEYWORDS,
     }
-    others = {key: value for key, value in attributes.items() if key not in own}
-    return {**own, **others, **provenance(module), "versions": versions()}
+    others = {key: value for key, value in attributes.items() if key not in common}
+    return {**common, **others, **provenance(module), "versions": versions()}
 
 
 def flag(dtype: str, meanings: Iterable[IntEnum] | Mapping[int, str]) -> dict[str, Any]:
@@ -150,5 +150,5 @@ def write_variables(
 
 def _coordinates(item: Variable, scalars: str) -> str:
     """Return the CF attribute `coordinates`: a and v for every variable, and the times of events and crossings."""
-    own = [TIMES[dimension] for dimension in item.dimensions if dimension in TIMES]
-    return " ".join([*own, scalars]).strip()
+    names = [TIMES[dimension] for dimension in item.dimensions if dimension in TIMES]
+    return " ".join([*names, scalars]).strip()

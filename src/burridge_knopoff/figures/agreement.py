@@ -62,25 +62,25 @@ def draw(agreement: xarray.Dataset) -> Figure:
     Each law other than the first has three rows. Shaded: it disagrees with the first law, in ⟨J⟩ (by more than the
     tolerance and the errors together) or in the kind of motion. Open symbols: undecided.
     """
-    states, others = agreement["initial"].values, agreement["other_law"].values
+    states, other_laws = agreement["initial"].values, agreement["other_law"].values
     first = agreement["law"].values[0]
-    if not len(others):
+    if not len(other_laws):
         figure, (panel,) = new_figure(page_width(1), 1.5)
         say_nothing(panel, f"{first} is the only law: nothing to compare")
         return figure
-    figure, table = panel_table(1.7, len(states), "$a$", LABELS * len(others))
+    figure, table = panel_table(1.7, len(states), "$a$", LABELS * len(other_laws))
     panels = list(table.flat)
     titles = []
-    for block, other in zip(np.reshape(table, (len(others), 3, len(states))), others, strict=True):
+    for block, other in zip(np.reshape(table, (len(other_laws), 3, len(states))), other_laws, strict=True):
         for panel in block[:, 0]:
             panel.set_yscale("log")
         for column, initial in enumerate(states):
             _comparison(block[:, column], agreement.sel(initial=initial, other_law=other), agreement.attrs)
         for panel in block[:, 0]:
             scale_to_decades(panel)
-        laws = f", {other} law" if len(others) > 1 else ""
+        laws = f", {other} law" if len(other_laws) > 1 else ""
         titles += [f"{initial}{laws}: {name}" for name in NAMES for initial in states]
-    points = f"{others[0] if len(others) == 1 else 'each'} law compared with the {first} law"
+    points = f"{other_laws[0] if len(other_laws) == 1 else 'each'} law compared with the {first} law"
     handles: list[Artist] = [Line2D([], [], **POINT, label=points), *legend_entries(panels)[0]]
     if (agreement["agrees"] == Answer.NO).any():
         handles.append(shade_entry("the laws disagree"))
@@ -99,7 +99,7 @@ def _comparison(panels: np.ndarray, run: xarray.Dataset, settings: dict[str, flo
     _points(difference, a, abs(run["difference"]).clip(min=FLOORS[0]), unknown)
     if not run["difference"].any():
         say(difference, "0 at all $a$")
-    noise, share = (one.where(one >= FLOORS[0]) for one in tolerances(run, settings))
+    noise, share = (tolerance.where(tolerance >= FLOORS[0]) for tolerance in tolerances(run, settings))
     name = f"{settings['standard_errors']:g} standard errors"
     alone: Any = {"marker": lone_marker(a), "markersize": 3.5}
     difference.plot(a, noise, "--", linewidth=0.8, color="0.4", label=name, **alone)

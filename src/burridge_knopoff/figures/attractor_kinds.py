@@ -38,9 +38,9 @@ def draw(refined: xarray.Dataset) -> Figure:
     figure = Figure(figsize=(page_width(len(laws)), 3.0 + strip), layout="constrained")
     panels = figure.subplots(2, len(laws), sharex=True, sharey="row", squeeze=False, height_ratios=[2.4, strip])
     for column, law in enumerate(laws):
-        one = refined.sel(law=law)
-        _points(panels[0, column], one)
-        _bars(panels[1, column], one, list(names))
+        part = refined.sel(law=law)
+        _points(panels[0, column], part)
+        _bars(panels[1, column], part, list(names))
         panels[1, column].set_xlabel("$a$")
         panels[1, column].set_yticks(np.arange(len(names)), list(names.values()), fontsize=6.5)
         panels[1, column].tick_params(axis="y", length=0)
@@ -48,8 +48,8 @@ def draw(refined: xarray.Dataset) -> Figure:
     show_all(panels[0, 0], np.unique(a[np.isfinite(a)]))
     panels[1, 0].set_ylim(max(1, len(names)) - 0.4, -0.6)
     panels[0, 0].set_ylabel(r"$\langle J\rangle$")
-    shown = np.unique(refined["kind"].values[refined["branch"].values >= 0]).tolist()
-    handles = [Patch(facecolor=KINDS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in shown]
+    kinds = np.unique(refined["kind"].values[refined["branch"].values >= 0]).tolist()
+    handles = [Patch(facecolor=KINDS[kind], edgecolor="0.4", label=MotionKind(kind).words) for kind in kinds]
     if handles:
         legend_below(figure, handles)
     label_panels(panels.flat, [*(f"{law} law" for law in laws), *(f"{law} law: kinds of motion" for law in laws)])
@@ -60,7 +60,9 @@ def long_branches(refined: xarray.Dataset) -> set[int]:
     """Return the branches that extend over at least SHORTEST of the range of a under some law."""
     branch, a = refined["branch"].values, np.broadcast_to(refined["a"].values[..., None], refined["branch"].shape)
     least = SHORTEST * (np.nanmax(a) - np.nanmin(a))
-    extents = [(number, np.ptp(a[k][one == number])) for k, one in enumerate(branch) for number in np.unique(one)]
+    extents = [
+        (number, np.ptp(a[k][numbers == number])) for k, numbers in enumerate(branch) for number in np.unique(numbers)
+    ]
     return {int(number) for number, extent in extents if number >= 0 and extent >= least}
 
 
@@ -88,11 +90,11 @@ def _bars(panel: Axes, refined: xarray.Dataset, numbers: list[int]) -> None:
     grid, half = every[refined["in_grid"].values == 1], 0.5 * STRIP * (edges[-1] - edges[0])
     for row, number in enumerate(numbers):
         slots = refined["branch"].values == number
-        (here,) = np.nonzero(slots.any(axis=1))
-        a, kind = every[here], refined["kind"].values[here, slots[here].argmax(axis=1)]
+        (indices,) = np.nonzero(slots.any(axis=1))
+        a, kind = every[indices], refined["kind"].values[indices, slots[indices].argmax(axis=1)]
         joined, middle = np.searchsorted(grid, a[1:]) == np.searchsorted(grid, a[:-1], "right"), 0.5 * (a[1:] + a[:-1])
-        left = np.append(edges[here[:1]], np.where(joined, middle, edges[here[1:]]))
-        right = np.append(np.where(joined, middle, edges[here[:-1] + 1]), edges[here[-1:] + 1])
+        left = np.append(edges[indices[:1]], np.where(joined, middle, edges[indices[1:]]))
+        right = np.append(np.where(joined, middle, edges[indices[:-1] + 1]), edges[indices[-1:] + 1])
         left, right = np.maximum(left, a - half), np.minimum(right, a + half)
         colors = [KINDS[int(item)] for item in kind]
         panel.barh(

@@ -43,9 +43,9 @@ def draw(attractors: xarray.Dataset) -> Figure:
     figure, panels = new_figure(page_width(len(laws)), 5.2, rows=2, columns=len(laws))
     colors = branch_colors(attractors)
     for column, law in enumerate(laws):
-        one = attractors.sel(law=law)
-        _fractions(panels[column], one, colors)
-        _sweeps(panels[len(laws) + column], one)
+        part = attractors.sel(law=law)
+        _fractions(panels[column], part, colors)
+        _sweeps(panels[len(laws) + column], part)
         panels[len(laws) + column].set_xlabel("$a$")
     panels[0].set_ylabel("fraction of initial states")
     panels[0].set_ylim(-0.02, 1.02)
@@ -54,7 +54,7 @@ def draw(attractors: xarray.Dataset) -> Figure:
     if shares:
         shares.append(Patch(facecolor="0.8", edgecolor="none", label="95 % interval"))
     legend_below(figure, shares, paths)
-    titles = [f"{law} law: {what}" for what in ("basin fractions", "sweeps of $a$") for law in laws]
+    titles = [f"{law} law: {quantity}" for quantity in ("basin fractions", "sweeps of $a$") for law in laws]
     label_panels(panels, titles)
     return figure
 

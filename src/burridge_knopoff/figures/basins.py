@@ -52,17 +52,17 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: Mapp
         if all(extent[0] <= x <= extent[1] and extent[2] <= y <= extent[3] for x, y in points)
     }
     titles = []
-    shown: dict[tuple[int, int], Patch] = {}
+    patches: dict[tuple[int, int], Patch] = {}
     for number, panel in enumerate(panels.flat):
         if number >= count:
             panel.set_axis_off()
             continue
-        one = basins.isel(map=number)
-        titles.append(f"{one['law'].item()} law, $a={one['a'].item():g}$")
-        picture = np.zeros((*one["branch"].shape, 3))
-        for part in map_parts(one, colors, names):
+        basin_map = basins.isel(map=number)
+        titles.append(f"{basin_map['law'].item()} law, $a={basin_map['a'].item():g}$")
+        picture = np.zeros((*basin_map["branch"].shape, 3))
+        for part in map_parts(basin_map, colors, names):
             picture[part.members] = to_rgb(part.color)
-            shown[part.branch, -part.side] = Patch(
+            patches[part.branch, -part.side] = Patch(
                 facecolor=part.color, edgecolor="0.3", linewidth=0.4, label=part.name
             )
         panel.imshow(picture, origin="lower", extent=extent, interpolation="nearest", aspect="auto")
@@ -76,7 +76,7 @@ def draw(basins: xarray.Dataset, attractors: xarray.Dataset, marked_states: Mapp
         if number % columns == 0:
             panel.set_ylabel(f"$U_{{{basins.attrs['plane_position'].size}}}(0)$")
     states = [Line2D([], [], **_number(index), label=f"state {name}") for index, name in enumerate(there)]
-    legend_below(figure, [shown[key] for key in sorted(shown, key=lambda key: (key[0] < 0, *key))], states)
+    legend_below(figure, [patches[key] for key in sorted(patches, key=lambda key: (key[0] < 0, *key))], states)
     label_panels(list(panels.flat)[:count], titles)
     return figure
 

@@ -103,11 +103,11 @@ def _attractors(panel: Axes, attractors: xarray.Dataset, colors: dict[int, str])
 
 
 def _orbits(panel: Axes, bifurcations: xarray.Dataset, law: str, colors: dict[int, str]) -> None:
-    own = bifurcations["orbit_law"].values == law
+    mask = bifurcations["orbit_law"].values == law
     number, branch = bifurcations["orbit_segment"].values, bifurcations["orbit_branch"].values
     a, mean, stable = (bifurcations[f"orbit_{name}"].values for name in ("a", "mean_distance", "stable"))
-    for one in np.unique(number[own]):
-        chosen = np.flatnonzero(own & (number == one))
+    for segment in np.unique(number[mask]):
+        chosen = np.flatnonzero(mask & (number == segment))
         color = colors.get(int(branch[chosen[0]]), OTHER_BRANCHES)
         ends = np.flatnonzero(np.diff(stable[chosen])) + 1
         for first, last in zip([0, *ends], [*ends, len(chosen)], strict=True):
@@ -126,17 +126,17 @@ def _bifurcations(
     """
     a, error, kind = (bifurcations[name].values for name in ("a", "a_error", "kind"))
     branch = _branch(bifurcations)
-    for row, one in enumerate(ROWS):
-        for k in np.flatnonzero((bifurcations["law"].values == law) & (kind == one)):
+    for row, bifurcation in enumerate(ROWS):
+        for k in np.flatnonzero((bifurcations["law"].values == law) & (kind == bifurcation)):
             color = colors.get(int(branch[k]), OTHER_BRANCHES)
-            width = 0.0 if one.mark else 2.0 * error[k]
+            width = 0.0 if bifurcation.mark else 2.0 * error[k]
             panel.barh(row, width, 0.8, a[k] - 0.5 * width, color=color, edgecolor=color, linewidth=0.6, alpha=0.8)
-    panel.set_yticks(range(len(ROWS)), [one.words for one in ROWS], fontsize=7.0)
+    panel.set_yticks(range(len(ROWS)), [bifurcation.words for bifurcation in ROWS], fontsize=7.0)
     panel.tick_params(axis="y", length=0, pad=11)
     if is_first:
         outside = blended_transform_factory(panel.transAxes, panel.transData)
-        for row, one in enumerate(ROWS):
-            panel.plot(-0.022, row, one.mark or "None", transform=outside, clip_on=False, **MARK)
+        for row, bifurcation in enumerate(ROWS):
+            panel.plot(-0.022, row, bifurcation.mark or "None", transform=outside, clip_on=False, **MARK)
     panel.set_ylim(len(ROWS) - 0.4, -0.6)
 
 
@@ -152,19 +152,19 @@ def _marks(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
         bifurcations["orbit_branch"].values[bifurcations["orbit_law"].values == law], return_counts=True
     )
     kind = bifurcations["kind"].values
-    own = (bifurcations["law"].values == law) & np.isin(_branch(bifurcations), orbits[count > 1])
+    mask = (bifurcations["law"].values == law) & np.isin(_branch(bifurcations), orbits[count > 1])
     a, mean = bifurcations["a"].values, bifurcations["mean_distance"].values
-    for one in filter(attrgetter("mark"), BifurcationKind):
-        chosen = own & (kind == one) & np.isfinite(mean)
-        panel.plot(a[chosen], mean[chosen], one.mark, zorder=3, **MARK)
+    for bifurcation in filter(attrgetter("mark"), BifurcationKind):
+        chosen = mask & (kind == bifurcation) & np.isfinite(mean)
+        panel.plot(a[chosen], mean[chosen], bifurcation.mark, zorder=3, **MARK)
 
 
 def _stops(panel: Axes, bifurcations: xarray.Dataset, law: str) -> None:
     """Write the number of stops of each block in a period next to the longer pieces of stable orbits."""
-    own = (bifurcations["orbit_law"].values == law) & (bifurcations["orbit_stable"].values == 1)
+    mask = (bifurcations["orbit_law"].values == law) & (bifurcations["orbit_stable"].values == 1)
     number, a, mean = (bifurcations[f"orbit_{name}"].values for name in ("segment", "a", "mean_distance"))
-    for one in np.unique(number[own]):
-        chosen = np.flatnonzero(own & (number == one))
+    for segment in np.unique(number[mask]):
+        chosen = np.flatnonzero(mask & (number == segment))
         inside = chosen[(mean[chosen] > ROUTE[1][0]) & (mean[chosen] < ROUTE[1][1]) & (a[chosen] > ROUTE[0][0])]
         inside = inside[a[inside] < ROUTE[0][1]]
         if not len(inside) or np.ptp(a[inside]) < NAMED:

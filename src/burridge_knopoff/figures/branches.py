@@ -28,25 +28,25 @@ def branch_colors(attractors: xarray.Dataset) -> dict[int, str]:
     sizes = {n: (int(reached[where].sum()), int(where.any(axis=-1).sum())) for n, where in present.items()}
     ranked = sorted(sizes, key=lambda n: (-sizes[n][0], -sizes[n][1], n))
     colors = {0: BRANCHES[0]} if (branch == 0).any() else {}
-    own = len(BRANCHES) - 1
-    free = dict.fromkeys(range(own))
-    for number in sorted(ranked[:own]):
-        place = min(free, key=lambda k: (k - number + 1) % own)
+    count = len(BRANCHES) - 1
+    free = dict.fromkeys(range(count))
+    for number in sorted(ranked[:count]):
+        place = min(free, key=lambda k: (k - number + 1) % count)
         del free[place]
         colors[number] = BRANCHES[1 + place]
-    return colors | dict.fromkeys(ranked[own:], OTHER_BRANCHES)
+    return colors | dict.fromkeys(ranked[count:], OTHER_BRANCHES)
 
 
-def map_colors(attractors: xarray.Dataset, shown: Collection[int]) -> dict[int, str]:
+def map_colors(attractors: xarray.Dataset, branches: Collection[int]) -> dict[int, str]:
     """Return the colours of the branches in maps; branches that share a colour have different shades of it."""
     colors, shades = branch_colors(attractors), cycle(OTHER_SHADES)
-    return {n: next(shades) if colors[n] == OTHER_BRANCHES else colors[n] for n in sorted(shown) if n >= 0}
+    return {n: next(shades) if colors[n] == OTHER_BRANCHES else colors[n] for n in sorted(branches) if n >= 0}
 
 
 def named_colors(colors: Mapping[int, str], names: Mapping[int, str]) -> dict[str, str]:
     """Return the colours of branches by name, for a legend; the shared colour comes last."""
-    own = {names[branch]: color for branch, color in sorted(colors.items()) if color != OTHER_BRANCHES}
-    return own | ({OTHERS: OTHER_BRANCHES} if len(own) < len(colors) else {})
+    hues = {names[branch]: color for branch, color in sorted(colors.items()) if color != OTHER_BRANCHES}
+    return hues | ({OTHERS: OTHER_BRANCHES} if len(hues) < len(colors) else {})
 
 
 def fraction_curves(attractors: xarray.Dataset, colors: Mapping[int, str]) -> Iterator[tuple[str, str, np.ndarray]]:
@@ -59,9 +59,9 @@ def fraction_curves(attractors: xarray.Dataset, colors: Mapping[int, str]) -> It
     """
     names, samples = branch_names(attractors), attractors["sample_count"].values.tolist()
     branch, count = attractors["branch"].values, attractors["basin_count"].values
-    own = [([number], names[number], color) for number, color in sorted(colors.items()) if color != OTHER_BRANCHES]
-    others = [number for number, color in colors.items() if color == OTHER_BRANCHES]
-    for numbers, name, color in (*own, (others, OTHERS, OTHER_BRANCHES)):
+    curves = [([number], names[number], color) for number, color in sorted(colors.items()) if color != OTHER_BRANCHES]
+    other_branches = [number for number, color in colors.items() if color == OTHER_BRANCHES]
+    for numbers, name, color in (*curves, (other_branches, OTHERS, OTHER_BRANCHES)):
         members = np.isin(branch, numbers)
         there = members.any(axis=1)
         if there.any():
@@ -92,12 +92,12 @@ class MapPart:
     members: np.ndarray
 
 
-def map_parts(one: xarray.Dataset, colors: Mapping[int, str], names: Mapping[int, str]) -> list[MapPart]:
+def map_parts(basin_map: xarray.Dataset, colors: Mapping[int, str], names: Mapping[int, str]) -> list[MapPart]:
     """Return the parts of one map of basins: branches in order, the side + before −, undetermined last.
 
     colors, names : of the branches, as of `map_colors` and `branch_names`
     """
-    branch, side = one["branch"].values.astype(int), one["side"].values.astype(int)
+    branch, side = basin_map["branch"].values.astype(int), basin_map["side"].values.astype(int)
     present = set(zip(branch.ravel().tolist(), side.ravel().tolist(), strict=True))
     return [
         MapPart(

@@ -60,8 +60,8 @@ def _fill(text: str, wildcards: Mapping[str, str]) -> str:
 @cache
 def figure_descriptions() -> tuple[Description, ...]:
     """Return all figures: those of the paper first, then by name."""
-    found = [_description(path) for path in Path(__file__).parent.glob("*.py")]
-    figures = [description for description in found if description is not None]
+    descriptions = [_description(path) for path in Path(__file__).parent.glob("*.py")]
+    figures = [description for description in descriptions if description is not None]
     return tuple(sorted(figures, key=lambda figure: (not figure.paper, figure.paper.lstrip("Figs. "), figure.name)))
 
 
@@ -91,6 +91,6 @@ def _description(path: Path) -> Description | None:
     if "CAPTION" not in constants:
         return None
     names = ("TITLE", "CATEGORY", "CAPTION", "INPUTS", "FROM_STUDY", "OVER", "CONDITION", "PAPER", "FILE")
-    given = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
+    fields = {name.lower(): ast.literal_eval(constants[name]) for name in names if name in constants}
     headline = (ast.get_docstring(module) or "").partition("\n")[0]
-    return Description(path.stem, headline[:1].lower() + headline[1:], **{"file": path.stem, **given})
+    return Description(path.stem, headline[:1].lower() + headline[1:], **{"file": path.stem, **fields})

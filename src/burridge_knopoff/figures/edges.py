@@ -38,11 +38,11 @@ def draw(attractors: xarray.Dataset, edges: xarray.Dataset) -> Figure:
     for (above, below), law in zip(panels.T, laws, strict=True):
         _attractors(above, attractors.sel(law=law))
         _saddles(above, edges, law)
-        found = edges.isel(edge=edges["law"].values == law)
+        part = edges.isel(edge=edges["law"].values == law)
         for panel, name in ((above, "mean_distance"), (below, "lifetime")):
-            _edges(panel, found, name)
+            _edges(panel, part, name)
         below.set_yscale("log")
-        if not found.sizes["edge"]:
+        if not part.sizes["edge"]:
             say(below, "no edge state was found")
         begin_at_zero(above)
         show_all(above, attractors["a"].values)
@@ -62,10 +62,10 @@ def _attractors(panel: Axes, attractors: xarray.Dataset) -> None:
 
 
 def _saddles(panel: Axes, edges: xarray.Dataset, law: str) -> None:
-    own = edges["orbit_law"].values == law
+    mask = edges["orbit_law"].values == law
     number, a, mean = (edges[f"orbit_{name}"].values for name in ("segment", "a", "mean_distance"))
-    for one in np.unique(number[own]):
-        chosen = own & (number == one)
+    for segment in np.unique(number[mask]):
+        chosen = mask & (number == segment)
         panel.plot(a[chosen], mean[chosen], "-", color=SADDLE_COLOR, linewidth=0.6, zorder=1)
 
 
@@ -86,12 +86,12 @@ def _edges(panel: Axes, edges: xarray.Dataset, name: str) -> None:
 
 
 def _handles(edges: xarray.Dataset) -> list[Line2D]:
-    shown = np.unique(edges["kind"].values).tolist()
+    kinds = np.unique(edges["kind"].values).tolist()
     style: Any = {"linestyle": "", "markeredgecolor": "0.3", "markeredgewidth": 0.3}
     return [
         *(
             Line2D([], [], marker="o", markersize=4.0, color=KINDS[kind], label=MotionKind(kind).words, **style)
-            for kind in shown
+            for kind in kinds
         ),
         *(
             Line2D([], [], marker=MARKS[crossing][0], markersize=4.0, color="0.6", label=words, **style)

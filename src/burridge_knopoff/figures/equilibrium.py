@@ -26,11 +26,11 @@ def draw(equilibrium: xarray.Dataset) -> Figure:
     a = equilibrium["a"].values
     panel.plot(a, 0.5 * a, color="0.85", linewidth=5.0, solid_capstyle="butt", label="$a/2$")
     for n, law in enumerate(equilibrium["law"].values):
-        one = equilibrium.sel(law=law)
+        part = equilibrium.sel(law=law)
         look = {"color": law_color(n), "linestyle": dashes(n), "marker": lone_marker(a)}
-        panel.plot(a, one["eigenvalue"].sel(part="real").max("mode").values, **look, linewidth=0.8, markersize=6.0)
+        panel.plot(a, part["eigenvalue"].sel(part="real").max("mode").values, **look, linewidth=0.8, markersize=6.0)
         some = slice(None, None, max(1, len(a) // 12))
-        panel.plot(a[some], one["growth_rate"].values[some], **law_symbol(n), linestyle="", label=f"{law}, simulated")
+        panel.plot(a[some], part["growth_rate"].values[some], **law_symbol(n), linestyle="", label=f"{law}, simulated")
     panel.set(xlabel="$a$", ylabel=r"largest $\mathrm{Re}\,\lambda$")
     handles, _ = panel.get_legend_handles_labels()
     eigenvalues = [

@@ -28,7 +28,7 @@ def draw(mean_distance: xarray.Dataset) -> Figure:
         mean_distance,
         r"$\langle J\rangle$",
         _curve,
-        lambda one: one["mean_distance"].values,
+        lambda part: part["mean_distance"].values,
         vmin=0.0,
         vmax=highest or 1.0,
     )
@@ -42,6 +42,6 @@ def draw(mean_distance: xarray.Dataset) -> Figure:
     return figure
 
 
-def _curve(panel: Axes, values: np.ndarray, one: xarray.Dataset) -> None:
-    error = 3.0 * one["mean_distance_error"].values
-    panel.errorbar(values, one["mean_distance"].values, error, fmt="o-", color="black", markersize=1.8, linewidth=0.5)
+def _curve(panel: Axes, values: np.ndarray, part: xarray.Dataset) -> None:
+    error = 3.0 * part["mean_distance_error"].values
+    panel.errorbar(values, part["mean_distance"].values, error, fmt="o-", color="black", markersize=1.8, linewidth=0.5)

@@ -35,14 +35,14 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
     return figure
 
 
-def _largest(one: xarray.Dataset, name: str = "lyapunov_exponent") -> np.ndarray:
+def _largest(part: xarray.Dataset, name: str = "lyapunov_exponent") -> np.ndarray:
     """Return the first exponent or its error, NaN where there is none that is finite."""
-    values = one[name]
-    first = values.isel(exponent=0) if values.sizes["exponent"] else xarray.full_like(one["mean_distance"], np.nan)
+    values = part[name]
+    first = values.isel(exponent=0) if values.sizes["exponent"] else xarray.full_like(part["mean_distance"], np.nan)
     return np.where(np.isfinite(first), first, np.nan)
 
 
-def _curve(panel: Axes, values: np.ndarray, one: xarray.Dataset) -> None:
-    error = 3.0 * np.nan_to_num(_largest(one, "lyapunov_error"))
+def _curve(panel: Axes, values: np.ndarray, part: xarray.Dataset) -> None:
+    error = 3.0 * np.nan_to_num(_largest(part, "lyapunov_error"))
     panel.axhline(0.0, color="0.6", linewidth=0.5, zorder=0)
-    panel.errorbar(values, _largest(one), error, fmt="o-", color="black", markersize=1.8, linewidth=0.5)
+    panel.errorbar(values, _largest(part), error, fmt="o-", color="black", markersize=1.8, linewidth=0.5)

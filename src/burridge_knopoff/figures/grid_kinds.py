@@ -38,13 +38,13 @@ def draw(lyapunov: xarray.Dataset) -> Figure:
     return figure
 
 
-def _colors(one: xarray.Dataset) -> np.ndarray:
+def _colors(part: xarray.Dataset) -> np.ndarray:
     """Return the colour of each kind, of the shape of the kinds and 3."""
-    kinds = one["run_kind"].values
+    kinds = part["run_kind"].values
     colors = np.array([to_rgb(KINDS[kind]) for kind in kinds.ravel().tolist()])
     return colors.reshape(*kinds.shape, 3)
 
 
-def _strip(panel: Axes, values: np.ndarray, one: xarray.Dataset) -> None:
-    draw_strips(panel, values, _colors(one)[None])
+def _strip(panel: Axes, values: np.ndarray, part: xarray.Dataset) -> None:
+    draw_strips(panel, values, _colors(part)[None])
     panel.set_yticks([])

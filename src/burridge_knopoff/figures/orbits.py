@@ -57,10 +57,10 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
             say_nothing(panel, "no synchronized orbit")
         return figure
     for index, law in enumerate(orbits["law"].values):
-        one = orbits.sel(law=law)
-        _draw_multipliers(panels[0], one, law_color(index))
-        _draw_distance(panels[1], one, runs.sel(law=law), index)
-        _draw_amplitude(panels[2], one, index)
+        part = orbits.sel(law=law)
+        _draw_multipliers(panels[0], part, law_color(index))
+        _draw_distance(panels[1], part, runs.sel(law=law), index)
+        _draw_amplitude(panels[2], part, index)
     _draw_difference(panels[3], orbits)
     laws = [
         Line2D([], [], color=law_color(index), label=f"{law} law") for index, law in enumerate(orbits["law"].values)
@@ -86,15 +86,15 @@ def draw(orbits: xarray.Dataset, runs: xarray.Dataset) -> Figure:
         panels[2].legend(loc="upper left")
     else:
         say_nothing(panels[2], "no asymmetric orbit branches off")
-    first, *others = orbits["law"].values
-    compared = f"{others[0]} law" if len(others) == 1 else "other laws"
+    first, *other_laws = orbits["law"].values
+    compared = f"{other_laws[0]} law" if len(other_laws) == 1 else "other laws"
     label_panels(
         panels,
         [
             "multipliers of the synchronized orbit",
             r"orbits and runs near $a_c$",
             r"asymmetry of the orbit that branches off at $a_c$",
-            f"{compared} compared with the {first} law" if others else f"{first} law",
+            f"{compared} compared with the {first} law" if other_laws else f"{first} law",
         ],
     )
     return figure
@@ -106,45 +106,47 @@ def _styles(styles: tuple[Any, ...], labels: tuple[str, ...], color: str = "0.3"
     ]
 
 
-def _draw_multipliers(panel: Axes, one: xarray.Dataset, hue: str) -> None:
-    a = one["a"].values
+def _draw_multipliers(panel: Axes, orbits: xarray.Dataset, hue: str) -> None:
+    a = orbits["a"].values
     look: Any = {"color": hue, "marker": lone_marker(a), "markersize": 3.5}
-    panel.plot(*transverse_curve(one), "-", **look)
-    panel.plot(a, symmetric_curve(one), "--", **look, markerfacecolor="none")
-    panel.plot(*critical_point(one), "o", color=hue, markersize=3.5)
+    panel.plot(*transverse_curve(orbits), "-", **look)
+    panel.plot(a, symmetric_curve(orbits), "--", **look, markerfacecolor="none")
+    panel.plot(*critical_point(orbits), "o", color=hue, markersize=3.5)
 
 
-def critical_point(one: xarray.Dataset) -> tuple[float, float]:
+def critical_point(orbits: xarray.Dataset) -> tuple[float, float]:
     """Return a_c of one law and the transverse multiplier there, 1 or −1."""
-    return one["critical_a"].item(), -1.0 if one["bifurcation_kind"].item() == BifurcationKind.PERIOD_DOUBLING else 1.0
+    return orbits["critical_a"].item(), -1.0 if orbits[
+        "bifurcation_kind"
+    ].item() == BifurcationKind.PERIOD_DOUBLING else 1.0
 
 
-def transverse_curve(one: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]:
+def transverse_curve(orbits: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]:
     """Return a and the transverse multiplier of one law, at the values of a of the study and at a_c."""
-    a, (critical, side) = one["a"].values, critical_point(one)
+    a, (critical, side) = orbits["a"].values, critical_point(orbits)
     at = np.searchsorted(a, critical)
-    return np.insert(a, at, critical), np.insert(one["transverse_multiplier"].values, at, side)
+    return np.insert(a, at, critical), np.insert(orbits["transverse_multiplier"].values, at, side)
 
 
-def symmetric_curve(one: xarray.Dataset) -> np.ndarray:
+def symmetric_curve(orbits: xarray.Dataset) -> np.ndarray:
     """Return the modulus of the largest mirror-symmetric multiplier, with the sign of its real part, shape (a,)."""
-    symmetric = one.sel(mode="symmetric_1")
+    symmetric = orbits.sel(mode="symmetric_1")
     real, imaginary = (symmetric["multiplier"].sel(part=part).values for part in ("real", "imaginary"))
     modulus = np.hypot(real, imaginary)
     return np.where(real < 0.0, -modulus, modulus)
 
 
-def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, index: int) -> None:
+def _draw_distance(panel: Axes, orbits: xarray.Dataset, runs: xarray.Dataset, index: int) -> None:
     """Draw ⟨J⟩ of the stable and unstable orbits of a law, given with its number, and of the study's runs nearby."""
     hue = law_color(index)
-    critical = one["critical_a"].item()
-    offset, distance, stable = _dense_branch(one)
+    critical = orbits["critical_a"].item()
+    offset, distance, stable = _dense_branch(orbits)
     if not np.isfinite(critical):
         return
     low, high = NEAR * critical, np.nanmax([critical, *(critical + offset)])
     for ends, attracts in (
-        ((low, critical), _attracts(one, below=True)),
-        ((critical, high), _attracts(one, below=False)),
+        ((low, critical), _attracts(orbits, below=True)),
+        ((critical, high), _attracts(orbits, below=False)),
     ):
         panel.plot(ends, [0.0, 0.0], "-" if attracts else ":", color=hue)
     for mask, style in ((stable, "-"), (~stable, ":")):
@@ -157,39 +159,39 @@ def _draw_distance(panel: Axes, one: xarray.Dataset, runs: xarray.Dataset, index
         panel.plot(run["a"].values, run["mean_distance"].values, label=f"run from {initial}", **look)
 
 
-def _attracts(one: xarray.Dataset, *, below: bool) -> bool:
+def _attracts(orbits: xarray.Dataset, *, below: bool) -> bool:
     """Return whether synchrony is stable on a side of a_c: at the nearest value of a or, without one, from the loss."""
-    a, modulus = one["a"].values, np.abs(one["transverse_multiplier"].values)
-    side = np.isfinite(modulus) & ((a < one["critical_a"].item()) == below)
+    a, modulus = orbits["a"].values, np.abs(orbits["transverse_multiplier"].values)
+    side = np.isfinite(modulus) & ((a < orbits["critical_a"].item()) == below)
     if not side.any():
         return below
     return bool(modulus[side][-1 if below else 0] < 1.0)
 
 
-def _dense_branch(one: xarray.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _dense_branch(orbits: xarray.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return a − a_c, ⟨J⟩ and stability along the asymmetric orbits, interpolated between the known orbits.
 
     The interpolated quantities (a − a_c)/d² and ⟨J⟩/d are smooth and nearly constant in the asymmetry d.
     """
-    known = np.isfinite(one["branch_offset"].values)
-    if not known.any():
+    finite = np.isfinite(orbits["branch_offset"].values)
+    if not finite.any():
         return np.zeros(0), np.zeros(0), np.zeros(0, dtype=bool)
-    d = one["branch_asymmetry"].values[known]
+    d = orbits["branch_asymmetry"].values[finite]
     dense = np.linspace(0.0, d[-1], 200)
-    offset = dense**2 * np.interp(dense, d, one["branch_offset"].values[known] / d**2)
-    distance = dense * np.interp(dense, d, one["branch_mean_distance"].values[known] / d)
-    stable = np.interp(dense, d, one["branch_multiplier"].values[known]) < 1.0
+    offset = dense**2 * np.interp(dense, d, orbits["branch_offset"].values[finite] / d**2)
+    distance = dense * np.interp(dense, d, orbits["branch_mean_distance"].values[finite] / d)
+    stable = np.interp(dense, d, orbits["branch_multiplier"].values[finite]) < 1.0
     return offset, distance, stable
 
 
-def _draw_amplitude(panel: Axes, one: xarray.Dataset, index: int) -> None:
-    offset = np.abs(one["branch_offset"].values)
-    asymmetry = one["branch_asymmetry"].values
+def _draw_amplitude(panel: Axes, orbits: xarray.Dataset, index: int) -> None:
+    offset = np.abs(orbits["branch_offset"].values)
+    asymmetry = orbits["branch_asymmetry"].values
     panel.plot(offset, asymmetry, **law_symbol(index), linestyle="none")
-    exponent, error = (one[f"amplitude_exponent{end}"].item() for end in ("", "_error"))
+    exponent, error = (orbits[f"amplitude_exponent{end}"].item() for end in ("", "_error"))
     if np.isfinite(exponent):
-        fitted = one["amplitude_coefficient"].item() * offset**exponent
-        words = f"{one['law'].item()}: exponent {_with_digits_in_error(exponent, error)}"
+        fitted = orbits["amplitude_coefficient"].item() * offset**exponent
+        words = f"{orbits['law'].item()}: exponent {_with_digits_in_error(exponent, error)}"
         panel.plot(offset, fitted, "-", linewidth=0.7, color=law_color(index), label=words)
 
 

@@ -37,25 +37,25 @@ def draw_panels(
     colors : values or colours of a map, of a Dataset over two parameters, shape (second, first, …)
     look : arguments of `pcolormesh`
     """
-    varied, shown = varied_parameters(grid), list(panel_parts(grid))
-    across = min(len(shown), ACROSS)
-    down = -(-len(shown) // across)
+    varied, parts = varied_parameters(grid), list(panel_parts(grid))
+    across = min(len(parts), ACROSS)
+    down = -(-len(parts) // across)
     size = page_width(max(across, 2)), 0.6 + 2.5 * down
-    empty = range(len(shown), down * across)
+    empty = range(len(parts), down * across)
     figure, panels = new_figure(*size, down, across, share_columns=False, empty=empty)
     first, drawn = grid[varied[0]].values, None
-    for number, (panel, (_, one)) in enumerate(zip(panels, shown, strict=True)):
+    for number, (panel, (_, part)) in enumerate(zip(panels, parts, strict=True)):
         panel.set_xlabel(f"${_symbol(varied[0])}$")
         if len(varied) > 1:
             edges = [cells(grid[name].values) for name in varied[:2]]
-            drawn = panel.pcolormesh(*edges, colors(one.transpose(varied[1], varied[0], ...)), rasterized=True, **look)
+            drawn = panel.pcolormesh(*edges, colors(part.transpose(varied[1], varied[0], ...)), rasterized=True, **look)
             panel.set_xlim(edges[0][0], edges[0][-1])
         else:
             show_all(panel, first)
-            curve(panel, first, one)
+            curve(panel, first, part)
         if number % across == 0:
             panel.set_ylabel(f"${_symbol(varied[1])}$" if len(varied) > 1 else label)
-    label_panels(panels, [title for title, _ in shown])
+    label_panels(panels, [title for title, _ in parts])
     return figure, panels, drawn
 
 
@@ -75,9 +75,9 @@ def panel_parts(grid: xarray.Dataset) -> Iterator[tuple[str, xarray.Dataset]]:
     chosen = [even_indices(grid.sizes[name], MOST) for name in further]
     for law, initial in product(grid["law"].values, grid["initial"].values):
         for places in product(*chosen):
-            one = grid.sel(law=law, initial=initial).isel(dict(zip(further, places, strict=True)))
-            values = [f"${_symbol(name)} = {one[name].item():g}$" for name in further if grid.sizes[name] > 1]
-            yield ", ".join([f"{law} law, {initial}", *values]), one
+            part = grid.sel(law=law, initial=initial).isel(dict(zip(further, places, strict=True)))
+            values = [f"${_symbol(name)} = {part[name].item():g}$" for name in further if grid.sizes[name] > 1]
+            yield ", ".join([f"{law} law, {initial}", *values]), part
 
 
 def _symbol(name: str) -> str:

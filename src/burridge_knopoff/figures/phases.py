@@ -49,23 +49,23 @@ def draw(phases: xarray.Dataset) -> Figure:
     """
     phases = phases.sortby(["amplitude", "phase_difference"])
     # Where synchrony does not attract, all panels would be white.
-    others = [name for name in phases["synchronized_fraction"].dims if name != "a"]
-    some = np.flatnonzero((phases["synchronized_fraction"] > 0.0).any(others).values)
+    dimensions = [name for name in phases["synchronized_fraction"].dims if name != "a"]
+    some = np.flatnonzero((phases["synchronized_fraction"] > 0.0).any(dimensions).values)
     values = some if len(some) else np.arange(phases.sizes["a"])
-    shown = phases.isel(
+    selection = phases.isel(
         a=values[even_indices(len(values), SHOWN)], inner_share=even_indices(phases.sizes["inner_share"], SHARES)
     )
-    columns = shown["a"].values
+    columns = selection["a"].values
     figure = Figure(figsize=(PAGE, 4.6), layout="constrained")
     upper, lower = figure.subplots(2, len(columns), sharey="row", squeeze=False)
     for first, second, a in zip(upper, lower, columns, strict=True):
-        image = _fractions(first, shown.isel(law=0, inner_share=0).sel(a=a))
-        _means(second, shown.sel(a=a))
+        image = _fractions(first, selection.isel(law=0, inner_share=0).sel(a=a))
+        _means(second, selection.sel(a=a))
     upper[0].set_ylabel("phase difference")
     lower[0].set_ylabel("mean fraction\nthat synchronizes")
     figure.colorbar(image, ax=list(upper), label="fraction that synchronizes", aspect=15, pad=0.01)
-    legend_below(figure, *_handles(shown))
-    law = shown["law"].values[0]
+    legend_below(figure, *_handles(selection))
+    law = selection["law"].values[0]
     titles = [*(f"{law}, $a={a:g}$" for a in columns), *(f"mean, $a={a:g}$" for a in columns)]
     label_panels([*upper, *lower], titles)
     return figure
@@ -96,9 +96,9 @@ def _means(panel: Axes, phases: xarray.Dataset) -> None:
     """Draw the mean fraction over the amplitudes at which no block stops, for each law and inner amplitude."""
     difference = phases["phase_difference"].values
     for k, share in enumerate(phases["inner_share"].values):
-        one = phases.sel(inner_share=share)
-        small = one.isel(amplitude=one["amplitude"].values <= one["slipping_amplitude"].item())
-        for n, law in enumerate(one["law"].values):
+        part = phases.sel(inner_share=share)
+        small = part.isel(amplitude=part["amplitude"].values <= part["slipping_amplitude"].item())
+        for n, law in enumerate(part["law"].values):
             mean = small["synchronized_fraction"].sel(law=law).mean("amplitude").values
             panel.plot(difference, mean, color=INNER[k], linewidth=0.8, **_law_look(n))
     panel.set(ylim=(-0.05, 1.05), xlabel="phase difference")

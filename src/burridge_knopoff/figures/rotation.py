@@ -42,11 +42,11 @@ def draw(rotation: xarray.Dataset) -> Figure:
     figure, panels = new_figure(page_width(len(laws)), 3.2, columns=len(laws))
     titles = []
     for panel, law in zip(panels, laws, strict=True):
-        found = rotation.sel(law=law)
-        share, _, _ = locked_share(found, np.isfinite(found["a"].values))
+        part = rotation.sel(law=law)
+        share, _, _ = locked_share(part, np.isfinite(part["a"].values))
         locked = f": {100 * share:.0f} % of grid values locked" if np.isfinite(share) else ""
         titles.append(f"{law} law{locked}")
-        _curve(panel, found)
+        _curve(panel, part)
         a = rotation["a"].values[rotation["in_grid"].values == 1]
         show_all(panel, np.unique(a))
         panel.set_xlabel("$a$")
@@ -70,14 +70,14 @@ def _curve(panel: Axes, rotation: xarray.Dataset) -> None:
         if chosen.any():
             look: Any = {"color": KINDS[kind], "markeredgecolor": "0.2", "markeredgewidth": edge, "markersize": 2.6}
             panel.plot(a[chosen], number[chosen], "o", label=name, zorder=2 + locked, **look)
-    found = sorted(plateaux(rotation), key=lambda one: one.first - one.last)[:NAMED]
-    for one in found:
-        if one.last > one.first:
-            height = one.ratio.numerator / one.ratio.denominator
-            panel.plot([one.first, one.last], [height, height], color="0.2", linewidth=0.6, zorder=1)
+    steps = sorted(plateaux(rotation), key=lambda step: step.first - step.last)[:NAMED]
+    for step in steps:
+        if step.last > step.first:
+            height = step.ratio.numerator / step.ratio.denominator
+            panel.plot([step.first, step.last], [height, height], color="0.2", linewidth=0.6, zorder=1)
             panel.annotate(
-                f"{one.ratio.numerator}/{one.ratio.denominator}",
-                (one.first, height),
+                f"{step.ratio.numerator}/{step.ratio.denominator}",
+                (step.first, height),
                 xytext=(-4, -4),
                 ha="right",
                 textcoords="offset points",

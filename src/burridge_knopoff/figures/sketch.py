@@ -41,9 +41,9 @@ def draw(chain_description: Mapping[str, Any]) -> Figure:
     """Draw a chain given as arguments of `Chain`: blocks, springs with their strengths, driver and ground."""
     chain = Chain(**chain_description)
     count = chain.blocks
-    shown = list(range(count)) if count <= WHOLE else [0, 1, count - 1]
+    blocks = list(range(count)) if count <= WHOLE else [0, 1, count - 1]
     # Leave room for dots in place of the missing blocks.
-    place = {block: STEP * (k + (count > WHOLE and k == 2)) for k, block in enumerate(shown)}
+    place = {block: STEP * (k + (count > WHOLE and k == 2)) for k, block in enumerate(blocks)}
     left, right = -1.5, max(place.values()) + 1.7
     figure = Figure(figsize=(min(PAGE, 0.75 * (right - left) + 0.4), 2.4), layout="constrained")
     panel = figure.subplots()
@@ -63,13 +63,13 @@ def draw(chain_description: Mapping[str, Any]) -> Figure:
             panel.text(x + 0.75, 1.4, f"${chain.driving[block]:g}$")
         if np.ptp(chain.thresholds) > 0.0:
             panel.text(x, -0.38, f"$F={chain.thresholds[block]:g}$", ha="center", va="top")
-    for one, other in pairwise(shown):
-        start, end = place[one] + SIDE / 2, place[other] - SIDE / 2
-        if other != one + 1 or chain.is_network:
+    for block, other in pairwise(blocks):
+        start, end = place[block] + SIDE / 2, place[other] - SIDE / 2
+        if other != block + 1 or chain.is_network:
             panel.text(0.5 * (start + end), SIDE / 2, "· · ·", ha="center", va="center", fontsize=14.0)
             continue
         _spring(panel, (start, SIDE / 2), (end, SIDE / 2))
-        panel.text(0.5 * (start + end), 0.62, f"${chain.coupling_to_next[one]:g}$", ha="center")
+        panel.text(0.5 * (start + end), 0.62, f"${chain.coupling_to_next[block]:g}$", ha="center")
     lines = _words(chain)
     lowest = -0.75 - 0.4 * len(lines) if lines or np.ptp(chain.thresholds) > 0.0 else -0.35
     panel.text(0.5 * (left + right), -0.75, "\n".join(lines), ha="center", va="top")

@@ -177,24 +177,24 @@ def draw_run(run: xarray.Dataset) -> Figure:
     figure = StyledFigure(figsize=(PAGE, 5.4), layout="constrained")
     grid = figure.add_gridspec(3, 2, width_ratios=(1.15, 1.0))
     slips, recurrence = figure.add_subplot(grid[:2, 0]), figure.add_subplot(grid[2, 0])
-    others = [figure.add_subplot(grid[row, 1]) for row in range(3)]
+    side_panels = [figure.add_subplot(grid[row, 1]) for row in range(3)]
     norm = magnitude_norm(run)
     draw_map(slips, run, norm)
     add_magnitudes(figure, norm, [slips])
     draw_recurrence(recurrence, run, "black")
     recurrence.set_xlim(slips.get_xlim())
-    for panel, draw in zip(others, (draw_rate, draw_extent, draw_interval), strict=True):
+    for panel, draw in zip(side_panels, (draw_rate, draw_extent, draw_interval), strict=True):
         draw(panel, run, "black")
-    for panel, name in zip((*others, recurrence), _REASONS, strict=True):
+    for panel, name in zip((*side_panels, recurrence), _REASONS, strict=True):
         label_if_empty(panel, run, name)
     words = ending(run)
     label_panels(
-        [slips, recurrence, *others],
+        [slips, recurrence, *side_panels],
         [f"slips{words and f', {words}'}", "recurrence at each block", "rate by magnitude", "extent", "intervals"],
     )
-    others[0].plot([], [], color="black", linewidth=2.4, alpha=0.45, label=slope_words(run))
-    if others[0].axison:
-        others[0].legend(loc="upper right", handlelength=1.2)
+    side_panels[0].plot([], [], color="black", linewidth=2.4, alpha=0.45, label=slope_words(run))
+    if side_panels[0].axison:
+        side_panels[0].legend(loc="upper right", handlelength=1.2)
     return figure
 
 

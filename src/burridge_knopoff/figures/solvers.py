@@ -44,13 +44,13 @@ def draw(solvers: xarray.Dataset) -> Figure:
     titles = []
     for row, law in enumerate(laws):
         means, differences, steps = panels[3 * row : 3 * row + 3]
-        own = solvers.attrs[f"solver_{law}"]
+        reference = solvers.attrs[f"solver_{law}"]
         for n, name in enumerate(names):
             run = solvers.sel(law=law, solver=name).stack(line=("initial", "a"))
             look = _look(n)
             means.errorbar(run["mean_distance"], place, xerr=run["mean_distance_error"], **look)
             steps.plot(run["step_count"].where(run["step_count"] > 0) / run["end_time"], place, **look)
-            if name != own:
+            if name != reference:
                 differences.plot(np.maximum(abs(run["difference"]), FLOOR), place, **look)
                 error = np.maximum(run["difference_error"], FLOOR)
                 differences.plot(error, place, "|", color=look["color"], markersize=6, markeredgewidth=0.8)

@@ -48,9 +48,9 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     """
     states, count = stick_slip["initial"].values, stick_slip.sizes["block"]
     middle = (count + 1) // 2
-    shown = sorted({1, middle, count})
+    numbers = sorted({1, middle, count})
     # Two blocks have no middle block.
-    over_middle = [f"{what} frequency\nover that of block {middle}" for what in ("velocity", "stop")]
+    over_middle = [f"{quantity} frequency\nover that of block {middle}" for quantity in ("velocity", "stop")]
     together_label = f"correlation of\n$U_1$′ with $U_{{{count}}}$′"
     rows = {"cycle time": "time between stops"}
     if count > 2:
@@ -62,14 +62,14 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
     figure, panels = new_figure(PAGE, 0.6 + 1.45 * len(labels), rows=len(labels), columns=len(states))
     for column, initial in enumerate(states):
         run = stick_slip.sel(law=shown_law, initial=initial)
-        cycles, *others, sticks = panels[column :: len(states)]
-        ratios, together = others[:-1], others[-1] if others else None
-        for n, block in enumerate(shown):
-            one = run.sel(block=block)
-            _points(cycles, n, one["cycle_time"], one["cycle_time_error"])
-            _points(sticks, n, one["stick_fraction"])
+        cycles, *inner_panels, sticks = panels[column :: len(states)]
+        ratios, together = inner_panels[:-1], inner_panels[-1] if inner_panels else None
+        for n, block in enumerate(numbers):
+            series = run.sel(block=block)
+            _points(cycles, n, series["cycle_time"], series["cycle_time_error"])
+            _points(sticks, n, series["stick_fraction"])
             if ratios and block != middle:
-                _ratios(ratios, n, one, run.sel(block=middle))
+                _ratios(ratios, n, series, run.sel(block=middle))
         _say_why(cycles, run, "cycle_time", "no stops")
         _say_why(sticks, run, "stick_fraction", "")
         cycles.axhspan(*PAPER_CYCLE, color="0.88", linewidth=0, zorder=0)
@@ -88,7 +88,7 @@ def draw(stick_slip: xarray.Dataset, shown_law: str) -> Figure:
         panel.set_ylabel(label)
         if label != together_label:
             begin_at_zero(panel)
-    legend_below(figure, _legend(shown))
+    legend_below(figure, _legend(numbers))
     label_panels(panels, [f"{initial}: {name}" for name in rows for initial in states])
     figure.suptitle(f"{shown_law} law", fontsize="medium")
     return figure
@@ -120,16 +120,16 @@ def _ratios(panels: Sequence[Axes], n: int, end: xarray.Dataset, middle: xarray.
     velocities, stops = panels
     # Both errors are resolutions of the spectrum.
     ratio = end["velocity_frequency"] / middle["velocity_frequency"].drop_vars("block")
-    shares = [(one["velocity_frequency_error"] / one["velocity_frequency"]).values for one in (end, middle)]
+    shares = [(part["velocity_frequency_error"] / part["velocity_frequency"]).values for part in (end, middle)]
     _points(velocities, n, ratio, ratio * np.hypot(shares[0], shares[1]))
     rate = middle["stop_rate"].drop_vars("block")
     _points(stops, n, end["stop_rate"] / rate.where(rate > 0.0))
 
 
-def _legend(shown: list[int]) -> list[Line2D | Patch]:
+def _legend(numbers: list[int]) -> list[Line2D | Patch]:
     band = Patch(facecolor="0.88", label="stated in the paper: 2 to 3")
-    blocks = [Line2D([], [], **_look(n, block), label=f"block {block}") for n, block in enumerate(shown)]
-    if len(shown) < 3:
+    blocks = [Line2D([], [], **_look(n, block), label=f"block {block}") for n, block in enumerate(numbers)]
+    if len(numbers) < 3:
         return [*blocks, band]
     half = Line2D([], [], color="0.4", linestyle=":", linewidth=0.9, label="stated in the paper: 1/2")
     return [*blocks, band, half]

@@ -146,7 +146,7 @@ def panel_table(
 
 def begin_at_zero(panel: Axes) -> None:
     """Scale the y axis of a row of panels from just below 0 to just above its largest value."""
-    tops = [each.dataLim.y1 for each in panel.get_shared_y_axes().get_siblings(panel)]
+    tops = [axes.dataLim.y1 for axes in panel.get_shared_y_axes().get_siblings(panel)]
     top = max(filter(np.isfinite, tops), default=0.0)
     # Without this, rounding would set the scale where all values are 0.
     top = top if top > 1e-9 else 0.01
@@ -155,7 +155,7 @@ def begin_at_zero(panel: Axes) -> None:
 
 def scale_to_decades(panel: Axes) -> None:
     """Scale the logarithmic y axis of a row of panels between powers of ten, so that only these have tick labels."""
-    rows = [each.dataLim for each in panel.get_shared_y_axes().get_siblings(panel)]
+    rows = [axes.dataLim for axes in panel.get_shared_y_axes().get_siblings(panel)]
     low, high = min(row.minposy for row in rows), max(row.y1 for row in rows)
     if 0.0 < low <= high < np.inf:
         first, last = np.floor(np.log10(low)), np.ceil(np.log10(high))
@@ -277,8 +277,8 @@ def strip_columns(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     left, right = strips(values)
     inner, index = np.column_stack([left, right]).ravel(), np.full(2 * len(values) - 1, -1)
     index[::2] = np.arange(len(values))
-    shown = np.append(np.diff(inner) > 0.0, True)
-    return inner[shown], index[shown[:-1]]
+    mask = np.append(np.diff(inner) > 0.0, True)
+    return inner[mask], index[mask[:-1]]
 
 
 def draw_strips(panel: Axes, values: np.ndarray, colors: np.ndarray, bottom: float = 0.0) -> None:

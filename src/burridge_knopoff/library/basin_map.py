@@ -78,9 +78,9 @@ def basin_map(
         tiles=1,
         threads=threads,
     )
-    attractors, known = coexisting_attractors(model, settings, motion, starts=[state], start=start)
-    tile = basin_summary.tile(known, 0, plane, settings.label_limit, start)
-    pairs = basin_summary.pairs(known, plane, settings.label_limit, settings.seed, start)
+    attractors, candidates = coexisting_attractors(model, settings, motion, starts=[state], start=start)
+    tile = basin_summary.tile(candidates, 0, plane, settings.label_limit, start)
+    pairs = basin_summary.pairs(candidates, plane, settings.label_limit, settings.seed, start)
     basins = basin_summary.merge([(model, [tile], pairs)], attractors, plane, settings.label_limit, start)
     for dataset in (attractors, basins):
         dataset.attrs["history"] = "burridge_knopoff.basin_map"

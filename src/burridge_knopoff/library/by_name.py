@@ -60,16 +60,16 @@ def show_settings(kind: type) -> Callable[[_F], _F]:
     """Return a decorator that replaces `**` in the signature of a function by the settings of a class."""
 
     def decorate(function: _F) -> _F:
-        own = inspect.signature(function)
-        named = [item for item in own.parameters.values() if item.kind is not inspect.Parameter.VAR_KEYWORD]
-        more = [
+        signature = inspect.signature(function)
+        named = [item for item in signature.parameters.values() if item.kind is not inspect.Parameter.VAR_KEYWORD]
+        settings = [
             inspect.Parameter(
                 name, inspect.Parameter.KEYWORD_ONLY, default=field.default, annotation=type(field.default).__name__
             )
             for name, field in fields_of(kind).items()
-            if name not in own.parameters
+            if name not in signature.parameters
         ]
-        function.__signature__ = own.replace(parameters=[*named, *more])  # type: ignore[attr-defined]
+        function.__signature__ = signature.replace(parameters=[*named, *settings])  # type: ignore[attr-defined]
         return function
 
     return decorate
@@ -79,10 +79,10 @@ def settings_of(kind: type[_T], settings: _T | None, by_name: Mapping[str, Any])
     """Return settings of a class, with the values given by name; raises ValueError, one line, for other names."""
     if settings is not None:
         instance_of(settings, kind, "settings")
-    known = fields_of(kind)
+    names = fields_of(kind)
     for name in by_name:
-        if name not in known:
+        if name not in names:
             raise ValueError(
-                f"{full_key('', name)}: not a setting, expected {' | '.join(sorted(known))}{suggestion(name, known)}"
+                f"{full_key('', name)}: not a setting, expected {' | '.join(sorted(names))}{suggestion(name, names)}"
             )
     return kind(**by_name) if settings is None else replace(settings, **by_name)  # type: ignore[type-var]

@@ -100,8 +100,8 @@ def record_events(
     >>> len(events.time), events.blocks[0].item()
     (14, 1)
     """
-    found = events.record_events(
+    record = events.record_events(
         model, start, end, begin=begin, profiles=profiles, loading=loading, solver=solver, step=step
     )
     begin = start.time if begin is None else max(begin, start.time)
-    return Catalogue(**vars(found), model=model, begin_time=begin, end_time=end, loading=loading, solver=solver)
+    return Catalogue(**vars(record), model=model, begin_time=begin, end_time=end, loading=loading, solver=solver)

@@ -30,27 +30,27 @@ _KEYS = Keys({"name": Field(STATE_NAME, "name of the state", OWN), **fields_of(I
 _FORMS = f"{' | '.join(PAPER_STATES)}, InitialState, {{'position': …, 'velocity': …}}, or (position, velocity)"
 
 
-def given_state(given: Initial) -> InitialState:
+def given_state(initial: Initial) -> InitialState:
     """Return an initial state from any of its forms.
 
     Raises ValueError, one line, for anything else, and for other values under one of the paper's names.
     """
-    state = given if isinstance(given, InitialState) else _state(given)
+    state = initial if isinstance(initial, InitialState) else _state(initial)
     if state.name in PAPER_STATES and not has_paper_numbers(state):
         raise refusal("initial.name", state.name, "another name: the paper has a different state of that name")
     return state
 
 
-def _state(given: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray) -> InitialState:
-    if isinstance(given, str):
-        return initial_state(given)
-    if isinstance(given, Mapping):
-        numbers = {key: _plain(value) for key, value in given.items()}
+def _state(initial: str | Mapping[str, Any] | Sequence[Sequence[float]] | np.ndarray) -> InitialState:
+    if isinstance(initial, str):
+        return initial_state(initial)
+    if isinstance(initial, Mapping):
+        numbers = {key: _plain(value) for key, value in initial.items()}
     else:
-        pair = _plain(given)
+        pair = _plain(initial)
         lists = [_plain(values) for values in pair] if isinstance(pair, list) else []
         if len(lists) != 2 or not all(isinstance(values, list) for values in lists):
-            raise ValueError(f"initial: got {format_value(given)}, expected {_FORMS}, with one number per block")
+            raise ValueError(f"initial: got {format_value(initial)}, expected {_FORMS}, with one number per block")
         numbers = dict(zip(("position", "velocity"), lists, strict=True))
     return InitialState(**_KEYS.form(numbers, "initial"))
 
@@ -77,7 +77,7 @@ def given_model(
     Raises ValueError, one line, for a wrong argument, and for arguments together with a model, which has its own.
     """
     if isinstance(law, Model):
-        if any(own is not None for own in (a, chain, v, contact)):
+        if any(option is not None for option in (a, chain, v, contact)):
             raise ValueError(
                 "a, chain, v, contact: got some together with a model, expected none: the model has its own"
             )
@@ -89,8 +89,8 @@ def given_model(
     if chain is None and blocks is None:
         raise ValueError("chain: missing, expected a Chain for an initial state that does not fix the number of blocks")
     chain = Chain(blocks) if chain is None else chain  # type: ignore[arg-type]
-    own: dict[str, Any] = {name: value for name, value in (("v", v), ("contact", contact)) if value is not None}
-    return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), **own)
+    options: dict[str, Any] = {name: value for name, value in (("v", v), ("contact", contact)) if value is not None}
+    return Model(chain, law.at(a) if isinstance(law, Law) else law_of(law, a), **options)
 
 
 def warn_of_cost(model: Model, initial: InitialState | ChainState, settings: Settings) -> None:

@@ -83,11 +83,13 @@ def sweep(
     (('v', 'coupling'), (2, 3))
     """
     state = given_state(initial)
-    own = fields_of(Settings)
-    chosen = settings_of(Settings, settings, {name: value for name, value in by_name.items() if name in own})
+    names = fields_of(Settings)
+    chosen = settings_of(Settings, settings, {name: value for name, value in by_name.items() if name in names})
     if cores is not None:
         cores = Whole(1, 1024).form(cores, "cores")
-    parameters = {name: value for name, value in (("a", a), *by_name.items()) if name not in own and value is not None}
+    parameters = {
+        name: value for name, value in (("a", a), *by_name.items()) if name not in names and value is not None
+    }
     base, axes = _grid(law, parameters, state.blocks, chain, contact)
     points = [dict(zip(axes, values, strict=True)) for values in product(*axes.values())]
     models = [_call_at(point, base.at, **point) for point in points]
@@ -98,15 +100,15 @@ def sweep(
 
     def some(first: int) -> list[tuple[dict[str, Any], dict[str, Any]]]:
         part = range(first, min(first + size, len(points)))
-        made = [_call_at(points[k], prepare, models[k], state, chosen) for k in part]
-        how = run_together([one.runner for one in made])
-        statuses = [_call_at(points[k], one.runner.status_of, end) for k, one, end in zip(part, made, how, strict=True)]
-        runs = [one.result(status) for one, status in zip(made, statuses, strict=True)]
+        jobs = [_call_at(points[k], prepare, models[k], state, chosen) for k in part]
+        how = run_together([job.runner for job in jobs])
+        statuses = [_call_at(points[k], job.runner.status_of, end) for k, job, end in zip(part, jobs, how, strict=True)]
+        runs = [job.result(status) for job, status in zip(jobs, statuses, strict=True)]
         return [(_common_values(point_values(run)), point_attributes(run)) for run in runs]
 
     cores = cores or _cores()
     size = min(LOCKSTEP_RUNS, -(-len(points) // cores))
-    found = list(chained.from_iterable(map_in_threads(cores, some, range(0, len(points), size))))
+    results = list(chained.from_iterable(map_in_threads(cores, some, range(0, len(points), size))))
     import xarray
 
     shape = [len(values) for values in axes.values()]
@@ -114,16 +116,16 @@ def sweep(
     data: dict[str, Any] = {}
     for name, item in _COMMON.items():
         if item.coordinate:
-            data[name] = item.dimensions, np.asarray(found[0][0][name], item.dtype), item.all_attributes()
+            data[name] = item.dimensions, np.asarray(results[0][0][name], item.dtype), item.all_attributes()
         else:
-            array = np.array([numbers[name] for numbers, _ in found], item.dtype)
+            array = np.array([numbers[name] for numbers, _ in results], item.dtype)
             dimensions = *plain.values(), *item.dimensions
             data[name] = dimensions, array.reshape((*shape, *array.shape[1:])), item.all_attributes()
     for name, values in axes.items():
         item = _COMMON.get(name, Variable((), "f8", f"parameter {name} of the model"))
         data[plain[name]] = plain[name], values, item.all_attributes()
-    first, *others = (attributes for _, attributes in found)
-    common = {key: value for key, value in first.items() if all(other.get(key) == value for other in others)}
+    first, *other_attributes = (attributes for _, attributes in results)
+    common = {key: value for key, value in first.items() if all(other.get(key) == value for other in other_attributes)}
     if remark := "; ".join(remarks_on_states([state], axes)):
         common["remark"] = remark
     return xarray.Dataset(data, attrs=common).set_coords({name for name, item in _COMMON.items() if item.coordinate})
@@ -138,7 +140,7 @@ def _grid(
 ) -> tuple[Model, dict[str, list[float]]]:
     """Return the model with all single-valued parameters, and the values of those given as sequences."""
     arrays = {name: np.asanyarray(value, dtype=object) for name, value in parameters.items()}
-    axes: dict[str, list[float]] = {name: given.tolist() for name, given in arrays.items() if given.ndim}
+    axes: dict[str, list[float]] = {name: array.tolist() for name, array in arrays.items() if array.ndim}
     for name, values in axes.items():
         if arrays[name].ndim > 1:
             raise refusal(full_key("", name), values, "one number or a sequence of numbers")
@@ -152,8 +154,8 @@ def _grid(
         base = given_model(law, first, blocks, chain, None, contact)
     for name in parameters:
         if name not in parameter_names(base) and parse_indexed_name(name) is None:
-            known = " | ".join([format_parameter_names(base), *sorted(fields_of(Settings))])
-            raise ValueError(f"{full_key('', name)}: not a setting or a parameter, expected {known}")
+            names = " | ".join([format_parameter_names(base), *sorted(fields_of(Settings))])
+            raise ValueError(f"{full_key('', name)}: not a setting or a parameter, expected {names}")
     base = base.at(**single)
     for name, values in axes.items():
         axes[name] = [parameter_value(base.at(**{name: value}), name) for value in values]
@@ -163,10 +165,10 @@ def _grid(
     return base, axes
 
 
-def _call_at(point: Mapping[str, float], function: Callable[..., _T], *given: Any, **by_name: Any) -> _T:
+def _call_at(point: Mapping[str, float], function: Callable[..., _T], *arguments: Any, **by_name: Any) -> _T:
     """Call a function; an error names the point of the grid."""
     try:
-        return function(*given, **by_name)
+        return function(*arguments, **by_name)
     except (ValueError, MemoryError) as error:
         place = ", ".join(f"{name} = {value!r}" for name, value in point.items())
         raise type(error)(f"{place}: {error}" if place else str(error)) from error

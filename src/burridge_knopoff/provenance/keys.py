@@ -50,25 +50,29 @@ def nested(values: Mapping[str, Any]) -> dict[str, Any]:
     return config
 
 
-def difference(made: Any, expected: Any, place: str = "", form: str = "{}: got {}, expected {}") -> str:
+def difference(actual: Any, expected: Any, place: str = "", form: str = "{}: got {}, expected {}") -> str:
     """Return the first difference of two values in words, `attractors.samples: got 100, expected 120`; empty if none.
 
     The order counts, such as that of the laws in a summary.
     """
-    if _json(made) == _json(expected):
+    if _json(actual) == _json(expected):
         return ""
-    if isinstance(made, Mapping) and isinstance(expected, Mapping):
-        for key in {**expected, **made}:
-            pair = made.get(key, MISSING), expected.get(key, MISSING)
+    if isinstance(actual, Mapping) and isinstance(expected, Mapping):
+        for key in {**expected, **actual}:
+            pair = actual.get(key, MISSING), expected.get(key, MISSING)
             if words := difference(*pair, f"{place}.{key}" if place else key, form):
                 return words
-        return difference(list(made), list(expected), place, form)
-    if isinstance(made, list) and isinstance(expected, list) and max(len(_text(made)), len(_text(expected))) > _LONGEST:
-        for n, pair in enumerate(zip(made, expected, strict=False)):
+        return difference(list(actual), list(expected), place, form)
+    if (
+        isinstance(actual, list)
+        and isinstance(expected, list)
+        and max(len(_text(actual)), len(_text(expected))) > _LONGEST
+    ):
+        for n, pair in enumerate(zip(actual, expected, strict=False)):
             if words := difference(*pair, f"{place}[{n}]", form):
                 return words
-        made, expected = f"{len(made)} entries", f"{len(expected)} entries"
-    texts = _text(made), _text(expected)
+        actual, expected = f"{len(actual)} entries", f"{len(expected)} entries"
+    texts = _text(actual), _text(expected)
     return form.format(place, _cut(*texts), _cut(*texts[::-1]))
 
 

@@ -96,8 +96,8 @@ def _embedded(path: Path) -> dict[str, Any]:
         case ".json":
             return json.loads(path.read_text(encoding="utf-8")).get(NAME, {})
         case ".html":
-            found = _META.search(path.read_text(encoding="utf-8"))
-            return json.loads(html.unescape(found[1])) if found else {}
+            match = _META.search(path.read_text(encoding="utf-8"))
+            return json.loads(html.unescape(match[1])) if match else {}
         case _:
             return {}
 

@@ -39,8 +39,8 @@ def required_instructions(compiler_flags: Sequence[str]) -> list[str]:
 
 def missing_instructions(needed: Sequence[str]) -> list[str]:
     """Return those of some instruction sets that this machine lacks; empty if its own cannot be read."""
-    own = instructions()
-    return [name for name in needed if name not in own] if own else []
+    available = instructions()
+    return [name for name in needed if name not in available] if available else []
 
 
 def best_build(builds: Mapping[str, Sequence[str]]) -> str:

@@ -61,8 +61,8 @@ def write_study_record(
     left: dict[str, str] = {}
     with contextlib.suppress(ValueError):
         earlier = read_study_record(results)
-        known = {**earlier["left"], **earlier["files"]}
-        gone = {name: log for name, log in known.items() if name not in files}
+        logs = {**earlier["left"], **earlier["files"]}
+        gone = {name: log for name, log in logs.items() if name not in files}
         left = {name: log for name, log in gone.items() if any(Path(results, place).exists() for place in (name, log))}
     values = (SOFTWARE, git_commit(), arguments, display_path(config_file), given, config, grid, files, left)
     text = json.dumps(dict(zip(_TYPES, values, strict=True)), indent=1, ensure_ascii=False) + "\n"
@@ -116,10 +116,10 @@ def check_owner(results: str | Path, config_file: str | Path, given: dict[str, A
         record = read_study_record(results)
     except ValueError:
         return
-    owner, known = record["config_file"], record["given"]
-    if Path(owner).resolve() == Path(config_file).resolve() or known == given:
+    owner, owner_keys = record["config_file"], record["given"]
+    if Path(owner).resolve() == Path(config_file).resolve() or owner_keys == given:
         return
-    differs = ", ".join(key for key in {**known, **given} if known.get(key) != given.get(key))
+    differs = ", ".join(key for key in {**owner_keys, **given} if owner_keys.get(key) != given.get(key))
     raise ValueError(
         f"{display_path(config_file)}: study: got {Path(results).name!r}, expected another name: {results} has the "
         f"results of {owner}, which differs ({differs}); to continue there with this config, remove "

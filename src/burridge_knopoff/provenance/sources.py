@@ -99,13 +99,13 @@ def current_sources(recorded: str) -> str:
 def sources_of(*entries: str | Path) -> tuple[Path, ...]:
     """Return the files that these modules or scripts depend on, including themselves, sorted."""
     waiting = [path for entry in entries for path in ([entry] if isinstance(entry, Path) else files_of(entry))]
-    found: set[Path] = set()
+    paths: set[Path] = set()
     while waiting:
         path = waiting.pop()
-        if path not in found:
-            found.add(path)
+        if path not in paths:
+            paths.add(path)
             waiting += _imported_files(path)
-    return tuple(sorted(found, key=str))
+    return tuple(sorted(paths, key=str))
 
 
 @cache

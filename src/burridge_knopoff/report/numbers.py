@@ -44,9 +44,9 @@ def embedded_json(data: Any) -> Markup:
 def with_powers_of_ten(words: str) -> str:
     """Write numbers in words, such as 2.1e-15, with a power of ten: 2.1 × 10⁻¹⁵."""
 
-    def power(found: re.Match[str]) -> str:
-        exponent = f"10{(found[2].strip('+') + found[3]).translate(_SUPERSCRIPTS)}"
-        return f"{found[1]}\N{NO-BREAK SPACE}×\N{NO-BREAK SPACE}{exponent}" if found[1] else exponent
+    def power(match: re.Match[str]) -> str:
+        exponent = f"10{(match[2].strip('+') + match[3]).translate(_SUPERSCRIPTS)}"
+        return f"{match[1]}\N{NO-BREAK SPACE}×\N{NO-BREAK SPACE}{exponent}" if match[1] else exponent
 
     return _EXPONENT.sub(power, words)
 

@@ -172,10 +172,10 @@ def origins(summaries: Mapping[str, xarray.Dataset]) -> list[dict[str, str]]:
 
 def software() -> list[tuple[str, str]]:
     """Return the provenance of this report and the versions of the libraries."""
-    found = provenance("burridge_knopoff.dataset.point")
+    record = provenance("burridge_knopoff.dataset.point")
     rows = [
-        ("Software", found["software"]),
-        ("Source fingerprint of the runs", found["source_fingerprint"]),
+        ("Software", record["software"]),
+        ("Source fingerprint of the runs", record["source_fingerprint"]),
         ("Git commit", git_commit()),
         ("Python", platform.python_version()),
     ]

@@ -137,7 +137,7 @@ def _over_a(
         "branches": _from_summary(summaries, "attractors", tables.branch_table, []),
         "attractors": _from_summary(summaries, "attractors", lambda attractors: attractors.attrs),
         "sliding": _from_summary(
-            summaries, "attractors", lambda found: bool((found["sliding_attracts"] == 1).any()), False
+            summaries, "attractors", lambda dataset: bool((dataset["sliding_attracts"] == 1).any()), False
         ),
         "proved": "proof" in summaries,
         "transitions": tables.transition_table(summaries["orbits"]),

@@ -65,7 +65,7 @@ def prose(sentence: str) -> Markup:
 def _formulas(html: str) -> str:
     # The name of a convention in the config is a word of prose.
     html = html.replace("one_sided", "one-sided")
-    html = _IN_FORMULA.sub(lambda found: f"<i>{found[0]}</i>", html)
+    html = _IN_FORMULA.sub(lambda match: f"<i>{match[0]}</i>", html)
     html = _SUBSCRIPT.sub(r"<i>\1</i><sub>\2</sub>", _MEAN.sub("⟨J⟩", html))
     html = _INDEX.sub(r"<sub><i>\1</i></sub>", html)
     html = _PRIME.sub("′", _SYMBOL.sub(r"<i>\1</i>", html))

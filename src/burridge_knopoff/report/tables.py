@@ -41,9 +41,9 @@ def transition_table(orbits: xarray.Dataset) -> dict[str, Any]:
     def row(name: str, value: str, error: str = "", digits: int = 10) -> dict[str, Any]:
         cells = []
         for law in laws:
-            one = orbits.sel(law=law)
-            number = one[value].item()
-            cells.append(format_measured(number, one[error].item()) if error else _rounded(number, digits))
+            part = orbits.sel(law=law)
+            number = part[value].item()
+            cells.append(format_measured(number, part[error].item()) if error else _rounded(number, digits))
         return {"name": name, "cells": cells}
 
     kinds = [_meaning(BifurcationKind(orbits.sel(law=law)["bifurcation_kind"].item())) for law in laws]
@@ -98,14 +98,14 @@ def chain_table(chains: xarray.Dataset) -> list[dict[str, str]]:
     a, states = chains["a"].values, chains.sizes["state"]
     for law in chains["law"].values:
         for blocks in chains["blocks"].values:
-            one = chains.sel(law=law, blocks=blocks)
-            fraction = one["synchronized_fraction"].values
-            ends = one["synchronized_low"].values, one["synchronized_high"].values
+            part = chains.sel(law=law, blocks=blocks)
+            fraction = part["synchronized_fraction"].values
+            ends = part["synchronized_low"].values, part["synchronized_high"].values
             # Of equal fractions, the one known best.
             best = min(range(len(a)), key=lambda k: (-fraction[k], ends[1][k]))
             low, high = (end[best] for end in ends)
             some = a[fraction > 0.0]
-            open_states = round(float(one["undetermined_fraction"].sum()) * states)
+            open_states = round(float(part["undetermined_fraction"].sum()) * states)
             rows.append(
                 {
                     "law": str(law),

@@ -33,11 +33,11 @@ def embedded_trajectories(grid: Grid) -> dict[str, Any] | None:
     if chain.ends == "ring" or chain.is_network:
         return None
     every = -(-int(np.prod(grid.shape)) * FRAMES * chain.blocks // LARGEST)
-    shown = list(grid.a)[::every]
+    values = list(grid.a)[::every]
     units, first, frames, packed = [], [], [], []
     interval = EVERY * next(iter(grid.settings.values())).trajectory_sampling
     for _, point in grid:
-        if point[-1] not in shown:
+        if point[-1] not in values:
             continue
         run = read_point(grid, point, ("position", "trajectory_time"))
         count = min(FRAMES, (len(run["position"]) - 1) // EVERY)

@@ -123,18 +123,18 @@ def bifurcation_diagram(data: xarray.Dataset) -> str:
 def stick_slip(data: xarray.Dataset) -> str:
     """Return where all blocks stop, the longest sticks, and where the end blocks move against each other."""
 
-    def sentence(one: xarray.Dataset) -> str:
-        a = one["a"].values
-        rate, stuck = one["stop_rate"].values, one["stick_fraction"].values
+    def sentence(part: xarray.Dataset) -> str:
+        a = part["a"].values
+        rate, stuck = part["stop_rate"].values, part["stick_fraction"].values
         completed = np.isfinite(rate).all(axis=-1)
         if not completed.any():
             return "no run completed"
         place, block = np.unravel_index(np.nanargmax(stuck), stuck.shape)
         words = [f"every block stops {values_where(completed & (rate > 0.0).all(axis=-1), a)}"]
         if stuck[place, block] > 0.0:
-            which = f"block {one['block'].values[block]} at a = {a[place]:g}"
+            which = f"block {part['block'].values[block]} at a = {a[place]:g}"
             words.append(f"the largest fraction of time in which a block sticks is {stuck[place, block]:.2g} ({which})")
-        negative = np.count_nonzero(one["velocity_correlation"].values < 0.0)
+        negative = np.count_nonzero(part["velocity_correlation"].values < 0.0)
         words.append(
             f"the velocities of the end blocks are negatively correlated at {negative} of {len(a)} values of a"
         )
@@ -147,44 +147,46 @@ def solvers(data: xarray.Dataset) -> str:
     """Return how far ⟨J⟩ and the order of events of other solvers differ from those of the study's points."""
     lines = []
     for law in data["law"].values:
-        own = data.attrs[f"solver_{law}"]
-        reference = data.sel(law=law, solver=own)
+        main_solver = data.attrs[f"solver_{law}"]
+        reference = data.sel(law=law, solver=main_solver)
         for solver in data["solver"].values:
-            one = data.sel(law=law, solver=solver)
-            status = one["status"].values
-            if solver == own or (status == NO_RUN).all():
+            part = data.sel(law=law, solver=solver)
+            status = part["status"].values
+            if solver == main_solver or (status == NO_RUN).all():
                 continue
             runs = status != NO_RUN
             completed = (status == Status.COMPLETED) & (reference["status"].values == Status.COMPLETED)
-            difference = np.where(completed, np.abs(one["difference"].values), np.nan)
+            difference = np.where(completed, np.abs(part["difference"].values), np.nan)
             words = []
             if np.isfinite(difference).any():
                 i, k = np.unravel_index(np.nanargmax(difference), difference.shape)
-                largest, error = f"{difference[i, k]:.2g}", one["difference_error"].values[i, k]
-                where = f"{one['initial'].values[i]}, a = {one['a'].values[k]:g}"
+                largest, error = f"{difference[i, k]:.2g}", part["difference_error"].values[i, k]
+                where = f"{part['initial'].values[i]}, a = {part['a'].values[k]:g}"
                 words.append(f"<J> differs by at most {largest}{f' +- {error:.2g}' if error > 0.0 else ''} ({where})")
-            until = one["event_order_time"].values
-            end = np.fmin(one["end_time"].values, reference["end_time"].values)
+            until = part["event_order_time"].values
+            end = np.fmin(part["end_time"].values, reference["end_time"].values)
             same = runs & (until >= end)
             order = f"the order of events is the same in {np.count_nonzero(same)} of {format_count(runs.sum(), 'run')}"
             if (runs & ~same).any():
                 order += f" and in the others at least until tau = {until[runs & ~same].min():.4g}"
             words.append(order)
-            lines.append(f"{law}, {solver} compared with {own}: {'; '.join([*words, *_incomplete(completed[runs])])}")
+            lines.append(
+                f"{law}, {solver} compared with {main_solver}: {'; '.join([*words, *_incomplete(completed[runs])])}"
+            )
     return "\n".join(lines)
 
 
 def catalogue(data: xarray.Dataset) -> str:
     """Return the number of slip events under each law, the range of their slopes, and how many catalogues are empty."""
 
-    def sentence(one: xarray.Dataset) -> str:
-        events = format_count(int(np.maximum(one["event_count"].values, 0).sum()), "slip event")
-        words = f"{events} at {format_count(one.sizes['a'], 'value')} of a"
-        slope = one["slope"].values
+    def sentence(part: xarray.Dataset) -> str:
+        events = format_count(int(np.maximum(part["event_count"].values, 0).sum()), "slip event")
+        words = f"{events} at {format_count(part.sizes['a'], 'value')} of a"
+        slope = part["slope"].values
         if np.isfinite(slope).any():
             ends = span(f"{np.nanmin(slope):.3g}", f"{np.nanmax(slope):.3g}")
             words += f"; slope b of the magnitudes {ends} (rates decrease as exp(-b magnitude))"
-        return "; ".join([words, *_incomplete(one["status"].values == Status.COMPLETED)])
+        return "; ".join([words, *_incomplete(part["status"].values == Status.COMPLETED)])
 
     return "\n".join(filter(None, [lines_of(data, ["law"], sentence), empty_catalogues(data)]))
 

@@ -45,9 +45,9 @@ def describe_values(variable: xarray.DataArray) -> str:
         return ", ".join(f"{name} {number}" for name, number in counts if number)
     if values.dtype == object or values.dtype.kind in "US":
         return shorten(", ".join(dict.fromkeys(map(str, values.ravel()))), LONGEST, placeholder=" ...")
-    known = values[~np.isnan(values)] if values.dtype.kind == "f" else values
-    without = f", NaN at {values.size - known.size} of {values.size}" if known.size < values.size else ""
-    if not known.size:
+    finite = values[~np.isnan(values)] if values.dtype.kind == "f" else values
+    without = f", NaN at {values.size - finite.size} of {values.size}" if finite.size < values.size else ""
+    if not finite.size:
         return "NaN"
-    low, high = known.min(), known.max()
+    low, high = finite.min(), finite.max()
     return f"{low:.6g}{without}" if low == high else f"{low:.6g} to {high:.6g}{without}"

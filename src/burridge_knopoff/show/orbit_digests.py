@@ -26,8 +26,8 @@ ROUNDING = 1e-10
 def equilibrium(data: xarray.Dataset) -> str:
     """Return where perturbations of uniform sliding grow, and their largest growth rate."""
 
-    def sentence(one: xarray.Dataset) -> str:
-        a, growth = one["a"].values, one["eigenvalue"].sel(part="real").max("mode", skipna=False).values
+    def sentence(part: xarray.Dataset) -> str:
+        a, growth = part["a"].values, part["eigenvalue"].sel(part="real").max("mode", skipna=False).values
         if np.isnan(growth).all():
             return "uniform sliding was not examined"
         where = values_where(growth > ROUNDING, a)
@@ -40,14 +40,14 @@ def equilibrium(data: xarray.Dataset) -> str:
 def orbits(data: xarray.Dataset) -> str:
     """Return where the synchronized orbit loses its transverse stability, and by which bifurcation."""
 
-    def sentence(one: xarray.Dataset) -> str:
-        if (one["status"].values == OrbitStatus.NOT_THREE_BLOCKS).any():
+    def sentence(part: xarray.Dataset) -> str:
+        if (part["status"].values == OrbitStatus.NOT_THREE_BLOCKS).any():
             return "not computed, as the chain has not three blocks"
-        critical, grazing = one["critical_a"].item(), one["grazing_a"].item()
+        critical, grazing = part["critical_a"].item(), part["grazing_a"].item()
         words = ["no a was found at which the synchronized orbit loses its transverse stability"]
         if np.isfinite(critical):
-            kind = BifurcationKind(one["bifurcation_kind"].item())
-            side = decode_flags(one["bifurcation_side"]).item()
+            kind = BifurcationKind(part["bifurcation_kind"].item())
+            side = decode_flags(part["bifurcation_side"]).item()
             how = f"{side} {kind.words}" if side != "undetermined" else kind.words
             words = [f"the synchronized orbit loses its transverse stability at a = {critical:.10g} ({how})"]
         if np.isfinite(grazing):
@@ -61,14 +61,14 @@ def rotation(data: xarray.Dataset) -> str:
     """Return at how many values of the grid a branch is locked, and the range of its rotation number."""
     branch = data.attrs["branch"]
 
-    def sentence(one: xarray.Dataset) -> str:
-        locked, number = one["locked"].values, one["rotation_number"].values
-        known = (locked >= 0) & (one["in_grid"].values == 1)
-        if not known.any():
+    def sentence(part: xarray.Dataset) -> str:
+        locked, number = part["locked"].values, part["rotation_number"].values
+        mask = (locked >= 0) & (part["in_grid"].values == 1)
+        if not mask.any():
             return f"branch {branch} is neither periodic nor quasiperiodic at any a of the grid"
         words = (
-            f"branch {branch} is locked (periodic) at {np.count_nonzero(locked[known] == 1)} of "
-            f"{format_count(int(known.sum()), 'value')} of a in the grid at which it is periodic or quasiperiodic"
+            f"branch {branch} is locked (periodic) at {np.count_nonzero(locked[mask] == 1)} of "
+            f"{format_count(int(mask.sum()), 'value')} of a in the grid at which it is periodic or quasiperiodic"
         )
         if np.isfinite(number).any():
             words += f"; rotation number {span(f'{np.nanmin(number):.5g}', f'{np.nanmax(number):.5g}')}"
@@ -97,9 +97,9 @@ def two_blocks(data: xarray.Dataset) -> str:
 def phases(data: xarray.Dataset) -> str:
     """Return the fraction of the initial phases that lead to synchrony, and the a where it is smallest and largest."""
 
-    def sentence(one: xarray.Dataset) -> str:
-        a = one["a"].values
-        branch = one["branch"].transpose("a", ...).values.reshape(len(a), -1)
+    def sentence(part: xarray.Dataset) -> str:
+        a = part["a"].values
+        branch = part["branch"].transpose("a", ...).values.reshape(len(a), -1)
         share = (branch == 0).mean(axis=1)
         words = f"{100.0 * (branch == 0).mean():.1f} % of {branch.size} initial states synchronize"
         if share.min() < share.max():
@@ -125,9 +125,9 @@ def chains(data: xarray.Dataset) -> str:
 def refined(data: xarray.Dataset) -> str:
     """Return how many values of a were inserted between those of the grid, and the number of branches."""
 
-    def sentence(one: xarray.Dataset) -> str:
-        values, in_grid = np.isfinite(one["a"].values), one["in_grid"].values == 1
-        branches = len(np.unique(one["branch"].values[one["branch"].values >= 0]))
+    def sentence(part: xarray.Dataset) -> str:
+        values, in_grid = np.isfinite(part["a"].values), part["in_grid"].values == 1
+        branches = len(np.unique(part["branch"].values[part["branch"].values >= 0]))
         return (
             f"{branches} branch{'es' * (branches != 1)} of attractors at {values.sum()} values of a, "
             f"{np.count_nonzero(values & ~in_grid)} of them inserted where the attractors change"
@@ -149,10 +149,10 @@ def bifurcations(data: xarray.Dataset) -> str:
     """Return the number of bifurcations of each kind under each law, and all of them if they are few."""
     lines = []
     for law in data.attrs["laws"].split():
-        own = data["law"].values == law
-        kinds = Counter(data["kind"].values[own].tolist())
+        mask = data["law"].values == law
+        kinds = Counter(data["kind"].values[mask].tolist())
         counts = ", ".join(f"{BifurcationKind(kind).words} {count}" for kind, count in kinds.most_common())
-        lines.append(f"{law}: {format_count(int(own.sum()), 'bifurcation')}{f': {counts}' if counts else ''}")
+        lines.append(f"{law}: {format_count(int(mask.sum()), 'bifurcation')}{f': {counts}' if counts else ''}")
     if data.sizes["bifurcation"] > MOST_LISTED:
         return "\n".join([*lines, "bifurcations.txt, next to the summary of all laws, has a line for each"])
     return "\n".join([*lines, "", bifurcations_one_by_one(data)])

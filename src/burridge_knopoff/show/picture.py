@@ -62,10 +62,10 @@ def write_picture(result: Result, path: str | Path) -> str:
     inputs = [result if name == result.name else _open_neighbour(result, name) for name in figure.inputs]
     module = import_module(f"burridge_knopoff.figures.{figure.name}")
     try:
-        drawn = module.draw(*(one.data for one in inputs), **_study_arguments(result, figure))
+        drawn = module.draw(*(source.data for source in inputs), **_study_arguments(result, figure))
     except (AttributeError, KeyError, IndexError, ValueError):
-        names = " with ".join(str(one.path) for one in inputs)
-        old = any(not one.of_these_sources for one in inputs)
+        names = " with ".join(str(source.path) for source in inputs)
+        old = any(not source.of_these_sources for source in inputs)
         reason = "made by other sources" if old else "not the results of one study"
         raise ValueError(f"{names}: the figure {figure.name} cannot show them: {reason}") from None
     write_figure(drawn, path)
@@ -95,8 +95,8 @@ def _open_neighbour(result: Result, name: str) -> Result:
     try:
         other = open_result(path)
     except ValueError as error:
-        known = f"summary/{name}.nc" in result.files
-        reason = f": {error}" if path.exists() or known else ", which is not in the same folder"
+        is_listed = f"summary/{name}.nc" in result.files
+        reason = f": {error}" if path.exists() or is_listed else ", which is not in the same folder"
         raise ValueError(f"{result.path}: its figure also needs {name}.nc{reason}") from None
     if not _fit(result.data.attrs, other.data.attrs):
         raise ValueError(f"{result.path}: its figure also needs {name}.nc, but {path} is of another study")

@@ -40,9 +40,11 @@ def point_lines(result: Result, width: int = UNLIMITED) -> list[str]:
 
 def _model(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
     attributes = point.attrs
-    given = {key: attributes[name] for key in CHAIN_OPTIONS if key != "ends" and (name := f"chain_{key}") in attributes}
-    given = {key: value for key, value in given.items() if "damping" not in key or np.any(value)}
-    chain = ", ".join(f"{key} {_text(value)}" for key, value in given.items())
+    options = {
+        key: attributes[name] for key in CHAIN_OPTIONS if key != "ends" and (name := f"chain_{key}") in attributes
+    }
+    options = {key: value for key, value in options.items() if "damping" not in key or np.any(value)}
+    chain = ", ".join(f"{key} {_text(value)}" for key, value in options.items())
     yield "chain", f"{point.sizes['block']} blocks, {attributes['chain_ends']}: {chain}"
     numbers = [
         f"{key.removeprefix('law_')} = {value:g}"
@@ -73,8 +75,8 @@ def _run(point: xarray.Dataset) -> Iterator[tuple[str, str]]:
 
 def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[str, str]]:
     run = {str(name): variable.values for name, variable in point.variables.items()}
-    given = {key: _plain_value(point.attrs[name]) for key in CHAIN_OPTIONS if (name := f"chain_{key}") in point.attrs}
-    chain = Chain(point.sizes["block"], **given)
+    options = {key: _plain_value(point.attrs[name]) for key in CHAIN_OPTIONS if (name := f"chain_{key}") in point.attrs}
+    chain = Chain(point.sizes["block"], **options)
     status = Status(point["status"].item()).name.lower()
     yield "status", f"{status} at tau = {point['end_time'].item():g}"
     yield "<J>", to_ascii(with_error(point["mean_distance"].item(), point["mean_distance_error"].item()))
@@ -82,7 +84,7 @@ def _outcome(point: xarray.Dataset, motion: MotionSettings) -> Iterator[tuple[st
     yield "motion", format_motion(motion_of_run(run, chain.is_mirror_symmetric, motion), motion)
     exponents = list(zip(run["lyapunov_exponent"], run["lyapunov_error"], strict=True))
     if exponents and not np.isnan(run["lyapunov_exponent"]).all():
-        yield "exponents", ", ".join(to_ascii(with_error(*map(float, one))) for one in exponents)
+        yield "exponents", ", ".join(to_ascii(with_error(*map(float, exponent))) for exponent in exponents)
         if run["lyapunov_infinite_count"] > 0:
             infinite = int(run["lyapunov_infinite_count"])
             verb = "is" if infinite == 1 else "are"

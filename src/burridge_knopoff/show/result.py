@@ -64,8 +64,8 @@ class Result:
     @property
     def name(self) -> str:
         """Name of a summary by which figures identify it, which need not be the name of the file."""
-        known = (name for variable, name in _BY_CONTENT.items() if variable in self.data)
-        return next(known, self.data.attrs["source_module"].rpartition(".")[2])
+        names = (name for variable, name in _BY_CONTENT.items() if variable in self.data)
+        return next(names, self.data.attrs["source_module"].rpartition(".")[2])
 
     @property
     def motion(self) -> MotionSettings:
@@ -113,9 +113,9 @@ def open_result(path: str | Path) -> Result:
     """
     path = Path(path)
     if path.is_dir() or (path.is_file() and path.suffix != ".nc"):
-        found = "folder" if path.is_dir() else f"{path.suffix} file" if path.suffix else "file without suffix"
+        kind = "folder" if path.is_dir() else f"{path.suffix} file" if path.suffix else "file without suffix"
         raise ValueError(
-            f"{path}: got a {found}, expected a netCDF file (.nc); of the results of a study, read summary/claims.md, "
+            f"{path}: got a {kind}, expected a netCDF file (.nc); of the results of a study, read summary/claims.md, "
             "check the folder with bk check, or open it with open_study"
         )
     study = study_folder(path)

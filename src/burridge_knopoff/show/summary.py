@@ -70,10 +70,10 @@ def digest(result: Result, width: int = UNLIMITED) -> list[str]:
         data = data.expand_dims(law=[data.attrs["law"]])
     try:
         if result.name == "attractors":
-            one = data.sizes["a"] == data.sizes["law"] == 1 and "branch_name" in data
-            return attractor_table(data, {}, width) if one else branches(data, width)
-        known = {**DIGESTS, **ORBIT_DIGESTS, **({} if "map" in data.dims else {"basins": basin_part})}
-        text = known.get(result.name) or import_module(data.attrs["source_module"]).digest
+            is_single = data.sizes["a"] == data.sizes["law"] == 1 and "branch_name" in data
+            return attractor_table(data, {}, width) if is_single else branches(data, width)
+        digests = {**DIGESTS, **ORBIT_DIGESTS, **({} if "map" in data.dims else {"basins": basin_part})}
+        text = digests.get(result.name) or import_module(data.attrs["source_module"]).digest
         return wrap_lines(text(data).rstrip().splitlines(), width)
     except (ImportError, AttributeError, KeyError, ValueError, IndexError):
         # Made by other sources, or only a part of the summary.

@@ -21,12 +21,12 @@ def chunks(study: Study) -> dict[str, list[dict[str, str]]]:
 
 def incomplete_chunks(study: Study, results: Path) -> list[Path]:
     """Return the marks of finished chunks of which a point is missing, or was written after the mark."""
-    found = []
+    marks = []
     for chunk, points in chunks(study).items():
         mark = results / CHUNK.format(chunk=chunk)
         if mark.exists():
             finished = mark.stat().st_mtime
             paths = (results / "points" / study.point_file.format(**point) for point in points)
             if not all(path.exists() and path.stat().st_mtime <= finished for path in paths):
-                found.append(mark)
-    return found
+                marks.append(mark)
+    return marks

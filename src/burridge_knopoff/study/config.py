@@ -34,14 +34,14 @@ NUMBER = Number(-HUGE, HUGE)
 A = Number(0.0, 100.0)
 
 
-def _values(one: Number, longest: float) -> Several:
+def _values(number: Number, longest: float) -> Several:
     """Return the range of a list of numbers and of ranges {from, to, step}; see `grid.values_of`."""
     steps = {
-        "from": Field(one, "first value"),
-        "to": Field(one, "last value"),
+        "from": Field(number, "first value"),
+        "to": Field(number, "last value"),
         "step": Field(Number(0.0, longest, above=True), "distance between values; must divide the length of the range"),
     }
-    return Several(Either((one, Keys(steps))), 1)
+    return Several(Either((number, Keys(steps))), 1)
 
 
 VALUES = _values(A, 100.0)
@@ -79,8 +79,8 @@ class LawKeys(Range):
     def _fit(self, value: Any, key: str) -> dict[str, Any] | None:
         if not isinstance(value, Mapping):
             return None
-        known = {name: field.range for name, field in self.fields.items()}
-        return {name: known.get(name, self.number).form(item, full_key(key, name)) for name, item in value.items()}
+        ranges = {name: field.range for name, field in self.fields.items()}
+        return {name: ranges.get(name, self.number).form(item, full_key(key, name)) for name, item in value.items()}
 
     def __str__(self) -> str:
         return "law or formula, and parameters; {} for a built-in law with its defaults"

@@ -49,20 +49,20 @@ def with_error(value: Any, error: Any = None) -> str:
     if len(stored.digits) >= STORED_DIGITS and isinstance(stored.exponent, int):
         decimals = min(decimals, -stored.exponent)
     if 0 <= decimals <= 6 or (decimals > 6 and abs(value) >= 1e-3):
-        shown = f"{value:z.{decimals}f} ± " + (f"{error:.{decimals}f}" if decimals <= 6 else f"{error:.{digits}e}")
+        words = f"{value:z.{decimals}f} ± " + (f"{error:.{decimals}f}" if decimals <= 6 else f"{error:.{digits}e}")
     elif decimals < 0:
-        shown = f"{round(value, decimals):z.0f} ± {round(error, decimals):.0f}"
+        words = f"{round(value, decimals):z.0f} ± {round(error, decimals):.0f}"
     else:
         # Small numbers: one power of ten for value and error.
         power = math.floor(math.log10(max(abs(value), error)))
         places = max(0, decimals + power)
-        shown = f"({value / 10**power:z.{places}f} ± {error / 10**power:.{places}f})e{power}"
-    return shown.replace("-", MINUS)
+        words = f"({value / 10**power:z.{places}f} ± {error / 10**power:.{places}f})e{power}"
+    return words.replace("-", MINUS)
 
 
-def to_ascii(shown: str) -> str:
+def to_ascii(words: str) -> str:
     """Return a formatted number in ASCII characters."""
-    return shown.replace(MINUS, "-").replace("±", "+-").replace("–", "nan").replace("∞", "infinity")
+    return words.replace(MINUS, "-").replace("±", "+-").replace("–", "nan").replace("∞", "infinity")
 
 
 def format_count(number: int, noun: str) -> str:

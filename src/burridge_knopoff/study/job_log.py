@@ -71,10 +71,10 @@ def _last_error(log: str | Path) -> str:
         text = Path(log).read_bytes()[-_TAIL:].decode("utf-8", errors="replace")
     except OSError:
         return ""
-    _, traceback, said = text.rpartition(_TRACEBACK)
-    lines = [line for line in said.splitlines() if line.strip() and not _NO_FAILURE.match(line)]
-    said = _CALLS.sub("", said) if traceback else "".join(lines[-1:])
-    return _CLASS.sub("", " ".join(said.split()))
+    _, traceback, message = text.rpartition(_TRACEBACK)
+    lines = [line for line in message.splitlines() if line.strip() and not _NO_FAILURE.match(line)]
+    message = _CALLS.sub("", message) if traceback else "".join(lines[-1:])
+    return _CLASS.sub("", " ".join(message.split()))
 
 
 def is_interrupted(logs: Sequence[str | Path], *, stopping: bool = False) -> bool:
@@ -83,8 +83,10 @@ def is_interrupted(logs: Sequence[str | Path], *, stopping: bool = False) -> boo
     stopping : whether the run was interrupted, which leaves the log of a job that had not started empty
     """
     # `bk` writes a line. Scripts write a traceback, as does `bk` before it has read its command.
-    said = [words for log in logs if (words := logged_error(log))]
-    return any(words.endswith((f": {INTERRUPTED}", "KeyboardInterrupt")) for words in said) or (stopping and not said)
+    messages = [words for log in logs if (words := logged_error(log))]
+    return any(words.endswith((f": {INTERRUPTED}", "KeyboardInterrupt")) for words in messages) or (
+        stopping and not messages
+    )
 
 
 def failure_line(job: str, logs: Sequence[str | Path]) -> str:

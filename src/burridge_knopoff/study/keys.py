@@ -31,8 +31,8 @@ def run_keys(study: Study, law: str = "") -> list[str]:
     # Only rk4 has a step.
     if "rk4" not in (study.config["solver"][name] for name in ([law] if law else study.laws)):
         names.remove("step")
-    of_law = [f"laws.{law}", f"solver.{law}"] if law else ["laws", "solver"]
-    return [*of_law, *MODEL_KEYS[1:], *(name for name in names if name != "solver"), "a_digits"]
+    law_keys = [f"laws.{law}", f"solver.{law}"] if law else ["laws", "solver"]
+    return [*law_keys, *MODEL_KEYS[1:], *(name for name in names if name != "solver"), "a_digits"]
 
 
 def point_keys(study: Study) -> list[str]:

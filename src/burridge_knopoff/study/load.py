@@ -70,17 +70,17 @@ def _study(config: Mapping[str, Any], folder: Path) -> Study:
     rules.fill_names(filled)
     rules.check_size(filled, study.parameters)
     rules.check_names(filled, study.parameters)
-    others = study.other_values
-    rules.check_models(filled, values, others)
-    chains = [study.model(study.laws[0], values[0], **each).chain for each in others]
+    other_values = study.other_values
+    rules.check_models(filled, values, other_values)
+    chains = [study.model(study.laws[0], values[0], **parameters).chain for parameters in other_values]
     chain = chains[0]
     if is_new:
         chain.check_springs()
     # Results may be read on a machine without the file of springs, which was checked when the study ran.
     has_springs = chain.springs is None or is_new
     for law in study.laws if has_springs else ():
-        for each in chains:
-            study.settings(law).check_chain(each)
+        for block_chain in chains:
+            study.settings(law).check_chain(block_chain)
     # The default is three exponents; a single block has only two.
     filled["lyapunov_exponents"] = study.settings(study.laws[0]).exponent_count(chain)
     with rules.error_prefix("basins."):

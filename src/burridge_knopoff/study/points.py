@@ -40,8 +40,8 @@ def make_points(study: Study, points: Sequence[Mapping[str, str]], folder: Path)
     for first in range(0, len(wanted), LOCKSTEP_RUNS):
         failed += _simulate_together(wanted[first : first + LOCKSTEP_RUNS])
     if failed:
-        more = f"; {format_count(len(failed) - 1, 'more point')} of this chunk failed" if len(failed) > 1 else ""
-        raise RuntimeError(f"{failed[0]}{more}")
+        suffix = f"; {format_count(len(failed) - 1, 'more point')} of this chunk failed" if len(failed) > 1 else ""
+        raise RuntimeError(f"{failed[0]}{suffix}")
     return len(wanted) - len(failed)
 
 
@@ -53,9 +53,9 @@ def _simulate_together(wanted: Sequence[tuple[Path, str, tuple[Model, InitialSta
             prepared.append((path, command, prepare(*run)))
         except (ValueError, MemoryError) as error:
             failed.append(_failure(path, error, command))
-    for how, (path, command, one) in zip(run_together([one.runner for *_, one in prepared]), prepared, strict=True):
+    for how, (path, command, job) in zip(run_together([job.runner for *_, job in prepared]), prepared, strict=True):
         try:
-            write_point(one.result(one.runner.status_of(how)), path)
+            write_point(job.result(job.runner.status_of(how)), path)
         except (ValueError, MemoryError) as error:
             failed.append(_failure(path, error, command))
     return failed

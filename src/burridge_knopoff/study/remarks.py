@@ -11,12 +11,12 @@ from burridge_knopoff.running.cost import cost_note, is_stiff
 from burridge_knopoff.study.study import Study
 
 
-def remarks(study: Study, given: Mapping[str, Any]) -> list[str]:
+def remarks(study: Study, config: Mapping[str, Any]) -> list[str]:
     """Return lines on missing parts, on numbers that do not follow the model, and on runs that take very long.
 
-    given : the config as written
+    config : the config as written
     """
-    return [*_on_cost(study), *_on_parts(study, given), *_on_states(study)]
+    return [*_on_cost(study), *_on_parts(study, config), *_on_states(study)]
 
 
 def _on_cost(study: Study) -> list[str]:
@@ -31,10 +31,10 @@ def _on_cost(study: Study) -> list[str]:
     return [f"each simulation: {note}; the time estimated for a first run leaves this out"] if note else []
 
 
-def _on_parts(study: Study, given: Mapping[str, Any]) -> Iterator[str]:
+def _on_parts(study: Study, config: Mapping[str, Any]) -> Iterator[str]:
     if study.blocks == 1:
         yield "one block: J = 0; no basins, phases or synchronized orbit, which need two end blocks"
-    elif given.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
+    elif config.get("basins") and "basins" not in study.omitted_stages and not study.basin_maps:
         yield "basins: no map, since no default value of basins.a is on the grid; set basins.a"
 
 

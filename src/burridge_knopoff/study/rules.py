@@ -98,12 +98,12 @@ def fill_names(config: dict[str, Any]) -> None:
     for name, description in laws.items():
         if name not in LAWS and not {"law", "formula"} & description.keys():
             raise unknown_law(f"laws.{name}", name)
-    known, first = OneOf(tuple(laws)), next(iter(laws))
-    known.form(config["figures"].setdefault("law", first), "figures.law")
-    Several(known).form(config["chains"].setdefault("laws", [first]), "chains.laws")
+    law_names, first = OneOf(tuple(laws)), next(iter(laws))
+    law_names.form(config["figures"].setdefault("law", first), "figures.law")
+    Several(law_names).form(config["chains"].setdefault("laws", [first]), "chains.laws")
     OneOf(tuple(config["initial"])).form(config["basins"].setdefault("initial", state), "basins.initial")
-    usual, given = (solver, {}) if isinstance(solver, str) else (SOLVERS[0], solver)
-    config["solver"] = _by_law(OneOf(SOLVERS), dict.fromkeys(laws, usual)).form(given, "solver")
+    usual, by_law = (solver, {}) if isinstance(solver, str) else (SOLVERS[0], solver)
+    config["solver"] = _by_law(OneOf(SOLVERS), dict.fromkeys(laws, usual)).form(by_law, "solver")
 
 
 def _by_law(allowed: Range, usual: Mapping[str, Any]) -> Keys:
@@ -130,8 +130,10 @@ def check_models(
                 with error_prefix(f"grid ({name} law, a = {a:g}): " if values else ""):
                     model = set_parameters(base, values) if values else base
                 if solver == "map" and not model.has_closed_form:
-                    known = " | ".join(solver for solver in SOLVERS if solver != "map")
-                    raise refusal(f"solver.{name}", "map", f"{known}: no closed form at a = {a:g}, {_reason(model)}")
+                    solver_names = " | ".join(solver for solver in SOLVERS if solver != "map")
+                    raise refusal(
+                        f"solver.{name}", "map", f"{solver_names}: no closed form at a = {a:g}, {_reason(model)}"
+                    )
         if len(tapes) > 1 and all(tape == tapes[0] for tape in tapes):
             raise refusal(
                 f"laws.{name}.formula",
@@ -161,8 +163,8 @@ def _reason(model: Model) -> str:
     return f"as a slope steeper than {model.chain.damping_limit:g} overdamps the blocks"
 
 
-def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int, shown: float) -> None:
-    """Check the values of a in all sections against the grid and fill in defaults; shown : that of single runs."""
+def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int, shown_a: float) -> None:
+    """Check the values of a in all sections against the grid and fill in defaults; shown_a : that of single runs."""
     chain = Chain(**config["chain"])
     of_paper = chain == Chain(3)
     maps = {law: PAPER_BASINS.get(law, next(iter(PAPER_BASINS.values()))) for law in config["laws"]}
@@ -171,8 +173,8 @@ def fill_values(config: Mapping[str, Any], grid: Collection[float], blocks: int,
     chosen = _by_law(SOME_VALUES, usual).form(basins["a"], "basins.a")
     basins["a"] = {law: list(values) for law, values in chosen.items()}
     phases["a"] = sorted(phases.get("a", [a for a in PAPER_PHASES if a in grid and of_paper]))
-    solvers["a"] = sorted(solvers.get("a", [a for a in PAPER_COMPARED if a in grid] or [shown]))
-    config["figures"].setdefault("a", shown)
+    solvers["a"] = sorted(solvers.get("a", [a for a in PAPER_COMPARED if a in grid] or [shown_a]))
+    config["figures"].setdefault("a", shown_a)
     if phases["a"] and not has_free_ends(chain):
         raise refusal("phases.a", phases["a"], "[] unless the chain is a row of three blocks or more with open ends")
     if blocks == 1 and any(basins["a"].values()):

@@ -228,7 +228,7 @@ class Study:
         """Return a parameter's value from its name in file names; raises ConfigError if it is not in the grid."""
         grid = self.parameters[parameter]
         if name not in grid:
-            meant = next((known for known, value in grid.items() if value == float(name)), "")
+            meant = next((key for key, value in grid.items() if value == float(name)), "")
             remedy = f"write {parameter}{meant}" if meant else f"this {parameter} is not on its grid"
             raise ConfigError(f"{parameter}{name}: not a point of study {self.name}; {remedy}")
         return grid[name]

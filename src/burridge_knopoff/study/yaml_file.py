@@ -54,15 +54,15 @@ _Loader.add_implicit_resolver(f"{_TAG}int", re.compile(rf"{WHOLE_NUMBER}\Z"), li
 _Loader.add_implicit_resolver(f"{_TAG}float", re.compile(rf"({_FLOAT})\Z"), list("-+0123456789."))
 
 
-def _size(node: yaml.Node, known: dict[yaml.Node, float]) -> float:
-    """Return the number of values in a node with its aliases expanded; known : the numbers of nodes visited before."""
-    if node not in known:
+def _size(node: yaml.Node, sizes: dict[yaml.Node, float]) -> float:
+    """Return the number of values in a node with its aliases expanded; sizes : the numbers of nodes visited before."""
+    if node not in sizes:
         # The node may contain itself: its number is infinite until it is counted.
-        known[node] = math.inf
+        sizes[node] = math.inf
         inside = node.value if isinstance(node, yaml.CollectionNode) else ()
         parts = [part for item in inside for part in (item if isinstance(item, tuple) else (item,))]
-        known[node] = 1 + sum(_size(part, known) for part in parts)
-    return known[node]
+        sizes[node] = 1 + sum(_size(part, sizes) for part in parts)
+    return sizes[node]
 
 
 def plain_value(text: str) -> Any:
@@ -80,8 +80,8 @@ def read_config(path: str | Path) -> dict[str, Any]:
     """Return the content of a study's config file, not validated; raises ConfigError as `read_yaml` does."""
     content = read_yaml(path)
     if not isinstance(content, dict):
-        found = "nothing" if content is None else full_key("", content)
-        raise ConfigError(f"{display_path(path)}: got {found}, expected keys with values")
+        text = "nothing" if content is None else full_key("", content)
+        raise ConfigError(f"{display_path(path)}: got {text}, expected keys with values")
     return content
 
 

@@ -114,26 +114,28 @@ def settle(
 
     motion : mean_distance, its error, kind and period of the runs; reached : see `reached_attractors`
     """
-    mean, known = motion["mean_distance"], reached["known"]
+    mean, has_attractor = motion["mean_distance"], reached["known"]
     larger = np.maximum(reached["mean_distance"], mean)
     error = xarray.apply_ufunc(np.hypot, reached["mean_distance_error"], motion["mean_distance_error"])
     allowed = np.maximum(agreement["standard_errors"] * error, np.maximum(MEAN_TOLERANCE * larger, threshold))
-    there = known & (np.abs(reached["mean_distance"] - mean) <= allowed)
+    agrees = has_attractor & (np.abs(reached["mean_distance"] - mean) <= allowed)
     # Transient chaos that outlasts the run is chaos in the run.
     lasting = xarray.where(reached["mean_distance"] < threshold, MotionKind.SYNCHRONIZED_CHAOS, MotionKind.CHAOTIC)
     finer = xarray.where(reached["kind"] == MotionKind.TRANSIENT_CHAOS, lasting, reached["kind"])
     same = xarray.apply_ufunc(is_same_result, motion["kind"], finer)
-    replaced = there & finer.isin((*REGULAR, *CHAOS)) & (motion["kind"].isin(UNDECIDED_KINDS) | same)
-    replaced |= known & finer.isin(SYNCHRONOUS) & (mean < reached.attrs["resolution"] * reached.attrs["v"] / 0.1)
+    replaced = agrees & finer.isin((*REGULAR, *CHAOS)) & (motion["kind"].isin(UNDECIDED_KINDS) | same)
+    replaced |= (
+        has_attractor & finer.isin(SYNCHRONOUS) & (mean < reached.attrs["resolution"] * reached.attrs["v"] / 0.1)
+    )
     kind = xarray.where(replaced, finer, motion["kind"])
-    there &= (finer == MotionKind.UNDETERMINED) | xarray.apply_ufunc(is_same_result, kind, finer)
+    agrees &= (finer == MotionKind.UNDETERMINED) | xarray.apply_ufunc(is_same_result, kind, finer)
     # If the errors exceed the tolerance between laws, agreement of ⟨J⟩ does not show that the motions are the same.
     is_accurate = allowed <= np.maximum(agreement["relative_tolerance"] * larger, threshold)
-    decided = known & np.isfinite(mean) & (kind != MotionKind.UNDETERMINED) & (is_accurate | ~there)
+    decided = has_attractor & np.isfinite(mean) & (kind != MotionKind.UNDETERMINED) & (is_accurate | ~agrees)
     return {
         "kind": kind,
         "period": xarray.where(replaced, reached["period"], motion["period"]),
-        "settled": xarray.where(decided, there, Answer.UNDETERMINED),
+        "settled": xarray.where(decided, agrees, Answer.UNDETERMINED),
     }
 
 
@@ -149,9 +151,9 @@ def compare_events(grid: Grid) -> xarray.Dataset:
             "event_order_time": min(until, float(first["end_time"]), float(run["end_time"])),
         }
 
-    others = grid.of_laws(grid.laws[1:])
-    values = over_runs(others, EVENT_VARIABLES, _EVENTS_READ, compare)
-    coordinates = {**grid.axes(), **axes(other_law=others.laws)}
+    other_runs = grid.of_laws(grid.laws[1:])
+    values = over_runs(other_runs, EVENT_VARIABLES, _EVENTS_READ, compare)
+    coordinates = {**grid.axes(), **axes(other_law=other_runs.laws)}
     del coordinates["law"]
     return xarray.Dataset({name: (_PAIR, array) for name, array in values.items()}, coordinates)
 
@@ -173,20 +175,20 @@ def table(dataset: xarray.Dataset) -> str:
 
     If several laws are compared with the first, the columns of each comparison end with the name of the other law.
     """
-    laws, others = (dataset[name].values.tolist() for name in ("law", "other_law"))
-    end = {other: f"_{other}" if len(others) > 1 else "" for other in others}
+    laws, other_laws = (dataset[name].values.tolist() for name in ("law", "other_law"))
+    end = {other: f"_{other}" if len(other_laws) > 1 else "" for other in other_laws}
     compared = ("difference", "difference_error", "section_distance", "event_order_time")
     names = ["initial", "a", *(f"mean_distance_{law}" for law in laws)]
-    names += [f"{name}{end[other]}" for other in others for name in compared]
+    names += [f"{name}{end[other]}" for other in other_laws for name in compared]
     names += [*(f"{name}_{law}" for name in ("kind", "settled") for law in laws)]
-    names += [f"agrees{end[other]}" for other in others]
+    names += [f"agrees{end[other]}" for other in other_laws]
     lines = io.StringIO()
     lines.write(",".join(names) + "\n")
     for initial in dataset["initial"].values:
         for a in dataset["a"].values:
             row = dataset.sel(initial=initial, a=a)
             cells = [initial, f"{a:.10g}", *(f"{mean:.8e}" for mean in row["mean_distance"].values)]
-            for other in others:
+            for other in other_laws:
                 difference, error, section, order = (row[name].sel(other_law=other).item() for name in compared)
                 cells += [f"{difference:.8e}", f"{error:.2e}", f"{section:.6e}", f"{order:.3f}"]
             cells += [MotionKind(kind).words for kind in row["kind"].values]
@@ -197,12 +199,12 @@ def table(dataset: xarray.Dataset) -> str:
 
 def digest(dataset: xarray.Dataset) -> str:
     """Return a line for each other law and initial state: at how many a it agrees with the first, and where not."""
-    first, others = dataset["law"].values[0], dataset["other_law"].values
-    lines = [] if len(others) else [f"The {first} law is the only one: there is nothing to compare."]
-    for other in others:
+    first, other_laws = dataset["law"].values[0], dataset["other_law"].values
+    lines = [] if len(other_laws) else [f"The {first} law is the only one: there is nothing to compare."]
+    for other in other_laws:
         for initial in dataset["initial"].values:
-            found = _agreement_text(dataset.sel(other_law=other, initial=initial, law=[first, other]))
-            lines.append(f"{initial}, {other} law compared with the {first} law: {found}")
+            comparison = _agreement_text(dataset.sel(other_law=other, initial=initial, law=[first, other]))
+            lines.append(f"{initial}, {other} law compared with the {first} law: {comparison}")
     for law in dataset["law"].values:
         for initial in dataset["initial"].values:
             settled = dataset["settled"].sel(law=law, initial=initial)

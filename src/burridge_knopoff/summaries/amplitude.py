@@ -47,15 +47,15 @@ def sweep(orbits: KnownOrbits, values: np.ndarray) -> np.ndarray:
     The first run starts near the synchronized orbit, and each further run from the end of the one before, with a small
     asymmetry added. The result is NaN from the first a at which the end blocks no longer stick at the same time.
     """
-    found = np.full(len(values), np.nan)
+    amplitude = np.full(len(values), np.nan)
     state = orbits.at(float(values[0])).reference
     for k, a in enumerate(values):
         try:
             state = _settle(model_at(orbits.model, float(a)), displace_end_blocks(state, SEED * orbits.model.v))
         except OrbitError:
             break
-        found[k] = abs(state.position[0] - state.position[-1])
-    return found
+        amplitude[k] = abs(state.position[0] - state.position[-1])
+    return amplitude
 
 
 def _settle(model: Model, state: ChainState) -> ChainState:

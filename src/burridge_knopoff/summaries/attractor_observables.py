@@ -36,7 +36,7 @@ class AttractorObservables:
     @property
     def velocity_frequency(self) -> np.ndarray:
         """Frequency of the highest peak of the spectrum of U', shape (blocks,); see `leading_frequency`."""
-        return np.array([leading_frequency(one[::THINNING], DURATION) for one in self.velocity.T])
+        return np.array([leading_frequency(series[::THINNING], DURATION) for series in self.velocity.T])
 
 
 def follow_attractor(model: Model, start: ChainState, section: Section = SUM) -> AttractorObservables:
@@ -45,6 +45,8 @@ def follow_attractor(model: Model, start: ChainState, section: Section = SUM) ->
         transient=0.0, window=DURATION, batches=2, sampling=DURATION, trajectory=DURATION, events="none",
         lyapunov_exponents=0, section=section,
     )  # fmt: skip
-    found = run(model, start, settings)
-    crossings = found.crossing_velocity[found.crossing_direction > 0]
-    return AttractorObservables(crossings, correlation(found.velocity[:, 0], found.velocity[:, -1]), found.velocity)
+    trajectory = run(model, start, settings)
+    crossings = trajectory.crossing_velocity[trajectory.crossing_direction > 0]
+    return AttractorObservables(
+        crossings, correlation(trajectory.velocity[:, 0], trajectory.velocity[:, -1]), trajectory.velocity
+    )

@@ -119,7 +119,7 @@ COORDINATES = {
 
 
 def one_law(
-    found: Continuation,
+    continuation: Continuation,
     initial: Sequence[InitialState],
     settings: SearchSettings,
     motion: MotionSettings,
@@ -127,19 +127,19 @@ def one_law(
 ) -> xarray.Dataset:
     """Return the attractors of one law at the values of the grid.
 
-    found : the result of the search with the settings `settings` and `motion`
+    continuation : the result of the search with the settings `settings` and `motion`
     initial : states whose attractor is determined under each convention
     start : convention for the sampled states
     """
-    models = [found.models[k] for k in found.grid]
-    values = slot_values(models, [found.rows(k) for k in found.grid], settings.lifetime, "a")
-    values.update(_basin_fractions(found))
+    models = [continuation.models[k] for k in continuation.grid]
+    values = slot_values(models, [continuation.rows(k) for k in continuation.grid], settings.lifetime, "a")
+    values.update(_basin_fractions(continuation))
     values["sliding_attracts"] = np.array([is_sliding_attracting(model) for model in models])
-    values.update(_neighbour_branches(found))
-    values.update(_initial_branches(found, initial, settings.label_limit))
-    values.update(_observables(found, values["initial_branch"], values["initial_side"], motion.section))
-    values.update(_rounded_branches(found, initial, settings.label_limit, start))
-    values.update(_sweeps(found))
+    values.update(_neighbour_branches(continuation))
+    values.update(_initial_branches(continuation, initial, settings.label_limit))
+    values.update(_observables(continuation, values["initial_branch"], values["initial_side"], motion.section))
+    values.update(_rounded_branches(continuation, initial, settings.label_limit, start))
+    values.update(_sweeps(continuation))
     coordinates = axes(
         COORDINATES,
         initial=[state.name for state in initial],
@@ -172,19 +172,19 @@ def search_attributes(model: Model, settings: SearchSettings, motion: MotionSett
     }
 
 
-def _basin_fractions(found: Continuation) -> dict[str, np.ndarray]:
+def _basin_fractions(continuation: Continuation) -> dict[str, np.ndarray]:
     """Return how many of the sampled states reach each attractor, and their fraction with its interval."""
     values = empty_columns(
         VARIABLES,
-        {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors))},
+        {"a": len(continuation.grid), "attractor": max(1, *map(len, continuation.attractors))},
         "basin",
         "undet",
         "sample_count",
     )
-    for k, (place, reached) in enumerate(zip(found.grid, found.samples, strict=True)):
+    for k, (place, reached) in enumerate(zip(continuation.grid, continuation.samples, strict=True)):
         values["sample_count"][k] = len(reached)
         values["undetermined_count"][k] = np.count_nonzero(reached == UNDETERMINED)
-        for slot, row in enumerate(found.rows(place)):
+        for slot, row in enumerate(continuation.rows(place)):
             hits = int(np.count_nonzero(reached == row.index))
             values["basin_count"][k, slot] = hits
             interval = fraction_interval(hits, len(reached))
@@ -193,67 +193,77 @@ def _basin_fractions(found: Continuation) -> dict[str, np.ndarray]:
     return values
 
 
-def _neighbour_branches(found: Continuation) -> dict[str, np.ndarray]:
+def _neighbour_branches(continuation: Continuation) -> dict[str, np.ndarray]:
     """Return the branch that each attractor leads to at the next larger and smaller a of the grid."""
     values = {}
-    for name, step, following in (("upward", 1, found.upward), ("downward", -1, found.downward)):
+    for name, step, following in (("upward", 1, continuation.upward), ("downward", -1, continuation.downward)):
         values[f"{name}_branch"] = np.full(
-            (len(found.grid), max(1, *map(len, found.attractors))), UNDETERMINED, dtype="i2"
+            (len(continuation.grid), max(1, *map(len, continuation.attractors))), UNDETERMINED, dtype="i2"
         )
-        for k, place in enumerate(found.grid):
-            for slot, row in enumerate(found.rows(place)):
+        for k, place in enumerate(continuation.grid):
+            for slot, row in enumerate(continuation.rows(place)):
                 if following[k][row.index] != UNDETERMINED:
-                    branch = found.branch[found.grid[k + step]]
+                    branch = continuation.branch[continuation.grid[k + step]]
                     values[f"{name}_branch"][k, slot] = branch[following[k][row.index]]
     return values
 
 
-def _initial_branches(found: Continuation, states: Sequence[InitialState], label_limit: float) -> dict[str, np.ndarray]:
+def _initial_branches(
+    continuation: Continuation, states: Sequence[InitialState], label_limit: float
+) -> dict[str, np.ndarray]:
     """Return which branch each initial state reaches under each convention of contact and start."""
-    shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(found.grid)}
+    shape = {"contact": len(CONTACTS), "start": len(STARTS), "initial": len(states), "a": len(continuation.grid)}
     values = empty_columns(VARIABLES, shape, "initial")
-    for k, place in enumerate(found.grid):
-        reached = _labels_of_states(found.models[place], found.attractors[place], states, label_limit)
+    for k, place in enumerate(continuation.grid):
+        reached = _labels_of_states(continuation.models[place], continuation.attractors[place], states, label_limit)
         for where in np.argwhere(reached != UNDETERMINED):
             at, index = (*where, k), reached[tuple(where)]
-            values["initial_branch"][at] = found.branch[place][index]
-            values["initial_side"][at] = found.side[place][index]
+            values["initial_branch"][at] = continuation.branch[place][index]
+            values["initial_side"][at] = continuation.side[place][index]
     return values
 
 
-def _observables(found: Continuation, branch: np.ndarray, side: np.ndarray, section: Section) -> dict[str, np.ndarray]:
+def _observables(
+    continuation: Continuation, branch: np.ndarray, side: np.ndarray, section: Section
+) -> dict[str, np.ndarray]:
     """Return the observables along each attractor that an initial state reaches.
 
     branch, side : reached by the initial states, shape (…, a)
     """
-    sizes = {"a": len(found.grid), "attractor": max(1, *map(len, found.attractors)), "block": found.models[0].blocks}
+    sizes = {
+        "a": len(continuation.grid),
+        "attractor": max(1, *map(len, continuation.attractors)),
+        "block": continuation.models[0].blocks,
+    }
     values = empty_columns(VARIABLES, sizes, "section_count", "section_velocity", "velocity_")
-    for k, place in enumerate(found.grid):
+    for k, place in enumerate(continuation.grid):
         wanted = {*zip(branch[..., k].ravel().tolist(), side[..., k].ravel().tolist(), strict=True)}
-        for slot, row in enumerate(found.rows(place)):
+        for slot, row in enumerate(continuation.rows(place)):
             if (row.branch, row.side) in wanted:
-                one = follow_attractor(found.models[place], row.attractor.motion.state(), section)
-                values["section_count"][k, slot] = count_distinct(one.section)
-                values["section_velocity_mean"][k, slot] = one.section.mean() if len(one.section) else np.nan
-                values["velocity_correlation"][k, slot] = one.velocity_correlation
-                values["velocity_frequency"][k, slot] = one.velocity_frequency
+                observables = follow_attractor(continuation.models[place], row.attractor.motion.state(), section)
+                values["section_count"][k, slot] = count_distinct(observables.section)
+                values["section_velocity_mean"][k, slot] = (
+                    observables.section.mean() if len(observables.section) else np.nan
+                )
+                values["velocity_correlation"][k, slot] = observables.velocity_correlation
+                values["velocity_frequency"][k, slot] = observables.velocity_frequency
     return values
 
 
 def _rounded_branches(
-    found: Continuation, states: Sequence[InitialState], label_limit: float, start: str
+    continuation: Continuation, states: Sequence[InitialState], label_limit: float, start: str
 ) -> dict[str, np.ndarray]:
     """Return the branches reached by the `corners` of each initial state, with the models' contact and `start`."""
-    shape = {"initial": len(states), "a": len(found.grid), "corner": CORNERS}
+    shape = {"initial": len(states), "a": len(continuation.grid), "corner": CORNERS}
     values = empty_columns(VARIABLES, shape, "rounded")
-    for k, place in enumerate(found.grid):
-        model = found.models[place]
+    for k, place in enumerate(continuation.grid):
+        model = continuation.models[place]
         for n, state in enumerate(states):
             if _is_allowed(state, model.contact, model.blocks):
                 starts = [model.begin(corner, start) for corner in corners(state, model.contact, model.blocks)]
-                reached, _ = label(model, found.attractors[place], starts, label_limit)
-                known = reached != UNDETERMINED
-                values["rounded_branch"][n, k, known] = found.branch[place][reached[known]]
+                reached, _ = label(model, continuation.attractors[place], starts, label_limit)
+                determined = reached != UNDETERMINED
+                values["rounded_branch"][n, k, determined] = continuation.branch[place][reached[determined]]
     return values
 
 
@@ -293,22 +303,27 @@ def _labels_of_states(
     return labels
 
 
-def _sweeps(found: Continuation) -> dict[str, np.ndarray]:
+def _sweeps(continuation: Continuation) -> dict[str, np.ndarray]:
     """Follow each attractor of the smallest a upward and each of the largest a downward, step by step of the grid."""
-    attractors = [found.attractors[place] for place in found.grid]
+    attractors = [continuation.attractors[place] for place in continuation.grid]
     count = len(attractors)
     # A sweep cannot begin where there is no attractor, as at a = 0.
-    there = [k for k in range(count) if attractors[k]] or [0]
-    ends = (there[0], there[-1])
+    occupied = [k for k in range(count) if attractors[k]] or [0]
+    ends = (occupied[0], occupied[-1])
     sweeps = max(1, *(len(attractors[end]) for end in ends))
     values = empty_columns(VARIABLES, {"direction": 2, "sweep": sweeps, "a": count}, "sweep")
     for direction, (end, steps, following) in enumerate(
-        zip(ends, (range(ends[0], count), range(ends[1], -1, -1)), (found.upward, found.downward), strict=True)
+        zip(
+            ends,
+            (range(ends[0], count), range(ends[1], -1, -1)),
+            (continuation.upward, continuation.downward),
+            strict=True,
+        )
     ):
-        for sweep, row in enumerate(found.rows(found.grid[end])):
+        for sweep, row in enumerate(continuation.rows(continuation.grid[end])):
             index = row.index
             for k in steps:
-                values["sweep_branch"][direction, sweep, k] = found.branch[found.grid[k]][index]
+                values["sweep_branch"][direction, sweep, k] = continuation.branch[continuation.grid[k]][index]
                 values["sweep_mean_distance"][direction, sweep, k] = attractors[k][index].motion.mean_distance
                 index = int(following[k][index])
                 if index == UNDETERMINED:

@@ -33,9 +33,9 @@ def attractors_of_law(config: Mapping[str, Any], law: str, cores: int, cache: Pa
     decides = {key: value for key, value in config.items() if key != "a"}
     digest = digest_of(decides, source_fingerprint("burridge_knopoff.continuation.along_a"))
     folder = cache / f"attractors {law}" / digest
-    found = continue_attractors(
+    continuation = continue_attractors(
         models, settings, motion, refine, starts=initial, start=start, processes=cores, folder=folder
     )
-    on_grid = attractors.one_law(found, initial, settings, motion, start)
-    between = refined.one_law(found, settings, motion, refine, start)
-    return on_grid, between, returns_of_law(models, [found.rows(k) for k in found.grid], on_grid.attrs)
+    on_grid = attractors.one_law(continuation, initial, settings, motion, start)
+    between = refined.one_law(continuation, settings, motion, refine, start)
+    return on_grid, between, returns_of_law(models, [continuation.rows(k) for k in continuation.grid], on_grid.attrs)

@@ -94,18 +94,18 @@ def tile_of_map(
     attractors, returns : of all laws, and of the law, on the grid
     number : of the tile, from 0
     """
-    known = known_attractors(attractors, returns, model_of(config, law, config["a"]))
+    candidates = known_attractors(attractors, returns, model_of(config, law, config["a"]))
     limit = SearchSettings(**config["attractors"]).label_limit
-    return tile(known, number, replace(_plane(config), threads=cores), limit, config["start"])
+    return tile(candidates, number, replace(_plane(config), threads=cores), limit, config["start"])
 
 
 def pairs_of_map(
     config: Mapping[str, Any], law: str, attractors: xarray.Dataset, returns: xarray.Dataset, cores: int
 ) -> xarray.Dataset:
     """Return the pairs of nearby states of the map of a law at one a; arguments as in `tile_of_map`."""
-    known = known_attractors(attractors, returns, model_of(config, law, config["a"]))
+    candidates = known_attractors(attractors, returns, model_of(config, law, config["a"]))
     search = SearchSettings(**config["attractors"])
-    return pairs(known, replace(_plane(config), threads=cores), search.label_limit, search.seed, config["start"])
+    return pairs(candidates, replace(_plane(config), threads=cores), search.label_limit, search.seed, config["start"])
 
 
 def _plane(config: Mapping[str, Any]) -> BasinSettings:
@@ -133,42 +133,46 @@ def merge_maps(
     return merge(parts, attractors, plane, limit, config["start"])
 
 
-def tile(known: KnownAttractors, number: int, basins: BasinSettings, label_limit: float, start: str) -> xarray.Dataset:
+def tile(
+    candidates: KnownAttractors, number: int, basins: BasinSettings, label_limit: float, start: str
+) -> xarray.Dataset:
     """Label one tile of a map: a band of rows of equal U_N(0).
 
-    known : the attractors of the model
+    candidates : the attractors of the model
     number : of the tile, from 0
     label_limit : time by which a state has to reach an attractor; start : see `Model.begin`
     """
     first = pixel_centres(basins.first_position, basins.pixels)
     last = np.array_split(pixel_centres(basins.last_position, basins.pixels), basins.tiles)[number]
-    u, w = known.model.initial_coordinates(basins.initial)
+    u, w = candidates.model.initial_coordinates(basins.initial)
     position, velocity = plane(u, first, last, w)
-    labels, times = _labels(known, position, velocity, basins, label_limit, start)
+    labels, times = _labels(candidates, position, velocity, basins, label_limit, start)
     shape = (len(last), len(first))
     values = {
         name: np.where(labels == UNDETERMINED, missing, table[labels] if len(table) else missing).reshape(shape)
-        for name, table, missing in (("branch", known.branch, UNDETERMINED), ("side", known.side, 0))
+        for name, table, missing in (("branch", candidates.branch, UNDETERMINED), ("side", candidates.side, 0))
     }
     values["decision_time"] = np.where(labels == UNDETERMINED, np.nan, times).reshape(shape)
-    attributes = {"law": known.model.law.name, "a": known.model.a, "history": "snakemake, from attractors.nc"}
+    attributes = {"law": candidates.model.law.name, "a": candidates.model.a, "history": "snakemake, from attractors.nc"}
     coordinates = axes(COORDINATES, first_position=first, last_position=last)
     return summary("Tile of a map of basins", TILE_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
-def pairs(known: KnownAttractors, basins: BasinSettings, label_limit: float, seed: int, start: str) -> xarray.Dataset:
+def pairs(
+    candidates: KnownAttractors, basins: BasinSettings, label_limit: float, seed: int, start: str
+) -> xarray.Dataset:
     """Label pairs of nearby states in the plane of a map, for the uncertainty exponent of its boundary; see `tile`."""
 
-    u, w = known.model.initial_coordinates(basins.initial)
+    u, w = candidates.model.initial_coordinates(basins.initial)
 
     def label(points: np.ndarray) -> np.ndarray:
         first, last = points.T
         position, velocity = states(u, first, last, w)
-        return _labels(known, position, velocity, basins, label_limit, start)[0]
+        return _labels(candidates, position, velocity, basins, label_limit, start)[0]
 
-    found = follow_pairs(label, basins.first_position, basins.last_position, basins.pairs, seed)
-    exponent = uncertainty_exponent(found)
-    values: dict[str, Any] = {"uncertain_count": found.different_count, "pair_count": found.labelled_count}
+    counts = follow_pairs(label, basins.first_position, basins.last_position, basins.pairs, seed)
+    exponent = uncertainty_exponent(counts)
+    values: dict[str, Any] = {"uncertain_count": counts.different_count, "pair_count": counts.labelled_count}
     for name, pair in (
         ("uncertain_fraction", exponent.fraction),
         ("local_exponent", exponent.local),
@@ -177,14 +181,14 @@ def pairs(known: KnownAttractors, basins: BasinSettings, label_limit: float, see
     ):
         values[name], values[f"{name}_error"] = pair
     values["exponent_kind"] = exponent.kind
-    attributes = {"law": known.model.law.name, "a": known.model.a, "history": "snakemake, from attractors.nc"}
+    attributes = {"law": candidates.model.law.name, "a": candidates.model.a, "history": "snakemake, from attractors.nc"}
     width = basins.first_position[1] - basins.first_position[0]
     coordinates = axes(COORDINATES, separation=np.array(SEPARATIONS) * width)
     return summary("Pairs of nearby states", PAIR_VARIABLES, values, coordinates, attributes, module=__name__)
 
 
 def _labels(
-    known: KnownAttractors,
+    candidates: KnownAttractors,
     position: np.ndarray,
     velocity: np.ndarray,
     basins: BasinSettings,
@@ -192,8 +196,8 @@ def _labels(
     start: str,
 ) -> tuple[np.ndarray, np.ndarray]:
     return label_states(
-        known.model,
-        known.attractors,
+        candidates.model,
+        candidates.attractors,
         position,
         velocity,
         start=start,
@@ -246,27 +250,27 @@ def digest(dataset: xarray.Dataset) -> str:
     """Return a line for each map: the fractions of the basins and the uncertainty exponent of their boundary."""
     lines = []
     for number, row in enumerate(map_rows(dataset)):
-        one = dataset.isel(map=number)
+        basin_map = dataset.isel(map=number)
         shares = [f"{name} {100.0 * count / row.states:.2f} %" for name, count in row.members.items()]
         if row.symmetric_count:
             line = "on the line of mirror-symmetric states, which has no area"
             shares[0] += f" ({row.symmetric_count} of {row.undetermined} {line})"
-        times = one["decision_time"].values
+        times = basin_map["decision_time"].values
         decided = f"; mean decision time {np.nanmean(times):.0f}" if np.isfinite(times).any() else ""
-        lines.append(f"{row.law}, a = {row.a:g}: {', '.join(shares)}; {exponent_text(one)}{decided}")
+        lines.append(f"{row.law}, a = {row.a:g}: {', '.join(shares)}; {exponent_text(basin_map)}{decided}")
     return "\n".join(lines) + "\n"
 
 
-def exponent_text(one: xarray.Dataset) -> str:
+def exponent_text(basin_map: xarray.Dataset) -> str:
     """Return the uncertainty exponent of one map's boundary, and what it means, as text."""
-    kind = ExponentKind(one["exponent_kind"].item())
+    kind = ExponentKind(basin_map["exponent_kind"].item())
     if kind == ExponentKind.UNKNOWN:
         return "uncertainty exponent undetermined: too few pairs of nearby states reach different attractors"
-    change, error = one["exponent_change"].item(), one["exponent_change_error"].item()
+    change, error = basin_map["exponent_change"].item(), basin_map["exponent_change_error"].item()
     changes = to_ascii(with_error(change, error))
     if kind == ExponentKind.VARYING:
         return f"no single uncertainty exponent: from the largest separation to the smallest it changes by {changes}"
-    alpha, error = one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()
+    alpha, error = basin_map["uncertainty_exponent"].item(), basin_map["uncertainty_exponent_error"].item()
     return (
         f"uncertainty exponent {to_ascii(with_error(alpha, error))}: if initial states are known 10 times as "
         f"precisely, the fraction of them whose attractor is uncertain is divided by {10.0**alpha:.2g} (by 10 if the "

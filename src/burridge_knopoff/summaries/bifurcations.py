@@ -62,31 +62,33 @@ _SADDLE = "period of the saddle orbit: on the basin boundary that the attractor 
 _LARGEST = "largest multiplier: Floquet multiplier of largest modulus at the bifurcation"
 #: Columns of a bifurcation, from its `Entry`.
 BIFURCATIONS = {
-    "a": Column(_AT, "f8", "friction parameter a: of the bifurcation", value=lambda one: one.a),
+    "a": Column(_AT, "f8", "friction parameter a: of the bifurcation", value=lambda entry: entry.a),
     "a_error": Column(
         _AT,
         "f8",
         "error of a: half the width of the interval that brackets it",
         value=_of_bifurcation(lambda at: at.error),
     ),
-    "kind": Column(_AT, "i1", "kind of bifurcation", flag("i1", BifurcationKind), value=lambda one: one.kind),
-    "change": Column(_AT, "i1", "change of the branch of attractors", flag("i1", Change), value=lambda one: one.change),
-    "from_branch": Column(_AT, "i2", _BELOW, _NONE, value=lambda one: one.from_branch),
-    "to_branch": Column(_AT, "i2", _ABOVE, _NONE, value=lambda one: one.to_branch),
+    "kind": Column(_AT, "i1", "kind of bifurcation", flag("i1", BifurcationKind), value=lambda entry: entry.kind),
+    "change": Column(
+        _AT, "i1", "change of the branch of attractors", flag("i1", Change), value=lambda entry: entry.change
+    ),
+    "from_branch": Column(_AT, "i2", _BELOW, _NONE, value=lambda entry: entry.from_branch),
+    "to_branch": Column(_AT, "i2", _ABOVE, _NONE, value=lambda entry: entry.to_branch),
     "grid_low": Column(
         _AT,
         "f8",
         "largest a below: largest a of refined.nc at which the branch is unchanged, NaN if there is none",
-        value=lambda one: one.low,
+        value=lambda entry: entry.low,
     ),
     "grid_high": Column(
         _AT,
         "f8",
         "smallest a above: smallest a of refined.nc at which the branch has changed, NaN if there is none",
-        value=lambda one: one.high,
+        value=lambda entry: entry.high,
     ),
-    "motion_before": Column(_AT, "i1", "kind of motion at grid_low", _MOTION, value=lambda one: one.motion[0]),
-    "motion_after": Column(_AT, "i1", "kind of motion at grid_high", _MOTION, value=lambda one: one.motion[1]),
+    "motion_before": Column(_AT, "i1", "kind of motion at grid_low", _MOTION, value=lambda entry: entry.motion[0]),
+    "motion_after": Column(_AT, "i1", "kind of motion at grid_high", _MOTION, value=lambda entry: entry.motion[1]),
     "turns": Column(_AT, "i1", _TURNS, ANSWER, value=_of_bifurcation(lambda at: at.is_turning_point)),
     "period": Column(_AT, "f8", "period of the orbit at the bifurcation", value=_of_bifurcation(lambda at: at.period)),
     "stops": Column(
@@ -120,8 +122,8 @@ BIFURCATIONS = {
         "shortest stick: of the orbit at the bifurcation, 0 if its duration vanishes there",
         value=_of_bifurcation(lambda at: at.stick_time),
     ),
-    "lifetime_low": Column(_AT, "f8", _LIFE, value=lambda one: one.lifetime[0]),
-    "lifetime_high": Column(_AT, "f8", _LONGER, value=lambda one: one.lifetime[1]),
+    "lifetime_low": Column(_AT, "f8", _LIFE, value=lambda entry: entry.lifetime[0]),
+    "lifetime_high": Column(_AT, "f8", _LONGER, value=lambda entry: entry.lifetime[1]),
     # Filled in from the edge states.
     "saddle_period": Column(_AT, "f8", _SADDLE),
     "saddle_stops": Column(
@@ -135,19 +137,19 @@ _SEGMENT = "number of the segment: of a branch, whose orbits are in the order in
 _STABLE = "stable: whether all multipliers except that of the flow lie inside the unit circle"
 #: Columns of an orbit, from (number of its segment, branch of the segment, orbit).
 ORBITS = {
-    "orbit_segment": Column(_ORBIT, "i4", _SEGMENT, value=lambda one: one[0]),
-    "orbit_branch": Column(_ORBIT, "i2", "branch of most attractors on the segment", value=lambda one: one[1]),
-    "orbit_a": Column(_ORBIT, "f8", "friction parameter a: of the periodic orbit", value=lambda one: one[2].orbit.a),
-    "orbit_stable": Column(_ORBIT, "i1", _STABLE, ANSWER, value=lambda one: one[2].multipliers.unstable_count == 0),
-    "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda one: one[2].orbit.period),
+    "orbit_segment": Column(_ORBIT, "i4", _SEGMENT, value=lambda row: row[0]),
+    "orbit_branch": Column(_ORBIT, "i2", "branch of most attractors on the segment", value=lambda row: row[1]),
+    "orbit_a": Column(_ORBIT, "f8", "friction parameter a: of the periodic orbit", value=lambda row: row[2].orbit.a),
+    "orbit_stable": Column(_ORBIT, "i1", _STABLE, ANSWER, value=lambda row: row[2].multipliers.unstable_count == 0),
+    "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda row: row[2].orbit.period),
     "orbit_stops": Column(
         (*_ORBIT, "block"),
         "i4",
         "stops in a period: of each block, in a period of the orbit",
-        value=lambda one: one[2].orbit.stop_counts,
+        value=lambda row: row[2].orbit.stop_counts,
     ),
     "orbit_mean_distance": Column(
-        _ORBIT, "f8", "<J> over a period of the orbit", value=lambda one: one[2].orbit.mean_distance
+        _ORBIT, "f8", "<J> over a period of the orbit", value=lambda row: row[2].orbit.mean_distance
     ),
 }
 VARIABLES: dict[str, Variable] = {
@@ -202,14 +204,14 @@ def one_law(
     processes, folder : see `follow_orbits`
     """
     law = str(attractors["law"].item())
-    one = refined.load()
-    changes = branch_changes(attractors, one)
-    orbits = follow_orbits(model, one, changes, processes, folder)
-    found = list(entries(one, changes, orbits))
-    segments = enumerate(zip(_branches_of_segments(orbits, one["branch"].values), orbits.segments, strict=True))
+    refinement = refined.load()
+    changes = branch_changes(attractors, refinement)
+    orbits = follow_orbits(model, refinement, changes, processes, folder)
+    bifurcations = list(entries(refinement, changes, orbits))
+    segments = enumerate(zip(_branches_of_segments(orbits, refinement["branch"].values), orbits.segments, strict=True))
     points = [(number, branch, point) for number, (branch, segment) in segments for point in segment.drawn_orbits]
-    sizes = {"bifurcation": len(found), "orbit": len(points), "block": model.blocks, "part": len(PARTS)}
-    values = column_values(BIFURCATIONS, {(k,): one for k, one in enumerate(found)}, sizes)
+    sizes = {"bifurcation": len(bifurcations), "orbit": len(points), "block": model.blocks, "part": len(PARTS)}
+    values = column_values(BIFURCATIONS, {(k,): row for k, row in enumerate(bifurcations)}, sizes)
     rounded = {name: _round_digits(value, DIGITS.get(name, 10)) for name, value in values.items()}
     rounded["a_error"] = 10.0 ** np.ceil(np.log10(np.maximum(values["a_error"], LEAST_ERROR)))
     located = np.isfinite(rounded["period"])
@@ -219,9 +221,9 @@ def one_law(
     rounded = _sort_rows(rounded)
     rounded |= {
         name: _round_digits(value, 10)
-        for name, value in column_values(ORBITS, {(k,): one for k, one in enumerate(points)}, sizes).items()
+        for name, value in column_values(ORBITS, {(k,): row for k, row in enumerate(points)}, sizes).items()
     }
-    rounded |= {"law": np.repeat(law, len(found)), "orbit_law": np.repeat(law, len(points))}
+    rounded |= {"law": np.repeat(law, len(bifurcations)), "orbit_law": np.repeat(law, len(points))}
     head = {"v": model.v, "contact": model.contact}
     return _dataset([law], rounded, attractors["block"].variable, head)
 
@@ -238,31 +240,31 @@ def digest(dataset: xarray.Dataset) -> str:
     columns = {name: dataset[name].values for name in ("law", *BIFURCATIONS)}
     lines = []
     for number in range(dataset.sizes["bifurcation"]):
-        one = {name: values[number] for name, values in columns.items()}
-        kind = BifurcationKind(one["kind"])
+        row = {name: values[number] for name, values in columns.items()}
+        kind = BifurcationKind(row["kind"])
         # A fold is always a turning point.
-        words = kind.words + (" (turning point)" if kind == BifurcationKind.GRAZING and one["turns"] == 1 else "")
-        parts = [f"{one['law']}, a = {one['a']:.10g} +/- {one['a_error']:.2g}: {words}", _change_text(one)]
-        low, high = one["lifetime_low"], one["lifetime_high"]
+        words = kind.words + (" (turning point)" if kind == BifurcationKind.GRAZING and row["turns"] == 1 else "")
+        parts = [f"{row['law']}, a = {row['a']:.10g} +/- {row['a_error']:.2g}: {words}", _change_text(row)]
+        low, high = row["lifetime_low"], row["lifetime_high"]
         if np.isfinite(low):
             parts.append(
                 "mean lifetime of chaos " + (f"{low:g} to {high:g}" if np.isfinite(high) else f"above {low:g}")
             )
-        if np.isfinite(one["saddle_period"]):
-            saddle = f"period {one['saddle_period']:.6g}, stops {_format_stops(one['saddle_stops'])}"
+        if np.isfinite(row["saddle_period"]):
+            saddle = f"period {row['saddle_period']:.6g}, stops {_format_stops(row['saddle_stops'])}"
             parts.append(f"the attractor meets the saddle orbit of {saddle} on its basin boundary")
-        if np.isfinite(one["period"]):
-            beyond = f", beyond it {_format_stops(one['stops_beyond'])}" if (one["stops_beyond"] >= 0).all() else ""
-            parts.append(f"period {one['period']:.6g}, stops {_format_stops(one['stops'])}{beyond}")
+        if np.isfinite(row["period"]):
+            beyond = f", beyond it {_format_stops(row['stops_beyond'])}" if (row["stops_beyond"] >= 0).all() else ""
+            parts.append(f"period {row['period']:.6g}, stops {_format_stops(row['stops'])}{beyond}")
         lines.append("; ".join(parts))
     return "\n".join(lines or ["No bifurcation was found between the values of a."]) + "\n"
 
 
-def _change_text(one: Mapping[str, Any]) -> str:
+def _change_text(row: Mapping[str, Any]) -> str:
     """Return the change of a branch at a bifurcation, as a increases, as text."""
-    before, after = (MotionKind(one[f"motion_{side}"]).words for side in ("before", "after"))
-    low, high = (f"branch {one[name]}" if one[name] >= 0 else "" for name in ("from_branch", "to_branch"))
-    match Change(one["change"]):
+    before, after = (MotionKind(row[f"motion_{side}"]).words for side in ("before", "after"))
+    low, high = (f"branch {row[name]}" if row[name] >= 0 else "" for name in ("from_branch", "to_branch"))
+    match Change(row["change"]):
         case Change.BEGINNING:
             return f"{high} begins, {after}" + (f"; at smaller a it leads to {low}" if low else "")
         case Change.END:
@@ -318,5 +320,5 @@ def _round_digits(values: np.ndarray, digits: int) -> np.ndarray:
     if values.dtype.kind != "f":
         return values
     # Near 0 the number of decimal places is limited as well. Adding 0 turns -0 into 0.
-    shown = [float(f"{round(value, PLACES) + 0.0:.{digits - 1}e}") for value in values.ravel().tolist()]
-    return np.reshape(shown, values.shape).astype(float)
+    rounded = [float(f"{round(value, PLACES) + 0.0:.{digits - 1}e}") for value in values.ravel().tolist()]
+    return np.reshape(rounded, values.shape).astype(float)

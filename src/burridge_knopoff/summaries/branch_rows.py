@@ -34,17 +34,17 @@ def branch_rows(attractors: xarray.Dataset) -> Iterator[BranchRow]:
     """Yield the branches of each law in the order of their numbers."""
     a, names = attractors["a"].values, branch_names(attractors)
     for law in attractors["law"].values:
-        one = attractors.sel(law=law)
-        branch = one["branch"].values
+        part = attractors.sel(law=law)
+        branch = part["branch"].values
         for number in np.unique(branch[branch >= 0]).tolist():
             slots = branch == number
-            mean = one["mean_distance"].values[slots]
+            mean = part["mean_distance"].values[slots]
             yield BranchRow(
                 str(law),
                 names[number],
                 a[slots.any(axis=1)],
                 len(a),
                 (mean.min(), mean.max()),
-                ", ".join(MotionKind(kind).words for kind in np.unique(one["kind"].values[slots])),
-                largest_basin_fraction(one, number) if one["sample_count"].any() else None,
+                ", ".join(MotionKind(kind).words for kind in np.unique(part["kind"].values[slots])),
+                largest_basin_fraction(part, number) if part["sample_count"].any() else None,
             )

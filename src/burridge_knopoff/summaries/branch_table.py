@@ -49,16 +49,16 @@ def _ends(numbers: Iterable[str]) -> str:
     return "-".join(dict.fromkeys(numbers))
 
 
-def _exceptions(one: xarray.Dataset) -> str:
+def _exceptions(part: xarray.Dataset) -> str:
     """Return how many sampled states are undetermined, and at which a no attractor was found, as text."""
     words = [
-        f"{int(one['undetermined_count'].sum())} of {int(one['sample_count'].sum())} sampled states are undetermined"
+        f"{int(part['undetermined_count'].sum())} of {int(part['sample_count'].sum())} sampled states are undetermined"
     ]
-    sliding = one["sliding_attracts"].values == 1
-    for where, what in (
-        ((one["branch"].values.max(axis=1) < 0) & ~sliding, "no attractor"),
+    sliding = part["sliding_attracts"].values == 1
+    for where, problem in (
+        ((part["branch"].values.max(axis=1) < 0) & ~sliding, "no attractor"),
         (sliding, "uniform sliding, which has no stops and is not searched for, attracts"),
     ):
         if where.any():
-            words.append(f"{what} at a = {', '.join(f'{value:g}' for value in one['a'].values[where])}")
+            words.append(f"{problem} at a = {', '.join(f'{value:g}' for value in part['a'].values[where])}")
     return "; ".join(words)

@@ -126,8 +126,8 @@ def summarize(
 
 def _nonzero_range(counts: xarray.DataArray, name: str) -> slice:
     """Return the range of a dimension outside which all counts are 0."""
-    found = np.flatnonzero((counts > 0).any([other for other in counts.dims if other != name]).values)
-    return slice(found[0], found[-1] + 1) if len(found) else slice(0)
+    indices = np.flatnonzero((counts > 0).any([other for other in counts.dims if other != name]).values)
+    return slice(indices[0], indices[-1] + 1) if len(indices) else slice(0)
 
 
 def _run_statistics(catalogue: xarray.Dataset, low: float | None, high: float | None) -> dict[str, Any]:
@@ -193,9 +193,9 @@ def _pad(values: np.ndarray, none: float, length: int) -> np.ndarray:
 def _slope(magnitude: np.ndarray, fitted: tuple[float, float], completed: bool) -> Mapping[str, float]:
     """Return the fit of a slope in a range, NaN if there is none."""
     low, high = fitted
-    found = {"low": low, "high": high, "b": np.nan, "error": np.nan, "p_value": np.nan, "count": 0}
+    fit = {"low": low, "high": high, "b": np.nan, "error": np.nan, "p_value": np.nan, "count": 0}
     # The fit fails if there are too few events, or if all have the same magnitude.
     with suppress(ValueError):
-        found |= vars(fit_slope(magnitude, low, high)) if completed else {}
+        fit |= vars(fit_slope(magnitude, low, high)) if completed else {}
     names = {"slope": "b", **{f"slope_{name}": name for name in ("error", "low", "high", "count", "p_value")}}
-    return {name: found[key] for name, key in names.items()}
+    return {name: fit[key] for name, key in names.items()}

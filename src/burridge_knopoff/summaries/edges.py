@@ -59,16 +59,16 @@ class _Row:
 
 #: Columns of an edge state.
 EDGES = {
-    "a": Column(_EDGE, "f8", "friction parameter a", value=lambda one: one.edge.a),
+    "a": Column(_EDGE, "f8", "friction parameter a", value=lambda row: row.edge.a),
     "kind": Column(
-        _EDGE, "i1", "kind of motion on the edge state", flag("i1", MotionKind), value=lambda one: one.edge.state.kind
+        _EDGE, "i1", "kind of motion on the edge state", flag("i1", MotionKind), value=lambda row: row.edge.state.kind
     ),
     "symmetry": Column(
         _EDGE,
         "i1",
         "mirror symmetry of the edge state",
         flag("i1", Symmetry),
-        value=lambda one: one.edge.state.symmetry,
+        value=lambda row: row.edge.state.symmetry,
     ),
     "has_crossing": Column(
         _EDGE,
@@ -76,115 +76,115 @@ EDGES = {
         "boundary is crossed: whether states displaced to one side cross the boundary and its part there "
         "leads back to this edge state; the boundary is then fractal",
         YES_OR_NO,
-        value=lambda one: one.edge.state.has_crossing,
+        value=lambda row: row.edge.state.has_crossing,
     ),
     "branch": Column(
         _BANKS,
         "i2",
         "branch reached: by most states displaced to this side",
-        value=lambda one: one.edge.branch,
+        value=lambda row: row.edge.branch,
     ),
     "side": Column(
         _BANKS,
         "i1",
         "side of that branch: 1 and -1 for mirror images, 0 for its own mirror image",
         nothing=0,
-        value=lambda one: one.edge.side,
+        value=lambda row: row.edge.side,
     ),
     "reached_count": Column(
         (*_BANKS, "attractor"),
         "i4",
         "number of states: displaced states that reach this attractor, by its number in attractors.nc; "
         "-1 where there is none",
-        value=lambda one: one.edge.reached_count,
+        value=lambda row: row.edge.reached_count,
     ),
     "period": Column(
         _EDGE,
         "f8",
         "period of the saddle orbit: NaN for other edge states",
-        value=lambda one: one.edge.state.orbit and one.edge.state.orbit.period,
+        value=lambda row: row.edge.state.orbit and row.edge.state.orbit.period,
     ),
     "stops": Column(
         (*_EDGE, "block"),
         "i4",
         "stops in a period of the saddle: of each block, in a period of the saddle orbit",
-        value=lambda one: one.stops,
+        value=lambda row: row.stops,
     ),
     "multiplier": Column(
         _EDGE,
         "f8",
         "modulus of the unstable multiplier: of the one Floquet multiplier of the saddle orbit outside the unit circle",
-        value=lambda one: abs(one.edge.state.multiplier[0]) if one.edge.state.orbit else None,
+        value=lambda row: abs(row.edge.state.multiplier[0]) if row.edge.state.orbit else None,
     ),
     "lyapunov_exponent": Column(
         (*_EDGE, "exponent"),
         "f8",
         "Lyapunov exponent: along the boundary, the largest first",
-        value=lambda one: one.edge.state.exponent,
+        value=lambda row: row.edge.state.exponent,
     ),
     "lyapunov_error": Column(
         (*_EDGE, "exponent"),
         "f8",
         "standard errors of these exponents",
-        value=lambda one: one.edge.state.exponent_error,
+        value=lambda row: row.edge.state.exponent_error,
     ),
-    "lifetime": Column(_EDGE, "f8", _LIFE, value=lambda one: one.edge.state.lifetime),
+    "lifetime": Column(_EDGE, "f8", _LIFE, value=lambda row: row.edge.state.lifetime),
     "lifetime_error": Column(
-        _EDGE, "f8", "standard error of the lifetime", value=lambda one: one.edge.state.lifetime_error
+        _EDGE, "f8", "standard error of the lifetime", value=lambda row: row.edge.state.lifetime_error
     ),
-    "mean_distance": Column(_EDGE, "f8", "<J> along the edge state", value=lambda one: one.edge.state.mean_distance),
+    "mean_distance": Column(_EDGE, "f8", "<J> along the edge state", value=lambda row: row.edge.state.mean_distance),
     "duration": Column(
-        _EDGE, "f8", "time for which the boundary was followed", value=lambda one: one.edge.state.duration
+        _EDGE, "f8", "time for which the boundary was followed", value=lambda row: row.edge.state.duration
     ),
     "segment": Column(
         _EDGE,
         "i4",
         "number of the segment: of orbits on which the edge state lies, -1 for none",
-        value=lambda one: one.segment,
+        value=lambda row: row.segment,
     ),
 }
 #: Columns of an orbit, from (number of its segment, orbit).
 ORBITS = {
     "orbit_segment": Column(
-        _ORBIT, "i4", "number of the segment: of a branch of saddle orbits", value=lambda one: one[0]
+        _ORBIT, "i4", "number of the segment: of a branch of saddle orbits", value=lambda row: row[0]
     ),
-    "orbit_a": Column(_ORBIT, "f8", "friction parameter a: of the orbit", value=lambda one: one[1].orbit.a),
-    "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda one: one[1].orbit.period),
+    "orbit_a": Column(_ORBIT, "f8", "friction parameter a: of the orbit", value=lambda row: row[1].orbit.a),
+    "orbit_period": Column(_ORBIT, "f8", "period of the orbit", value=lambda row: row[1].orbit.period),
     "orbit_mean_distance": Column(
-        _ORBIT, "f8", "<J> over a period of the orbit", value=lambda one: one[1].orbit.mean_distance
+        _ORBIT, "f8", "<J> over a period of the orbit", value=lambda row: row[1].orbit.mean_distance
     ),
     "orbit_multiplier": Column(
         _ORBIT,
         "f8",
         "largest modulus of a multiplier: of the Floquet multipliers of the orbit",
-        value=lambda one: abs(one[1].multipliers.whole[0]),
+        value=lambda row: abs(row[1].multipliers.whole[0]),
     ),
     "orbit_unstable_count": Column(
         _ORBIT,
         "i4",
         "number of unstable multipliers: outside the unit circle; 1 except at the ends of a segment",
-        value=lambda one: one[1].multipliers.unstable_count,
+        value=lambda row: row[1].multipliers.unstable_count,
     ),
 }
 #: Columns of a crisis, from its a and branch in bifurcations.nc and its `Approach`.
 CRISES = {
-    "crisis_a": Column(_CRISIS, "f8", "friction parameter a: of the crisis", value=lambda one: one[0]),
-    "crisis_branch": Column(_CRISIS, "i2", "branch of the chaotic attractor", value=lambda one: one[1]),
+    "crisis_a": Column(_CRISIS, "f8", "friction parameter a: of the crisis", value=lambda row: row[0]),
+    "crisis_branch": Column(_CRISIS, "i2", "branch of the chaotic attractor", value=lambda row: row[1]),
     "crisis_edge": Column(
         _CRISIS,
         "i4",
         "index of the edge state: along the dimension edge, of the edge state closest to this attractor, -1 for none",
-        value=lambda one: one[2].edge,
+        value=lambda row: row[2].edge,
     ),
     "crisis_distance": Column(
         _CRISIS,
         "f8",
         "distance from the saddle: smallest distance of the attractor from that orbit at the value of "
         "refined.nc next to the crisis",
-        value=lambda one: one[2].distance,
+        value=lambda row: row[2].distance,
     ),
     "crisis_size": Column(
-        _CRISIS, "f8", "size of the attractor: extent of its section returns", value=lambda one: one[2].size
+        _CRISIS, "f8", "size of the attractor: extent of its section returns", value=lambda row: row[2].size
     ),
 }
 BANK = Variable(("bank",), "O", "side of the boundary", coordinate=True)
@@ -218,34 +218,34 @@ def edges_of_law(
     bifurcations : of the law; none if the study has none
     """
     refined, edges = refined.sel(law=law), settings_from_config(EdgeSettings, config["edges"])
-    known = [known_attractors(attractors, returns, model_of(config, law, a)) for a in config["edges"]["a"]]
+    candidates = [known_attractors(attractors, returns, model_of(config, law, a)) for a in config["edges"]["a"]]
     limit = SearchSettings(**config["attractors"]).label_limit
-    pairs = [attractor_pairs(at) for at in known]
-    owners = [at for at, of_a in zip(known, pairs, strict=True) for _ in of_a]
+    pairs = [attractor_pairs(at) for at in candidates]
+    owners = [at for at, of_a in zip(candidates, pairs, strict=True) for _ in of_a]
     between = partial(edge_between, settings=edges, time_limit=limit)
     with parallel_map(cores) as apply:
-        made = iter(apply("edge states", between, owners, list(chain.from_iterable(pairs)), span=(0.0, 0.95)))
-    states = [edge for of_a in pairs for edge in distinct_edges(islice(made, len(of_a)))]
+        edge_states = iter(apply("edge states", between, owners, list(chain.from_iterable(pairs)), span=(0.0, 0.95)))
+    states = [edge for of_a in pairs for edge in distinct_edges(islice(edge_states, len(of_a)))]
     segments, numbers = continue_edges(states, float(attractors["a"].max()))
     crises = [
-        (a, branch, _approach(known[0].model.at(near), refined, states, branch))
+        (a, branch, _approach(candidates[0].model.at(near), refined, states, branch))
         for dataset in bifurcations
         for a, branch, near in _crises(dataset)
     ]
-    return _of_law(known[0].model, states, numbers, segments, crises, attractors.sizes["attractor"])
+    return _of_law(candidates[0].model, states, numbers, segments, crises, attractors.sizes["attractor"])
 
 
 def _crises(bifurcations: xarray.Dataset) -> list[tuple[float, int, float]]:
     """Return a and branch of each crisis, and the nearest a of refined.nc at which the branch is chaotic."""
     names = ("a", "from_branch", "to_branch", "motion_before", "motion_after", "grid_low", "grid_high")
-    found = []
+    crises = []
     for k in np.flatnonzero(bifurcations["kind"].values == BifurcationKind.CRISIS):
         a, below, above, before, after, low, high = (bifurcations[name].values[k].item() for name in names)
         if before in CHAOS and below >= 0:
-            found.append((a, below, low))
+            crises.append((a, below, low))
         elif after in CHAOS and above >= 0:
-            found.append((a, above, high))
-    return found
+            crises.append((a, above, high))
+    return crises
 
 
 def _approach(model: Model, refined: xarray.Dataset, states: Sequence[Edge], branch: int) -> Approach:
@@ -259,8 +259,8 @@ def _approach(model: Model, refined: xarray.Dataset, states: Sequence[Edge], bra
     position, velocity = (refined[name].values[place, slots[0]] for name in ("position", "velocity"))
     state = state_of(np.concatenate([position - model.sliding_offset, velocity]))
     chosen = [k for k, edge in enumerate(states) if edge.a == nearest]
-    found = approach(model, state, [states[k] for k in chosen], branch)
-    return Approach(chosen[found.edge] if found.edge >= 0 else -1, found.distance, found.size)
+    meeting = approach(model, state, [states[k] for k in chosen], branch)
+    return Approach(chosen[meeting.edge] if meeting.edge >= 0 else -1, meeting.distance, meeting.size)
 
 
 def _of_law(
@@ -285,7 +285,7 @@ def _of_law(
     rows = [_Row(edge, number) for edge, number in zip(states, numbers, strict=True)]
     values: dict[str, np.ndarray] = {}
     for columns, things in ((EDGES, rows), (ORBITS, points), (CRISES, crises)):
-        values |= column_values(columns, {(k,): one for k, one in enumerate(things)}, sizes)
+        values |= column_values(columns, {(k,): row for k, row in enumerate(things)}, sizes)
     values |= {name: np.repeat(model.law.name, sizes[dimension]) for name, (dimension,) in LAWS.items()}
     return _dataset([model.law.name], values, {"v": model.v, "contact": model.contact})
 
@@ -296,8 +296,8 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     for name, counted in _NUMBERS.items():
         shifted, before = [], 0
         for part in parts:
-            own = part[name].values
-            shifted.append(np.where(own >= 0, own + before, own))
+            numbers = part[name].values
+            shifted.append(np.where(numbers >= 0, numbers + before, numbers))
             kept = part[counted].values
             before += len(kept) if counted == "a" else int(kept.max(initial=-1)) + 1
         values[name] = np.concatenate(shifted)

@@ -37,21 +37,21 @@ def _law_text(law: str, dataset: xarray.Dataset) -> str:
 
 
 def _edge_text(dataset: xarray.Dataset, number: int) -> str:
-    one = {name: item.values[number] for name, item in dataset.variables.items() if item.dims[:1] == ("edge",)}
-    branches = " and ".join(_branch_label(*pair) for pair in zip(one["branch"], one["side"], strict=True))
-    motion = f"{Symmetry(one['symmetry']).name.lower()}, {MotionKind(one['kind']).words}"
-    if np.isfinite(one["period"]):
-        stops = " ".join(map(str, one["stops"]))
-        motion += f", period {one['period']:.6g}, stops {stops}, multiplier {one['multiplier']:.4g}"
-    reached = np.maximum(one["reached_count"], 0)
-    if one["has_crossing"]:
+    edge = {name: item.values[number] for name, item in dataset.variables.items() if item.dims[:1] == ("edge",)}
+    branches = " and ".join(_branch_label(*pair) for pair in zip(edge["branch"], edge["side"], strict=True))
+    motion = f"{Symmetry(edge['symmetry']).name.lower()}, {MotionKind(edge['kind']).words}"
+    if np.isfinite(edge["period"]):
+        stops = " ".join(map(str, edge["stops"]))
+        motion += f", period {edge['period']:.6g}, stops {stops}, multiplier {edge['multiplier']:.4g}"
+    reached = np.maximum(edge["reached_count"], 0)
+    if edge["has_crossing"]:
         boundary = "fractal boundary"
     elif (reached > 0).all(axis=0).any():
         boundary = "displaced states cross another part of the boundary"
     else:
         boundary = f"no crossing of the boundary by {reached.sum()} displaced states"
     return (
-        f"{one['law']}, a = {one['a']:g}, between branches {branches}: {motion}; lifetime {one['lifetime']:.4g}; "
+        f"{edge['law']}, a = {edge['a']:g}, between branches {branches}: {motion}; lifetime {edge['lifetime']:.4g}; "
         f"{boundary}"
     )
 

@@ -82,13 +82,13 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
     blocks = models[0].blocks
     sizes = {"law": len(models), "a": len(grid), "block": blocks, "mode": 2 * blocks, "part": len(PARTS)}
     values = {name: np.full([sizes[key] for key in item.dimensions], np.nan) for name, item in VARIABLES.items()}
-    for i, of_law in enumerate(models):
+    for i, law_model in enumerate(models):
         for k, a in enumerate(grid if blocks <= MAX_BLOCKS else ()):
-            model = of_law.at(a)
+            model = law_model.at(a)
             position = sliding_position(model)
             values["equilibrium_position"][i, k] = position
-            found = eigenvalues(model)
-            values["eigenvalue"][i, k] = np.stack([found.real, found.imag], axis=-1)
+            spectrum = eigenvalues(model)
+            values["eigenvalue"][i, k] = np.stack([spectrum.real, spectrum.imag], axis=-1)
             values["equilibrium_drift"][i, k], values["growth_rate"][i, k] = simulate_sliding(model, position)
             try:
                 reverse = replace(model, law=mirror_law(model.law, model.v))
@@ -140,8 +140,8 @@ def eigenvalues(model: Model) -> np.ndarray:
         blocks, masses = model.blocks, model.chain.masses[:, None]
         damped = np.diag(rates) - model.chain.damping_matrix / masses
         jacobian = np.block([[np.zeros((blocks, blocks)), np.eye(blocks)], [-stiffness / masses, damped]])
-        found = [complex(_round(value.real), _round(value.imag)) for value in np.linalg.eigvals(jacobian)]
-        return np.array(sorted(found, key=lambda value: (abs(value.imag), value.imag < 0.0, -value.real)))
+        spectrum = [complex(_round(value.real), _round(value.imag)) for value in np.linalg.eigvals(jacobian)]
+        return np.array(sorted(spectrum, key=lambda value: (abs(value.imag), value.imag < 0.0, -value.real)))
     half = 0.5 * rates[0]
     # The symmetric matrix M^(−1/2) K M^(−1/2) has the eigenvalues of M⁻¹K.
     stiffness = stiffness / np.outer(root, root)

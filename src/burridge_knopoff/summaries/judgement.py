@@ -117,8 +117,8 @@ def agreeing_fraction(agrees: np.ndarray) -> tuple[float, float, float]:
 
     Undetermined states count as disagreeing at the lower end of the interval and as agreeing at the upper end.
     """
-    known, possible = (int(np.count_nonzero(such)) for such in (agrees == Answer.YES, agrees != Answer.NO))
-    fraction, low, _ = fraction_interval(known, len(agrees))
+    agreeing, possible = (int(np.count_nonzero(such)) for such in (agrees == Answer.YES, agrees != Answer.NO))
+    fraction, low, _ = fraction_interval(agreeing, len(agrees))
     return fraction, low, fraction_interval(possible, len(agrees))[2]
 
 

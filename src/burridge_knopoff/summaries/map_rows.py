@@ -40,31 +40,31 @@ def map_rows(basins: xarray.Dataset) -> Iterator[MapRow]:
     """Yield the maps of a file in order."""
     names = {_UNDETERMINED: UNDETERMINED, **branch_names(basins)}
     for number in range(basins.sizes["map"]):
-        one = basins.isel(map=number)
-        reached = np.stack([one["branch"].values.ravel(), one["side"].values.ravel()])
+        basin_map = basins.isel(map=number)
+        reached = np.stack([basin_map["branch"].values.ravel(), basin_map["side"].values.ravel()])
         pairs, counts = np.unique(reached, axis=1, return_counts=True)
         yield MapRow(
-            one["law"].item(),
-            one["a"].item(),
-            one["branch"].size,
+            basin_map["law"].item(),
+            basin_map["a"].item(),
+            basin_map["branch"].size,
             {
                 side_name(names[branch], side): count
                 for (branch, side), count in zip(pairs.T.tolist(), counts.tolist(), strict=True)
             },
-            count_symmetric_undetermined(one),
-            (one["uncertainty_exponent"].item(), one["uncertainty_exponent_error"].item()),
+            count_symmetric_undetermined(basin_map),
+            (basin_map["uncertainty_exponent"].item(), basin_map["uncertainty_exponent_error"].item()),
         )
 
 
-def count_symmetric_undetermined(one: xarray.Dataset) -> int:
+def count_symmetric_undetermined(basin_map: xarray.Dataset) -> int:
     """Return how many undetermined states of a map are their own mirror images: U_1(0) = U_N(0), a line of zero area.
 
     In a chain that is its own mirror image these states stay mirror-symmetric. They therefore reach no attractor where
     synchrony is unstable. If all states of the map are undetermined, for other reasons, the result is 0.
     """
-    position, velocity = one.attrs["plane_position"], one.attrs["plane_velocity"]
-    undetermined = one["branch"].values == _UNDETERMINED
+    position, velocity = basin_map.attrs["plane_position"], basin_map.attrs["plane_velocity"]
+    undetermined = basin_map["branch"].values == _UNDETERMINED
     if undetermined.all() or (position[1:-1] != position[-2:0:-1]).any() or (velocity != velocity[::-1]).any():
         return 0
-    symmetric = np.equal.outer(one["last_position"].values, one["first_position"].values)
+    symmetric = np.equal.outer(basin_map["last_position"].values, basin_map["first_position"].values)
     return int(np.count_nonzero(undetermined[symmetric]))

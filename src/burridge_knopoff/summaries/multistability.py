@@ -12,8 +12,8 @@ from burridge_knopoff.continuation.along_a import continue_attractors
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.motion.settings import MOTION, MotionSettings
-from burridge_knopoff.summaries.all_laws import branch_numbers, merge
 from burridge_knopoff.summaries.attractors import one_law
+from burridge_knopoff.summaries.branch_numbering import branch_numbers, merge
 from burridge_knopoff.summaries.equilibrium import SLIDING, is_sliding_attracting
 
 
@@ -31,8 +31,8 @@ def coexisting_attractors(
 
     Raises ValueError if an initial state does not fit the model, and if no attractor is found.
     """
-    found = continue_attractors([model], settings, motion, starts=starts, start=start)
-    if not found.attractors[0]:
+    continuation = continue_attractors([model], settings, motion, starts=starts, start=start)
+    if not continuation.attractors[0]:
         if is_sliding_attracting(model):
             raise ValueError(f"a: got {model.a!r}, at which no attractor was found; {SLIDING}")
         raise ValueError(
@@ -40,8 +40,8 @@ def coexisting_attractors(
             f"longer one, or more than window {settings.window:g}, time_limit {settings.time_limit:g}, samples "
             f"{settings.samples} (at a = 0 there is no attractor)"
         )
-    parts = [one_law(found, starts, settings, motion, start)]
+    parts = [one_law(continuation, starts, settings, motion, start)]
     dataset = merge(parts, branch_numbers(parts, [model], settings))
     dataset.attrs["history"] = "burridge_knopoff, from sampled initial states"
-    returns = returns_of_law([model], [found.rows(0)], {})
+    returns = returns_of_law([model], [continuation.rows(0)], {})
     return dataset, known_attractors(dataset, returns, model)

@@ -132,13 +132,13 @@ def summarize(models: Sequence[Model], grid: Sequence[float]) -> xarray.Dataset:
         name: np.full([sizes[dimension] for dimension in item.dimensions], -1 if item.dtype == "i1" else np.nan)
         for name, item in variables.items()
     }
-    found: dict[str, KnownOrbits | None] = {}
+    orbits: dict[str, KnownOrbits | None] = {}
     for i, model in enumerate(models):
-        found[laws[i]] = _orbits_of_model(model)
-        _fill_curve(values, i, model, found[laws[i]], grid)
-        _fill_transition(values, i, found[laws[i]], asymmetry)
+        orbits[laws[i]] = _orbits_of_model(model)
+        _fill_curve(values, i, model, orbits[laws[i]], grid)
+        _fill_transition(values, i, orbits[laws[i]], asymmetry)
     if len(pair) == len(PAPER_LAWS):
-        _compare(values, laws, pair[1], found[PAPER_LAWS[0]], grid)
+        _compare(values, laws, pair[1], orbits[PAPER_LAWS[0]], grid)
     return summary(
         "The synchronized orbit of three blocks, its Floquet multipliers and its loss of stability",
         variables,
@@ -187,14 +187,14 @@ def _fill_curve(
         except OrbitError as error:
             print(f"{model.law.name}: {error}")
             continue
-        found = modes(orbit)
+        spectrum = modes(orbit)
         values["status"][i, k] = OrbitStatus.FOUND
         values["period"][i, k] = orbit.period
         values["residual"][i, k] = orbit.residual
         values["lateral_slip_time"][i, k] = orbit.period - orbit.stick_time(0)
         values["center_stick_time"][i, k] = orbit.stick_time(1)
-        values["transverse_multiplier"][i, k] = found[0].real
-        values["multiplier"][i, k] = np.stack([found.real, found.imag], axis=-1)
+        values["transverse_multiplier"][i, k] = spectrum[0].real
+        values["multiplier"][i, k] = np.stack([spectrum.real, spectrum.imag], axis=-1)
 
 
 def modes(orbit: PeriodicOrbit) -> np.ndarray:
@@ -203,9 +203,9 @@ def modes(orbit: PeriodicOrbit) -> np.ndarray:
     The multiplier of the flow is the component of the returned flow along the flow. Those of the velocities of blocks 1
     and 3 are 0, since these blocks stop.
     """
-    found, flow = multipliers(orbit), rate(orbit.model, orbit.reference)
+    spectrum, flow = multipliers(orbit), rate(orbit.model, orbit.reference)
     returned = flow @ orbit.monodromy @ flow / (flow @ flow)
-    return np.array([found.transverse, returned, *found.symmetry_preserving[:2], 0.0, 0.0], dtype=complex)
+    return np.array([spectrum.transverse, returned, *spectrum.symmetry_preserving[:2], 0.0, 0.0], dtype=complex)
 
 
 def _is_constant(law: Law) -> bool:

@@ -90,22 +90,22 @@ def phases_of_law(
     attractors, returns : of all laws, and of the law, on the grid
     """
     phases, limit = config["phases"], SearchSettings(**config["attractors"]).label_limit
-    known = [known_attractors(attractors, returns, model_of(config, law, a)) for a in phases["a"]]
-    return one_law(known, settings_from_config(PhaseSettings, phases), limit, cores)
+    candidates = [known_attractors(attractors, returns, model_of(config, law, a)) for a in phases["a"]]
+    return one_law(candidates, settings_from_config(PhaseSettings, phases), limit, cores)
 
 
 def one_law(
-    known: Sequence[KnownAttractors], phases: PhaseSettings, label_limit: float, processes: int = 1
+    candidates: Sequence[KnownAttractors], phases: PhaseSettings, label_limit: float, processes: int = 1
 ) -> xarray.Dataset:
     """Return the attractors that states with given phases reach under one law.
 
-    known : the attractors at each a
+    candidates : the attractors at each a
     label_limit : time by which a state has to reach one of them
     processes : number of parallel processes; no result depends on it
     """
-    with parallel_map(processes) as each:
-        found = each("phases", partial(_values_at, phases=phases, label_limit=label_limit), known, span=(0.0, 1.0))
-    model, grid = known[0].model, [item.model.a for item in known]
+    with parallel_map(processes) as apply:
+        rows = apply("phases", partial(_values_at, phases=phases, label_limit=label_limit), candidates, span=(0.0, 1.0))
+    model, grid = candidates[0].model, [item.model.a for item in candidates]
     inner = model.chain.blocks - 2
     coordinates = axes(
         COORDINATES,
@@ -123,18 +123,18 @@ def one_law(
         "label_limit": label_limit,
     }
     variables = {**VARIABLES, **COMMON_VARIABLES}
-    arrays = {name: np.array([values[name] for values in found]) for name in found[0]}
+    arrays = {name: np.array([values[name] for values in rows]) for name in rows[0]}
     arrays["slipping_amplitude"] = np.array([slipping_amplitude(model, share) for share in phases.inner_share])
     return summary(TITLE, variables, arrays, coordinates, attributes, module=__name__)
 
 
-def _values_at(known: KnownAttractors, phases: PhaseSettings, label_limit: float) -> dict[str, np.ndarray]:
+def _values_at(candidates: KnownAttractors, phases: PhaseSettings, label_limit: float) -> dict[str, np.ndarray]:
     """Return the values of all variables at one a, except the slipping amplitude."""
     shape = (len(phases.amplitude), len(phases.phase_difference), phases.samples)
     amplitude, difference, _ = np.meshgrid(phases.amplitude, phases.phase_difference, range(shape[2]), indexing="ij")
-    model = known.model
+    model = candidates.model
     inner = model.chain.blocks - 2
-    correlations = [follow_attractor(model, item.motion.state()).velocity_correlation for item in known.attractors]
+    correlations = [follow_attractor(model, item.motion.state()).velocity_correlation for item in candidates.attractors]
     common = common_phases(model.a, shape, phases.seed)
     of_inner = inner_phases(model.a, (*shape, inner), phases.seed)
     phases_of_states = amplitude.ravel(), difference.ravel(), common.ravel()
@@ -142,9 +142,9 @@ def _values_at(known: KnownAttractors, phases: PhaseSettings, label_limit: float
     for share in phases.inner_share:
         position, velocity, standing = oscillating_states(model, *phases_of_states, share, of_inner.reshape(-1, inner))
         # Every block is in the middle of an oscillation, so that no convention for the start applies at τ = 0.
-        labels, _ = label_states(model, known.attractors, position, velocity, time_limit=label_limit)
+        labels, _ = label_states(model, candidates.attractors, position, velocity, time_limit=label_limit)
         cell = {"standing_count": standing.reshape(shape).sum(axis=2)}
-        cells.append({**cell, **_outcomes(known, correlations, labels.reshape(shape))})
+        cells.append({**cell, **_outcomes(candidates, correlations, labels.reshape(shape))})
     values = {name: np.array([cell[name] for cell in cells]) for name in cells[0]}
     return {"common_phase": common, "inner_phase": of_inner, **values}
 
@@ -158,15 +158,15 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     return summary(TITLE, {**VARIABLES, **COMMON_VARIABLES}, values, coordinates, attributes, module=__name__)
 
 
-def _outcomes(known: KnownAttractors, correlations: Sequence[float], labels: np.ndarray) -> dict[str, np.ndarray]:
+def _outcomes(candidates: KnownAttractors, correlations: Sequence[float], labels: np.ndarray) -> dict[str, np.ndarray]:
     """Return the variables of the states from their labels, of shape (amplitude, phase_difference, state).
 
     correlations : of the velocities of the end blocks on each attractor
     """
     # The last entry is that of the label −1, undetermined.
     tables = {
-        "branch": np.append(known.branch, UNDETERMINED),
-        "side": np.append(known.side, 0),
+        "branch": np.append(candidates.branch, UNDETERMINED),
+        "side": np.append(candidates.side, 0),
         "velocity_correlation": np.append(correlations, np.nan),
     }
     values = {name: table[labels] for name, table in tables.items()}
@@ -179,5 +179,5 @@ def _outcomes(known: KnownAttractors, correlations: Sequence[float], labels: np.
 
 def _intervals(hits: np.ndarray, count: int) -> np.ndarray:
     """Return fractions and the ends of their Wilson intervals, shape (3, *hits.shape)."""
-    found = [fraction_interval(int(number), count) for number in hits.ravel()]
-    return np.reshape(np.transpose(found), (3, *hits.shape))
+    intervals = [fraction_interval(int(number), count) for number in hits.ravel()]
+    return np.reshape(np.transpose(intervals), (3, *hits.shape))

@@ -102,11 +102,11 @@ def summarize(models: Sequence[Model]) -> xarray.Dataset:
 
     Raises ProofError, one line, for a model that is not covered, and if a proof fails.
     """
-    each = [_of_law(model) for model in models]
+    proofs = [_of_law(model) for model in models]
     return summary(
         "Proved statements on the synchronized orbit of three blocks, as intervals that contain the true numbers",
         VARIABLES,
-        {name: np.array([one[name] for one in each], dtype=item.dtype) for name, item in VARIABLES.items()},
+        {name: np.array([proof[name] for proof in proofs], dtype=item.dtype) for name, item in VARIABLES.items()},
         axes(
             _COORDINATES,
             law=[model.law.name for model in models],
@@ -132,17 +132,17 @@ def _of_law(model: Model) -> dict[str, Any]:
         raise ProofError(f"law {model.law.name}: not covered: the paper's laws and chain of {CHAIN_BLOCKS} blocks")
     # Only the initial guess comes from a simulation. Under the linearized law it is valid for every v.
     orbits = synchronized_orbits(replace(model, v=NONLINEAR_V, contact="one_sided"))
-    given = prove_orbit(orbits.at(GIVEN_A[0] / GIVEN_A[1]), decimal(*GIVEN_A))
+    attracting = prove_orbit(orbits.at(GIVEN_A[0] / GIVEN_A[1]), decimal(*GIVEN_A))
     critical = prove_critical(orbits.at(critical_a(bifurcations_of(orbits))))
     branch: list[Piece] = []
     between = np.nan, np.nan
     if is_linearized(model):
         low, high = (fmpq(*end) for end in RANGE)
         branch = prove_branch(orbits.at(RANGE[0][0] / RANGE[0][1]), low, high)
-        _check_branch(given, critical, branch)
+        _check_branch(attracting, critical, branch)
         between = RANGE[0][0] / RANGE[0][1], RANGE[1][0] / RANGE[1][1]
-    _check(model, given, critical, branch)
-    each = [_of_orbit(orbit, model) for orbit in (given, critical.orbit)]
+    _check(model, attracting, critical, branch)
+    rows = [_of_orbit(orbit, model) for orbit in (attracting, critical.orbit)]
     return {
         "critical_a": limits(critical.a),
         "critical_a_digits": digits(critical.a),
@@ -150,7 +150,7 @@ def _of_law(model: Model) -> dict[str, Any]:
         "only_between": between if branch else _inner_limits(critical.uniqueness_range),
         "family_between": between,
         "pieces": len(branch),
-        **{name: [one[name] for one in each] for name in each[0]},
+        **{name: [row[name] for row in rows] for name in rows[0]},
     }
 
 
@@ -160,9 +160,9 @@ def _inner_limits(ball: arb) -> tuple[float, float]:
     return float(np.nextafter(low, np.inf)), float(np.nextafter(high, -np.inf))
 
 
-def _check_branch(given: ProvedOrbit, critical: CriticalOrbit, branch: Sequence[Piece]) -> None:
+def _check_branch(attracting: ProvedOrbit, critical: CriticalOrbit, branch: Sequence[Piece]) -> None:
     """Prove that the family contains both orbits; raises ProofError, one line, if that fails."""
-    branch[0].check_contains(given.enclosure, arb(fmpq(*GIVEN_A)))
+    branch[0].check_contains(attracting.enclosure, arb(fmpq(*GIVEN_A)))
     for piece in branch:
         if piece.orbit.a.overlaps(critical.a):
             piece.check_contains(critical.orbit.enclosure, critical.a)
@@ -171,22 +171,22 @@ def _check_branch(given: ProvedOrbit, critical: CriticalOrbit, branch: Sequence[
         raise ProofError(f"a_c = {critical.a}: not in the range of a that is covered")
 
 
-def _check(model: Model, given: ProvedOrbit, critical: CriticalOrbit, branch: Sequence[Piece]) -> None:
+def _check(model: Model, attracting: ProvedOrbit, critical: CriticalOrbit, branch: Sequence[Piece]) -> None:
     """Prove that stuck blocks stay stuck, that the given orbit attracts, and that the interval of a_c is narrow.
 
     Raises ProofError, one line, if that fails.
     """
     if model.contact == "symmetric":
-        for orbit in (given, critical.orbit, *(piece.orbit for piece in branch)):
+        for orbit in (attracting, critical.orbit, *(piece.orbit for piece in branch)):
             if not model.v * orbit.force_margin_range() < 2:
                 raise ProofError(
                     f"a = {orbit.a}, v = {model.v!r}: not proved that stuck blocks resist the backward pull"
                 )
-    for orbit in (given, critical.orbit):
+    for orbit in (attracting, critical.orbit):
         if not abs(orbit.symmetric_multiplier) < 1:
             raise ProofError(f"a = {orbit.a}: not proved that symmetric perturbations decay")
-    if not abs(given.multiplier) < 1:
-        raise ProofError(f"a = {given.a}: not proved that transverse perturbations decay")
+    if not abs(attracting.multiplier) < 1:
+        raise ProofError(f"a = {attracting.a}: not proved that transverse perturbations decay")
     if not width(critical.a) < LARGEST_WIDTH:
         raise ProofError(f"a_c: got an interval of width {width(critical.a)!r}, expected below {LARGEST_WIDTH!r}")
 
@@ -239,8 +239,8 @@ def _law_lines(dataset: xarray.Dataset, name: str) -> list[str]:
             f"    For every a from {low:g} to {high:g} there is such an orbit; each block stops once a period.",
             "    Its transverse multiplier mu rises with a: below 1 before a_c, 1 there, above 1 beyond.",
         ]
-    for title, one in zip(("At a = 0.08, where the orbit attracts", "At a_c"), dataset["orbit"].values, strict=True):
-        orbit = dataset.sel(orbit=one)
+    for title, label in zip(("At a = 0.08, where the orbit attracts", "At a_c"), dataset["orbit"].values, strict=True):
+        orbit = dataset.sel(orbit=label)
         lines += ["", f"{name}: {title}, these lie between"]
         lines += [f"    period              {_format_ends(orbit['period'])}"]
         lines += [

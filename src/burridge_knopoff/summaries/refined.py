@@ -37,31 +37,31 @@ VARIABLES = {
 
 
 def one_law(
-    found: Continuation, settings: SearchSettings, motion: MotionSettings, refine: RefinementSettings, start: str
+    continuation: Continuation, settings: SearchSettings, motion: MotionSettings, refine: RefinementSettings, start: str
 ) -> xarray.Dataset:
     """Return the attractors of one law at all values of a; arguments as in `attractors.one_law`."""
-    count = len(found.models)
-    values = slot_values(found.models, [found.rows(k) for k in range(count)], settings.lifetime, "value")
-    values["section_velocity"] = _sections(found, settings.window, motion.section)
-    values["a"] = np.array([model.a for model in found.models])
-    values["in_grid"] = np.isin(np.arange(count), found.grid)
-    model = found.models[0]
+    count = len(continuation.models)
+    values = slot_values(continuation.models, [continuation.rows(k) for k in range(count)], settings.lifetime, "value")
+    values["section_velocity"] = _sections(continuation, settings.window, motion.section)
+    values["a"] = np.array([model.a for model in continuation.models])
+    values["in_grid"] = np.isin(np.arange(count), continuation.grid)
+    model = continuation.models[0]
     about = {**attractors.search_attributes(model, settings, motion, start), "refine_resolution": refine.resolution}
     about["refine_longest_period"] = refine.longest_period
     title = f"Attractors at refined values of a, {model.law.name} friction law"
     return summary(title, VARIABLES, values, axes(block=range(1, model.blocks + 1)), about, module=__name__)
 
 
-def _sections(found: Continuation, window: float, section: Section) -> np.ndarray:
+def _sections(continuation: Continuation, window: float, section: Section) -> np.ndarray:
     """Return W' at the first crossings of W = 0 on each attractor, shape (value, attractor, crossing)."""
     once = Settings(
         transient=0.0, window=window, batches=2, sampling=window, trajectory=0.0, events="none", lyapunov_exponents=0,
         section=section,
     )  # fmt: skip
-    shape = len(found.models), max(1, *map(len, found.attractors)), CROSSINGS
+    shape = len(continuation.models), max(1, *map(len, continuation.attractors)), CROSSINGS
     velocity = np.full(shape, np.nan)
-    for place, model in enumerate(found.models):
-        for slot, row in enumerate(found.rows(place)):
+    for place, model in enumerate(continuation.models):
+        for slot, row in enumerate(continuation.rows(place)):
             if row.side >= 0:
                 start = row.attractor.motion.state()
                 crossings = run(model, start, once, section_only=True).crossing_velocity[:CROSSINGS]

@@ -127,19 +127,19 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
     slots &= np.isin(refined["kind"].values, REGULAR)
     for law, value, slot in np.argwhere(slots).tolist():
         at = law, value
-        one = refined.isel(law=law, value=value, attractor=slot)
-        model, velocity = models[law].at(float(values["a"][at])), one["velocity"].values
-        start = ChainState(one["position"].values - model.sliding_offset, velocity, velocity == 0.0)
-        branch = one["branch"].item()
+        attractor = refined.isel(law=law, value=value, attractor=slot)
+        model, velocity = models[law].at(float(values["a"][at])), attractor["velocity"].values
+        start = ChainState(attractor["position"].values - model.sliding_offset, velocity, velocity == 0.0)
+        branch = attractor["branch"].item()
         if branch == BRANCH:
             values["rotation_number"][at], values["rotation_error"][at] = rotation_number(model, start, DURATION)
-            values["locked"][at] = one["kind"].item() == MotionKind.PERIODIC
+            values["locked"][at] = attractor["kind"].item() == MotionKind.PERIODIC
         for k, detuning in enumerate(DETUNINGS if values["in_grid"][at] else ()):
-            found = detuned_motion(model, start, detuning, exponents)
-            start = found.final
+            motion = detuned_motion(model, start, detuning, exponents)
+            start = motion.final
             for name in ("frequency", "frequency_error", "exponent", "exponent_error", "mode_share", "end_ratio",
                          "end_phase"):  # fmt: skip
-                values[f"detuned_{name}"][*at, DETUNED_BRANCHES.index(branch), k] = getattr(found, name)
+                values[f"detuned_{name}"][*at, DETUNED_BRANCHES.index(branch), k] = getattr(motion, name)
     attributes = {
         "branch": BRANCH,
         "duration": DURATION,

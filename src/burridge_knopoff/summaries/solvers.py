@@ -73,30 +73,30 @@ def compare_solvers(config: Mapping[str, Any], results: Path) -> xarray.Dataset:
         for solver in SOLVERS
     }
     grid = Grid.from_points(results / "points", study.points)
-    others = {solver: grid.copy_with(results / "solvers" / solver, of) for solver, of in settings.items()}
-    return summarize(grid, others, config["solvers"]["step"])
+    other_grids = {solver: grid.copy_with(results / "solvers" / solver, of) for solver, of in settings.items()}
+    return summarize(grid, other_grids, config["solvers"]["step"])
 
 
-def summarize(grid: Grid, others: Mapping[str, Grid], step: float) -> xarray.Dataset:
+def summarize(grid: Grid, other_grids: Mapping[str, Grid], step: float) -> xarray.Dataset:
     """Compare the solvers of each law at every point of a grid.
 
     grid : the study's points at the values of a that are compared
-    others : {solver: its runs of the same points, with settings for each law whose points another solver computes}
+    other_grids : {solver: its runs of the same points, with settings for each law whose points another solver computes}
     step : of rk4 in these runs, unless rk4 computes the study's points
     """
     solver_of_law = {law: grid.settings[law].solver for law in grid.laws}
     parts = []
     for solver in SOLVERS:
-        of_solver = [_runs_by(solver, runs, grid) for runs in (grid, others.get(solver)) if runs]
+        of_solver = [_runs_by(solver, runs, grid) for runs in (grid, other_grids.get(solver)) if runs]
         parts.append(xarray.concat(of_solver, "law").reindex(law=list(grid.laws), fill_value=_MISSING))
     runs = xarray.concat(parts, "solver").assign_coords(axes({"solver": SOLVER}, solver=SOLVERS))
-    own = xarray.DataArray(list(solver_of_law.values()), {"law": list(grid.laws)}, "law")
-    reference = runs.sel(solver=own).drop_vars("solver")
+    solvers = xarray.DataArray(list(solver_of_law.values()), {"law": list(grid.laws)}, "law")
+    reference = runs.sel(solver=solvers).drop_vars("solver")
     error = xarray.apply_ufunc(np.hypot, runs["mean_distance_error"], reference["mean_distance_error"])
     values = runs.assign(
         difference=runs["mean_distance"] - reference["mean_distance"],
         # A run does not differ from itself.
-        difference_error=error * (runs["solver"] != own),
+        difference_error=error * (runs["solver"] != solvers),
     ).transpose("law", "solver", "initial", "a")
     return summary(
         "Independent solvers of the same equations",
@@ -115,9 +115,9 @@ def _runs_by(solver: str, runs: Grid, reference: Grid) -> xarray.Dataset:
     """
 
     def compare(run: Mapping[str, np.ndarray], point: Sequence[str]) -> dict[str, Any]:
-        own = read_point(reference, point, _READ)
-        count, until = common_order(all_events(run), all_events(own))
-        until = min(until, float(run["end_time"]), float(own["end_time"]))
+        reference_run = read_point(reference, point, _READ)
+        count, until = common_order(all_events(run), all_events(reference_run))
+        until = min(until, float(run["end_time"]), float(reference_run["end_time"]))
         return {**{name: run[name] for name in _COPIED}, "event_order_count": count, "event_order_time": until}
 
     chosen = runs.of_laws([law for law, settings in runs.settings.items() if settings.solver == solver])

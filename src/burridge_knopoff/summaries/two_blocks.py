@@ -113,8 +113,8 @@ def train(chain: Chain, blocks: int) -> Chain:
     """
     first = 1.0 if isinstance(chain.pulling, str) else chain.pulling
     pulling = (first, *(blocks - 1) * (0.0,))
-    given = {name: getattr(chain, name) for name in ("threshold", "mass", "damping", "pulling_damping")}
-    return Chain(blocks, chain.coupling, pulling, **given)  # type: ignore[arg-type]
+    parameters = {name: getattr(chain, name) for name in ("threshold", "mass", "damping", "pulling_damping")}
+    return Chain(blocks, chain.coupling, pulling, **parameters)  # type: ignore[arg-type]
 
 
 def run_settings(**settings: Any) -> Settings:
@@ -187,12 +187,12 @@ def _compare_at(
     motion: MotionSettings,
 ) -> xarray.Dataset:
     """Return all variables at one a: of motions over (law, state), of the order of events over (other_law, state)."""
-    here = [model.at(a) for model in models]
-    ends = [asymptotic_states(model, initial, search, motion, start=settings.start) for model in here]
-    count, until = (np.zeros((len(here) - 1, len(initial))) for _ in range(2))
+    models_at_a = [model.at(a) for model in models]
+    ends = [asymptotic_states(model, initial, search, motion, start=settings.start) for model in models_at_a]
+    count, until = (np.zeros((len(models_at_a) - 1, len(initial))) for _ in range(2))
     for j, state in enumerate(initial):
-        first, *others = (run(model, state, settings) for model in here)
-        for i, other in enumerate(others):
+        first, *other_runs = (run(model, state, settings) for model in models_at_a)
+        for i, other in enumerate(other_runs):
             count[i, j], time = common_order(_event_sequence(first), _event_sequence(other))
             until[i, j] = min(time, first.end_time, other.end_time)
     motions = {name: [[getattr(end, name) for end in row] for row in ends] for name in MOTION_VARIABLES}
@@ -216,7 +216,7 @@ def _one_block(
     measured = replace(settings, events="window", lyapunov_exponents=2)
     duration = min(measured.event_window, measured.window)
     kind, rate = [], []
-    for model in (of_law.at(a) for of_law in models):
+    for model in (law_model.at(a) for law_model in models):
         trajectory = run(model, initial, measured, stops_only=True)
         kind.append(motion_of_run(vars(trajectory), False, motion.scaled_to_velocity(model.v)).kind)
         rate.append(len(trajectory.event_time) / duration)

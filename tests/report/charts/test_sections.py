@@ -12,9 +12,9 @@ def crossings(velocity, count):
         "law": ("point", np.repeat(["linearized", "nonlinear"], len(count) // 2)),
         "initial": ("point", ["plus"] * len(count)),
     }
-    found = xr.Dataset({"crossing_count": ("point", np.asarray(count, dtype="i4"))}, coordinates)
+    dataset = xr.Dataset({"crossing_count": ("point", np.asarray(count, dtype="i4"))}, coordinates)
     direction = np.where(np.asarray(velocity) >= 0.0, 1, -1).astype("i1")
-    return found.assign(crossing_velocity=("crossing", velocity), crossing_direction=("crossing", direction))
+    return dataset.assign(crossing_velocity=("crossing", velocity), crossing_direction=("crossing", direction))
 
 
 @pytest.mark.parametrize("lowest", [-0.3, -2e-9, 0.2])
@@ -23,9 +23,9 @@ def test_section_counts_lose_no_crossing(lowest):
     velocity = np.concatenate([rng.uniform(lowest, 0.4, 900), [lowest, 0.4], np.full(600, 0.25)])
     edges, counts = section_counts(crossings(velocity, [502, 0, 400, 600]))
     assert counts.shape == (2, 1, BINS, 2)
-    for run, own in zip(counts[:, 0], (velocity[:502], velocity[502:]), strict=True):
-        assert run[run > 0].sum() == (own >= 0.0).sum()
-        assert -run[run < 0].sum() == (own < 0.0).sum()
+    for run, run_velocity in zip(counts[:, 0], (velocity[:502], velocity[502:]), strict=True):
+        assert run[run > 0].sum() == (run_velocity >= 0.0).sum()
+        assert -run[run < 0].sum() == (run_velocity < 0.0).sum()
     # 600 crossings in one bin: more than the stored type of the direction could count.
     fullest = counts[1, 0, :, 1].argmax()
     assert edges[fullest] <= 0.25 <= edges[fullest + 1]

@@ -68,8 +68,8 @@ def distance(
     for number, name in enumerate(runs["initial"].values):
         run = runs.sel(initial=name)
         mean, error = run["mean_distance"].values, run["mean_distance_error"].values
-        words = [MotionKind(one).words for one in kind.sel(initial=name).values]
-        shown = [format_measured(*pair) for pair in zip(mean.tolist(), error.tolist(), strict=True)]
+        words = [MotionKind(code).words for code in kind.sel(initial=name).values]
+        texts = [format_measured(*pair) for pair in zip(mean.tolist(), error.tolist(), strict=True)]
         traces.append(
             scatter(
                 a,
@@ -78,7 +78,7 @@ def distance(
                 f"run from {name}: %{{customdata[1]}}<br>a = %{{x}}<br>⟨J⟩ = %{{customdata[2]}}",
                 mode="markers",
                 meta="run",
-                customdata=[[number, *pair] for pair in zip(words, shown, strict=True)],
+                customdata=[[number, *pair] for pair in zip(words, texts, strict=True)],
                 error_y=bars(3.0 * error, INK["text"]),
                 marker={"symbol": _run_shape(number), "size": 4.5 + 1.5 * number, "line": {"width": 1}},
             )
@@ -97,8 +97,8 @@ def top_distance(runs: xarray.Dataset, attractors: xarray.Dataset | None) -> flo
     tops = [(runs["mean_distance"] + 3.0 * runs["mean_distance_error"].fillna(0.0)).values.ravel()]
     if attractors is not None:
         tops.append(attractors["mean_distance"].values.ravel())
-    found = np.concatenate(tops)
-    largest = found[np.isfinite(found)].max(initial=0.0)
+    means = np.concatenate(tops)
+    largest = means[np.isfinite(means)].max(initial=0.0)
     # Where all is 0, rounding sets the scale of nothing.
     return float(largest) if largest > 1e-9 else 0.01
 
@@ -112,7 +112,7 @@ def attractor_marks(attractors: xarray.Dataset, branches: Branches) -> list[go.S
         there = np.isin(numbers, [number for number in branches.colors if branches.group(number) == group])
         if not there.any():
             continue
-        found = zip(numbers[there].tolist(), kinds[there].tolist(), mean[there].tolist(), strict=True)
+        marks = zip(numbers[there].tolist(), kinds[there].tolist(), mean[there].tolist(), strict=True)
         traces.append(
             scatter(
                 a[there],
@@ -123,7 +123,7 @@ def attractor_marks(attractors: xarray.Dataset, branches: Branches) -> list[go.S
                 # The name of the synchronized branch is its kind of motion.
                 customdata=[
                     [", ".join(dict.fromkeys((branches.names[number], MotionKind(kind).words))), format_measured(value)]
-                    for number, kind, value in found
+                    for number, kind, value in marks
                 ],
                 marker={"symbol": branches.shape(group), "size": 8, "opacity": 0.6},
             )

@@ -37,7 +37,7 @@ def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
     laws, states = study.laws, study.initial
     packed: dict[str, Any] = {}
     runs, compared, lyapunov = (summaries[name] for name in ("mean_distance", "agreement", "lyapunov"))
-    kind, found = compared["kind"], summaries.get("attractors")
+    kind, attractors = compared["kind"], summaries.get("attractors")
     depth = lyapunov["lyapunov_exponent"].shape[-1]
     legends: dict[str, Any] = {
         "runs": branches.run_legend(list(states)),
@@ -45,11 +45,11 @@ def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
         "branches": [],
     }
     marks: dict[str, list[Any]] = {law: [] for law in laws}
-    if found is not None:
-        groups = branches.Branches(found)
+    if attractors is not None:
+        groups = branches.Branches(attractors)
         legends["branches"] = groups.legend()
-        marks = {law: branches.attractor_marks(found.sel(law=law), groups) for law in laws}
-    top = branches.top_distance(runs, found)
+        marks = {law: branches.attractor_marks(attractors.sel(law=law), groups) for law in laws}
+    top = branches.top_distance(runs, attractors)
     critical = dict(zip(laws, summaries["orbits"]["critical_a"].sel(law=list(laws)).values.tolist(), strict=True))
     packed["distance"] = [
         pack(branches.distance(runs.sel(law=law), kind.sel(law=law), top, critical[law], marks[law])) for law in laws
@@ -57,7 +57,8 @@ def charts(study: Study, summaries: Mapping[str, xarray.Dataset]) -> Charts:
     a = runs["a"].values
     edges, counts = sections.section_counts(summaries["bifurcation_diagram"])
     packed["sections"] = [
-        [pack(sections.sections(a, edges, one)) if one.any() else None for one in rows] for rows in counts
+        [pack(sections.sections(a, edges, histogram)) if histogram.any() else None for histogram in rows]
+        for rows in counts
     ]
     if lyapunov["lyapunov_exponent"].notnull().any():
         ends = frame(lyapunov)

@@ -24,8 +24,8 @@ def maps(grid: xarray.Dataset) -> list[tuple[str, go.Figure]]:
     if len(varied) < 2:
         return []
     return [
-        (_plain(title), _map(one.transpose(varied[1], varied[0], ...), varied, highest))
-        for title, one in panel_parts(grid)
+        (_plain(title), _map(part.transpose(varied[1], varied[0], ...), varied, highest))
+        for title, part in panel_parts(grid)
     ]
 
 
@@ -34,19 +34,19 @@ def _plain(title: str) -> str:
     return re.sub(r"\\mathrm|[${}\\]", "", title)
 
 
-def _map(one: xarray.Dataset, varied: list[str], highest: float) -> go.Figure:
+def _map(part: xarray.Dataset, varied: list[str], highest: float) -> go.Figure:
     """Return ⟨J⟩ of one panel as colours; its hover texts give the other results of the run."""
-    values = one["mean_distance"].values
+    values = part["mean_distance"].values
     words = np.full(values.shape, "the run did not complete", dtype=object)
     for place in zip(*np.nonzero(np.isfinite(values)), strict=True):
-        run = one.isel(dict(zip((varied[1], varied[0]), place, strict=True)))
+        run = part.isel(dict(zip((varied[1], varied[0]), place, strict=True)))
         told = [f"⟨J⟩ = {format_measured(run['mean_distance'].item(), run['mean_distance_error'].item())}"]
         told.append(MotionKind(run["run_kind"].item()).words)
         if run["lyapunov_exponent"].size:
             first, error = (run[name].values[0].item() for name in ("lyapunov_exponent", "lyapunov_error"))
             told.append(f"λ₁ = {format_measured(first, error)}")
         words[place] = "<br>".join(told)
-    x, y = (one[name].values for name in varied[:2])
+    x, y = (part[name].values for name in varied[:2])
     names = [f"<i>{name}</i>" if len(name) == 1 else name for name in varied[:2]]
     pixels = go.Heatmap(
         x=cells(x),

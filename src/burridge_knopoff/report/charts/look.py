@@ -66,10 +66,10 @@ def chart(traces: Sequence[Any], **layout: Any) -> go.Figure:
     return go.Figure(list(traces), {"template": _TEMPLATE, **layout})
 
 
-def scatter(x: Any, y: Any, color: str, hover: str, **more: Any) -> go.Scatter:
-    """Return a curve or marks of one colour; `hover` is what they say under the pointer, `more` is plotly's."""
+def scatter(x: Any, y: Any, color: str, hover: str, **options: Any) -> go.Scatter:
+    """Return a curve or marks of one colour; `hover` is what they say under the pointer, `options` is plotly's."""
     look = {"line_color": color, "marker_color": color, "hovertemplate": f"{hover}<extra></extra>"}
-    return go.Scatter(x=x, y=y, **look, **more)
+    return go.Scatter(x=x, y=y, **look, **options)
 
 
 def bars(error: np.ndarray, color: str) -> dict[str, Any]:
@@ -77,24 +77,24 @@ def bars(error: np.ndarray, color: str) -> dict[str, Any]:
     return {"array": np.nan_to_num(error), "color": color, "thickness": 0.8, "width": 0}
 
 
-def axis(title: str, **more: Any) -> dict[str, Any]:
+def axis(title: str, **options: Any) -> dict[str, Any]:
     """Return an axis with a title."""
-    return {"title": {"text": title}, **more}
+    return {"title": {"text": title}, **options}
 
 
-def a_axis(a: np.ndarray, **more: Any) -> dict[str, Any]:
+def a_axis(a: np.ndarray, **options: Any) -> dict[str, Any]:
     """Return the axis of a, with room for what is drawn at the first and at the last value."""
-    return axis("<i>a</i>", range=list(strip_range(a)), **{"nticks": 8, **more})
+    return axis("<i>a</i>", range=list(strip_range(a)), **{"nticks": 8, **options})
 
 
-def strip_map(a: np.ndarray, values: np.ndarray, words: np.ndarray, **more: Any) -> go.Heatmap:
+def strip_map(a: np.ndarray, values: np.ndarray, words: np.ndarray, **options: Any) -> go.Heatmap:
     """Return a heat map with a strip for each a, and gaps between the strips of a coarse grid.
 
     values, words : numbers, and what they say under the pointer, of shape (row, a)
     """
     edges, index = strip_columns(a)
     numbers = np.where(index < 0, np.nan, np.asarray(values, dtype="f4")[:, index])
-    return go.Heatmap(x=edges, z=numbers, text=np.asarray(words)[:, index], hoverongaps=False, **more)
+    return go.Heatmap(x=edges, z=numbers, text=np.asarray(words)[:, index], hoverongaps=False, **options)
 
 
 def steps(colors: Sequence[str]) -> dict[str, Any]:

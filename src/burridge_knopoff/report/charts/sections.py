@@ -33,8 +33,8 @@ def section_counts(bifurcation: xarray.Dataset) -> tuple[np.ndarray, np.ndarray]
     columns = np.zeros((len(counts), BINS), dtype="i4")
     stops = np.cumsum(counts)
     for n, (stop, count) in enumerate(zip(stops, counts, strict=True)):
-        own = slice(stop - count, stop)
-        columns[n] = np.histogram(velocity[own], edges, weights=directions[own])[0]
+        segment = slice(stop - count, stop)
+        columns[n] = np.histogram(velocity[segment], edges, weights=directions[segment])[0]
     # Points come in the order law, initial, a.
     return edges, np.swapaxes(columns.reshape(len(laws), len(states), -1, BINS), 2, 3)
 

@@ -44,8 +44,8 @@ def dark(color: str) -> str:
 
 def dark_colors(text: str) -> dict[str, str]:
     """Return {colour: colour in the dark theme} of all colours in JSON that differ."""
-    found = {*re.findall(r'"(#(?:[0-9a-fA-F]{2}){3,4})"', text)}
-    return {color: dark(color) for color in sorted(found) if dark(color) != color}
+    colors = {*re.findall(r'"(#(?:[0-9a-fA-F]{2}){3,4})"', text)}
+    return {color: dark(color) for color in sorted(colors) if dark(color) != color}
 
 
 def fixed(color: str) -> str:

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from burridge_knopoff import Chain, Model, law_of
 from burridge_knopoff.attractors.lookup import side_name
 from burridge_knopoff.report.tables import branch_table
-from burridge_knopoff.summaries import all_laws
-from burridge_knopoff.summaries.all_laws import common_branch_names, number_intermediate_branches
+from burridge_knopoff.summaries import branch_numbering
+from burridge_knopoff.summaries.branch_numbering import common_branch_names, number_intermediate_branches
 from burridge_knopoff.summaries.branch_rows import branch_rows
 from burridge_knopoff.summaries.branch_table import ABOUT, branch_lines
 from tests.summaries.continued import SETTINGS
@@ -19,21 +19,21 @@ from tests.summaries.continued import SETTINGS
 def test_laws_are_merged_with_common_branch_numbers(one_law):
     first, second, third = (one_law(law) for law in ("linearized", "nonlinear", "exponential"))
     numbers = [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
-    found = all_laws.merge([first.isel(attractor=slice(1, 2)), second, third], numbers)
-    assert found["law"].values.tolist() == ["linearized", "nonlinear", "exponential"]
-    assert found["branch"].values.tolist() == [
+    dataset = branch_numbering.merge([first.isel(attractor=slice(1, 2)), second, third], numbers)
+    assert dataset["law"].values.tolist() == ["linearized", "nonlinear", "exponential"]
+    assert dataset["branch"].values.tolist() == [
         [[1, -1], [1, -1], [-1, -1]],
         [[0, 1], [1, 1], [-1, -1]],
         [[0, 2], [2, 2], [-1, -1]],
     ]
-    assert found["upward_branch"].values[2].tolist() == [[-1, 2], [-1, -1], [-1, -1]]
-    assert found["sweep_branch"].values[2, 0].tolist() == [[0, -1, -1], [2, 2, -1]]
-    np.testing.assert_array_equal(found["mean_distance"].values[0], [[0.14, np.nan], [0.15, np.nan], [np.nan] * 2])
-    assert found["close_returns"].values[0].tolist() == [[8, -1], [8, -1], [-1, -1]]
-    assert found["basin_count"].values[0].tolist() == [[2, 0], [1, 0], [0, 0]]
-    assert "law" not in found.attrs
-    assert found["sample_count"].values[0].tolist() == [4, 4, 4]
-    assert found["branch_number"].values.tolist() == [0, 1, 2]
+    assert dataset["upward_branch"].values[2].tolist() == [[-1, 2], [-1, -1], [-1, -1]]
+    assert dataset["sweep_branch"].values[2, 0].tolist() == [[0, -1, -1], [2, 2, -1]]
+    np.testing.assert_array_equal(dataset["mean_distance"].values[0], [[0.14, np.nan], [0.15, np.nan], [np.nan] * 2])
+    assert dataset["close_returns"].values[0].tolist() == [[8, -1], [8, -1], [-1, -1]]
+    assert dataset["basin_count"].values[0].tolist() == [[2, 0], [1, 0], [0, 0]]
+    assert "law" not in dataset.attrs
+    assert dataset["sample_count"].values[0].tolist() == [4, 4, 4]
+    assert dataset["branch_number"].values.tolist() == [0, 1, 2]
 
 
 def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law):
@@ -53,8 +53,8 @@ def test_branches_that_turn_into_each_other_share_a_number(monkeypatch, one_law)
         assert settings is SETTINGS
         return answers.pop(0)
 
-    monkeypatch.setattr(all_laws, "match_branches", match_branches)
-    assert all_laws.branch_numbers(parts, models, SETTINGS) == [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
+    monkeypatch.setattr(branch_numbering, "match_branches", match_branches)
+    assert branch_numbering.branch_numbers(parts, models, SETTINGS) == [{0: 0, 1: 1}, {0: 0, 1: 1}, {0: 0, 1: 2}]
 
 
 def ranges(*branches, values=12):
@@ -71,26 +71,26 @@ def test_numbers_follow_the_order_in_which_branches_appear_under_the_first_law()
     second = ranges((0, 0, 5, 0.0), (1, 0, 9, 0.3), (5, 0, 3, 0.1))
     numbers = [{n: n for n in range(5)}, {0: 0, 1: 1, 5: 5}]
     # Synchrony; 2 before 1, since its <J> is smaller; 3; the branch of the second law alone; the short branch.
-    assert all_laws.number_in_order([first, second], numbers) == {0: 0, 2: 1, 1: 2, 3: 3, 5: 4, 4: 5}
+    assert branch_numbering.number_in_order([first, second], numbers) == {0: 0, 2: 1, 1: 2, 3: 3, 5: 4, 4: 5}
     # Without synchrony no other branch is 0.
-    assert all_laws.number_in_order([ranges((3, 0, 4, 0.2), (7, 0, 4, 0.1))], [{3: 3, 7: 7}]) == {7: 1, 3: 2}
+    assert branch_numbering.number_in_order([ranges((3, 0, 4, 0.2), (7, 0, 4, 0.1))], [{3: 3, 7: 7}]) == {7: 1, 3: 2}
 
 
 def test_without_synchrony_on_the_grid_its_number_remains_free(one_law):
     part = one_law("linearized")
     part["branch"][...] = np.where(part["branch"] == 0, -1, part["branch"])
     model = Model(Chain(3), law_of("linearized", 0.0), 0.2)
-    assert all_laws.branch_numbers([part], [model], SETTINGS) == [{1: 1}]
+    assert branch_numbering.branch_numbers([part], [model], SETTINGS) == [{1: 1}]
 
 
 @given(st.lists(st.tuples(st.integers(0, 8), st.integers(1, 2)), max_size=4))
 def test_branches_found_by_a_deeper_search_do_not_renumber_long_branches(short):
     lasting = (0, 0, 5, 0.0), (1, 3, 4, 0.2), (2, 1, 9, 0.3), (3, 6, 3, 0.4)
-    more = [(10 + k, first, count, 0.05 * k) for k, (first, count) in enumerate(short)]
-    numbers = [{number: number for number, *_ in (*lasting, *more)}]
-    found = all_laws.number_in_order([ranges(*lasting, *more)], numbers)
-    assert [found[number] for number, *_ in lasting] == [0, 2, 1, 3]
-    assert sorted(found.values()) == list(range(4 + len(more)))
+    extra = [(10 + k, first, count, 0.05 * k) for k, (first, count) in enumerate(short)]
+    numbers = [{number: number for number, *_ in (*lasting, *extra)}]
+    order = branch_numbering.number_in_order([ranges(*lasting, *extra)], numbers)
+    assert [order[number] for number, *_ in lasting] == [0, 2, 1, 3]
+    assert sorted(order.values()) == list(range(4 + len(extra)))
 
 
 @pytest.mark.parametrize(
@@ -107,45 +107,45 @@ def test_the_name_of_a_motion_on_one_side_is_mirror_pair(name, side, expected):
 
 
 def test_the_digest_describes_each_branch(one_law):
-    found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
+    dataset = branch_numbering.merge([one_law("linearized")], [{0: 0, 1: 1}])
     head = "linearized law: 2 branches at 3 values of a; 5 of 12 sampled states are undetermined"
     rows = [
         "branch           a         count  <J>            motion                          basin",
         "synchronized     0.05      1      0.0000         synchronized                    0.250",
         "mirror pair (1)  0.05-0.1  2      0.1400-0.1500  quasiperiodic, transient chaos  1.000",
     ]
-    assert all_laws.digest(found).splitlines() == [ABOUT, "", f"{head}; no attractor at a = 0.2", *rows]
-    found["sliding_attracts"][0, 2] = 1
+    assert branch_numbering.digest(dataset).splitlines() == [ABOUT, "", f"{head}; no attractor at a = 0.2", *rows]
+    dataset["sliding_attracts"][0, 2] = 1
     sliding = "uniform sliding, which has no stops and is not searched for, attracts at a = 0.2"
-    assert all_laws.digest(found).splitlines()[2:] == [f"{head}; {sliding}", *rows]
-    assert max(map(len, branch_lines(found, 80))) <= 80
+    assert branch_numbering.digest(dataset).splitlines()[2:] == [f"{head}; {sliding}", *rows]
+    assert max(map(len, branch_lines(dataset, 80))) <= 80
 
 
 def test_the_digest_of_a_law_without_attractors(one_law):
-    found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
-    found["branch"][...] = -1
-    lines = all_laws.digest(found).splitlines()
+    dataset = branch_numbering.merge([one_law("linearized")], [{0: 0, 1: 1}])
+    dataset["branch"][...] = -1
+    lines = branch_numbering.digest(dataset).splitlines()
     assert lines[2].startswith("linearized law: 0 branches at 3 values of a; ")
     assert lines[2].endswith("no attractor at a = 0.05, 0.1, 0.2")
     assert len(lines) == 3
 
 
 def test_the_largest_basin_fraction_is_taken_where_the_branch_exists(one_law):
-    found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
-    found["basin_fraction"][...] = found["basin_fraction"] * 0.0
-    assert list(branch_rows(found))[1].fraction == (0.0, 0.05)
-    found["branch"][0, 0] = [0, -1]
-    assert list(branch_rows(found))[1].fraction == (0.0, 0.1)
+    dataset = branch_numbering.merge([one_law("linearized")], [{0: 0, 1: 1}])
+    dataset["basin_fraction"][...] = dataset["basin_fraction"] * 0.0
+    assert list(branch_rows(dataset))[1].fraction == (0.0, 0.05)
+    dataset["branch"][0, 0] = [0, -1]
+    assert list(branch_rows(dataset))[1].fraction == (0.0, 0.1)
 
 
 def test_text_and_report_name_the_first_of_equal_basin_fractions(one_law):
     """0.1 + 0.2 is more than 0.3 in floating point."""
-    found = all_laws.merge([one_law("linearized")], [{0: 0, 1: 1}])
-    found["basin_fraction"][0] = np.array([[0.6, 0.3], [0.1, 0.2], [np.nan, np.nan]])
-    found["basin_count"][0] = np.array([[6, 3], [1, 2], [-1, -1]])
-    found["sample_count"][0] = 10
-    assert [f"{row.fraction[0]:.3f}" for row in branch_rows(found)] == ["0.600", "0.300"]
-    assert [row["fraction"] for row in branch_table(found)] == ["0.600 (a = 0.05)", "0.300 (a = 0.05)"]
+    dataset = branch_numbering.merge([one_law("linearized")], [{0: 0, 1: 1}])
+    dataset["basin_fraction"][0] = np.array([[0.6, 0.3], [0.1, 0.2], [np.nan, np.nan]])
+    dataset["basin_count"][0] = np.array([[6, 3], [1, 2], [-1, -1]])
+    dataset["sample_count"][0] = 10
+    assert [f"{row.fraction[0]:.3f}" for row in branch_rows(dataset)] == ["0.600", "0.300"]
+    assert [row["fraction"] for row in branch_table(dataset)] == ["0.600 (a = 0.05)", "0.300 (a = 0.05)"]
 
 
 def test_a_branch_at_inserted_values_has_its_own_number():
@@ -165,8 +165,8 @@ def named_branches(names):
 
 
 def test_names_are_determined_at_the_values_of_the_grid():
-    found = common_branch_names(
+    dataset = common_branch_names(
         named_branches({0: "synchronized", 3: "alternating (3)", 7: "mirror pair (7)"}), named_branches({3: "pair (3)"})
     )
-    assert found["branch_name"].values.tolist() == ["synchronized", "pair (3)", "mirror pair (7)"]
-    assert found["branch_name"].attrs == {"long_name": "what it is called"}
+    assert dataset["branch_name"].values.tolist() == ["synchronized", "pair (3)", "mirror pair (7)"]
+    assert dataset["branch_name"].attrs == {"long_name": "what it is called"}

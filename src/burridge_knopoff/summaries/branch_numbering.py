@@ -98,7 +98,7 @@ def branch_numbers(
         numbers.append(_number_remaining(renamed, part, numbers))
     # The synchronized branch may exist only between the values of the grid.
     order = {0: 0} | number_in_order(parts, numbers)
-    return [{own: order[number] for own, number in renamed.items()} for renamed in numbers]
+    return [{part_number: order[number] for part_number, number in renamed.items()} for renamed in numbers]
 
 
 def number_in_order(parts: Sequence[xarray.Dataset], numbers: Sequence[Mapping[int, int]]) -> dict[int, int]:
@@ -113,37 +113,37 @@ def number_in_order(parts: Sequence[xarray.Dataset], numbers: Sequence[Mapping[i
     values: Counter[int] = Counter()
     for law, (part, renamed) in enumerate(zip(parts, numbers, strict=True)):
         branch, distance = part["branch"].values, part["mean_distance"].values
-        for own, number in renamed.items():
-            slots = branch == own
-            there = np.flatnonzero(slots.any(axis=1))
-            if len(there):
-                values[number] = max(values[number], len(there))
-                first.setdefault(number, (law, int(there[0]), float(distance[there[0]][slots[there[0]]].min())))
+        for part_number, number in renamed.items():
+            slots = branch == part_number
+            indices = np.flatnonzero(slots.any(axis=1))
+            if len(indices):
+                values[number] = max(values[number], len(indices))
+                first.setdefault(number, (law, int(indices[0]), float(distance[indices[0]][slots[indices[0]]].min())))
     ranked = sorted(first, key=lambda number: (number != 0, values[number] < LASTING, *first[number], number))
     return {number: place for place, number in enumerate(ranked, start=0 if 0 in first else 1)}
 
 
 def _number_remaining(
-    known: Mapping[int, int], part: xarray.Dataset, numbers: Sequence[Mapping[int, int]]
+    common: Mapping[int, int], part: xarray.Dataset, numbers: Sequence[Mapping[int, int]]
 ) -> dict[int, int]:
     """Return the numbers of the branches of one law, with new numbers, above all in use, for branches without one.
 
-    known : {number of a branch: common number}; part : the attractors of that law
+    common : {number of a branch: common number}; part : the attractors of that law
     numbers : the same of all laws whose numbers are in use
     """
     following = max((0, *(n for taken in numbers for n in taken.values())))
-    others = sorted({int(n) for n in np.unique(part["branch"].values) if n >= 0} - known.keys())
-    return {**known, **{number: following + k for k, number in enumerate(others, start=1)}}
+    remaining = sorted({int(n) for n in np.unique(part["branch"].values) if n >= 0} - common.keys())
+    return {**common, **{number: following + k for k, number in enumerate(remaining, start=1)}}
 
 
 def _states(part: xarray.Dataset, model: Model) -> dict[int, dict[int, ChainState]]:
     """Return {branch: {index of a in the grid: a state on the branch}}; of mirror images, only one side is included."""
     states: dict[int, dict[int, ChainState]] = {}
     for k, slot in np.argwhere((part["branch"].values >= 0) & (part["side"].values >= 0)).tolist():
-        one = part.isel(a=k, attractor=slot)
-        velocity = one["velocity"].values
-        position = one["position"].values - model.at(one["a"].item()).sliding_offset
-        states.setdefault(one["branch"].item(), {})[k] = ChainState(position, velocity, velocity == 0.0)
+        attractor = part.isel(a=k, attractor=slot)
+        velocity = attractor["velocity"].values
+        position = attractor["position"].values - model.at(attractor["a"].item()).sliding_offset
+        states.setdefault(attractor["branch"].item(), {})[k] = ChainState(position, velocity, velocity == 0.0)
     return states
 
 
@@ -156,16 +156,16 @@ def number_intermediate_branches(
     parts : attractors of each law at all values of a, see `refined.one_law`
     """
     result: list[dict[int, int]] = []
-    for known, part in zip(numbers, parts, strict=True):
-        result.append(_number_remaining(known, part, [*numbers, *result]))
+    for common, part in zip(numbers, parts, strict=True):
+        result.append(_number_remaining(common, part, [*numbers, *result]))
     return result
 
 
 def common_branch_names(refined: xarray.Dataset, attractors: xarray.Dataset) -> xarray.Dataset:
     """Return the attractors at all values of a with the names that the branches have at the values of the grid."""
     names = branch_names(refined) | branch_names(attractors)
-    own = refined["branch_number"].values.tolist()
-    return refined.assign(branch_name=refined["branch_name"].copy(data=[names[number] for number in own]))
+    numbers = refined["branch_number"].values.tolist()
+    return refined.assign(branch_name=refined["branch_name"].copy(data=[names[number] for number in numbers]))
 
 
 def _renumber(branch: np.ndarray, renamed: Mapping[int, int]) -> np.ndarray:
