@@ -137,7 +137,7 @@ def _completion(path: Path, what: str = "points") -> list[str]:
 def _catalogues(path: Path) -> list[str]:
     import xarray
 
-    from burridge_knopoff.show.digests import empty_catalogues
+    from burridge_knopoff.summaries.catalogue import empty_catalogues
 
     with xarray.open_dataset(path) as summary:
         words = empty_catalogues(summary)

@@ -26,12 +26,12 @@ from burridge_knopoff.claims.verdict import (
     NOT_TESTABLE,
     NotTestableError,
     Verdict,
-    format_values,
     judge_interval,
     judge_value,
 )
 from burridge_knopoff.figures.description import picture_names
 from burridge_knopoff.model.initial import PAPER_STATES
+from burridge_knopoff.study.formatting import format_values
 from tests.claims.alterations import CASES, judge_claim
 from tests.claims.worlds import CONFIG, A, evidence, paper_world
 from tests.refused import refused

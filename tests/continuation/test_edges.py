@@ -144,5 +144,5 @@ def test_the_crisis_names_the_saddle(merging, tmp_path: Path):
     assert dataset["saddle_stops"].values.tolist() == [[1, 1, 1]]
     assert (
         "the attractor meets the saddle orbit of period 5.85325, stops 1 1 1 on its basin boundary"
-        in bifurcations.digest(dataset)
+        in bifurcations.listing(dataset)
     )

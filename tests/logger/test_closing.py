@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from burridge_knopoff.catalogue.slip_events import NO_EVENT
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
 from burridge_knopoff.motion.kind import MotionKind
-from burridge_knopoff.show.digests import NO_EVENT
 from burridge_knopoff.study.job_log import INTERRUPTED, SILENT
 from snakemake_logger_plugin_study.closing import closing_lines
 from snakemake_logger_plugin_study.run import DONE, FAILED, RUNNING, WAITING, Job, Run

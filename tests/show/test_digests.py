@@ -4,22 +4,30 @@ import numpy as np
 import pytest
 import xarray
 
+from burridge_knopoff.catalogue import slip_events
+from burridge_knopoff.catalogue.slip_events import NO_EVENT
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.variables import flag
 from burridge_knopoff.motion.kind import MotionKind
 from burridge_knopoff.running.status import STATUS_WORDS, Status
-from burridge_knopoff.show import digests, orbit_digests
-from burridge_knopoff.show.digests import (
-    NO_EVENT,
+from burridge_knopoff.show.formatting import wrap_lines
+from burridge_knopoff.summaries import (
+    bifurcation_diagram,
     catalogue,
-    empty_catalogues,
+    chains,
+    equilibrium,
     lyapunov,
     mean_distance,
-    slip_events,
-    values_where,
+    orbits,
+    phases,
+    refined,
+    rotation,
+    solvers,
+    stick_slip,
+    two_blocks,
 )
-from burridge_knopoff.show.formatting import wrap_lines
-from burridge_knopoff.summaries import bifurcation_diagram, orbits, rotation, solvers, two_blocks
+from burridge_knopoff.summaries.catalogue import empty_catalogues
+from burridge_knopoff.summaries.sentences import values_where
 from burridge_knopoff.summaries.text_table import table
 
 A = np.array([0.0, 0.05, 0.1, 0.15])
@@ -53,7 +61,7 @@ def test_ranges_of_a(holds, words):
 def test_where_each_state_is_synchronized():
     synchronized = np.array([[[1, 1, 0, 0], [0, 0, 0, 0]]], "i1"), flag("i1", {0: "no", 1: "yes"})
     distance = np.array([[[0, 1e-9, 0.1, 0.15], [0.2, 0.1, np.nan, 0.12]]])
-    assert mean_distance(of_runs(synchronized=synchronized, mean_distance=[distance])).splitlines() == [
+    assert mean_distance.digest(of_runs(synchronized=synchronized, mean_distance=[distance])).splitlines() == [
         "linearized, minus: synchronized up to a = 0.05; largest <J> 0.15 at a = 0.15",
         "linearized, plus: synchronized at no a; largest <J> 0.2 at a = 0",
     ]
@@ -64,7 +72,7 @@ def test_where_each_state_is_chaotic():
     exponents = np.array([[[0.0, -np.inf, 0.001, 0.05], [np.nan] * 4]])
     data = of_runs(run_kind=kinds, whole=[exponents])
     data["lyapunov_exponent"] = data["whole"].expand_dims(exponent=1, axis=-1)
-    assert lyapunov(data).splitlines() == [
+    assert lyapunov.digest(data).splitlines() == [
         "linearized, minus: chaotic at 1 of 4 values of a, first at a = 0.15; largest exponent 0.05 at a = 0.15",
         "linearized, plus: chaotic at 1 of 4 values of a, first at a = 0.1; undetermined at 1 value of a from the run "
         "alone (agreement.nc has the kind of the attractor)",
@@ -79,7 +87,7 @@ def test_catalogues_without_events():
     assert empty_catalogues(data.isel(a=[0, 1])) == ""
     for events, state, words in ((0, 0, f"no slip event: {NO_EVENT}"), (0, 3, ""), (2, 0, "")):
         dataset = xarray.Dataset({"status": ((), np.int8(state), STATUS_FLAG), "time": ("event", np.zeros(events))})
-        assert slip_events(dataset) == words
+        assert slip_events.digest(dataset) == words
     assert Status.COMPLETED == 0
 
 
@@ -88,7 +96,7 @@ def test_slip_events_and_their_slopes():
     values = {"event_count": [[7, 1, 0], [0, 0, 0]], "slope": [[0.5, 0.25, np.nan], [np.nan] * 3]}
     variables = {name: (("law", "a"), np.array(value)) for name, value in values.items()}
     data = xarray.Dataset({"status": status, **variables}, {"law": ["x", "y"], "a": [1.0, 2.0, 3.0]})
-    assert catalogue(data).splitlines() == [
+    assert catalogue.digest(data).splitlines() == [
         "x: 8 slip events at 3 values of a; slope b of the magnitudes 0.25 to 0.5 (rates decrease as exp(-b "
         "magnitude)); 1 of 3 runs did not complete",
         "y: 0 slip events at 3 values of a",
@@ -138,7 +146,7 @@ def test_where_all_blocks_stop():
     for name, values in (("stop_rate", rate), ("stick_fraction", stuck)):
         data[name] = ("law", "initial", "a", "block"), np.array(values)
     data["block"] = [1, 2]
-    assert digests.stick_slip(data).splitlines() == [
+    assert stick_slip.digest(data).splitlines() == [
         "linearized, minus: every block stops at a = 0.05, 0.1; the largest fraction of time in which a block sticks "
         "is 0.25 (block 1 at a = 0.1); the velocities of the end blocks are negatively correlated at 1 of 4 values of "
         "a; 1 of 4 runs did not complete",
@@ -158,7 +166,7 @@ def test_how_far_the_solvers_differ():
         end_time=[[[[100.0, 100.0]], [[nan, nan]], [[100.0, 50.0]]]],
         event_order_time=[[[[100.0, 100.0]], [[nan, nan]], [[70.0, 50.0]]]],
     ).assign_attrs(solver_linearized="series")
-    assert digests.solvers(data) == (
+    assert solvers.digest(data) == (
         "linearized, rk4 compared with series: <J> differs by at most 0.0002 +- 0.0001 (minus, a = 0.02); the order of "
         "events is the same in 1 of 2 runs and in the others at least until tau = 70; 1 of 2 runs did not complete"
     )
@@ -173,7 +181,7 @@ def test_the_range_of_section_points():
         crossing_direction=[1, -1, 1, -1],
         crossing_count=[3, 1],
     )
-    assert digests.bifurcation_diagram(data).splitlines() == [
+    assert bifurcation_diagram.digest(data).splitlines() == [
         "l, minus: W' at upward crossings is 0.2 to 0.25, largest at a = 0.1",
         "l, plus: W never crosses 0 upward",
     ]
@@ -194,11 +202,11 @@ def test_kinds_of_motion_over_several_parameters():
         axes,
     )
     counts = "linearized, minus: 4 points: undetermined 1, synchronized 1, periodic 2"
-    assert digests.lyapunov(data) == f"{counts}; largest exponent 0.1 at a = 0.1, v = 0.3"
-    assert digests.mean_distance(data) == (
+    assert lyapunov.digest(data) == f"{counts}; largest exponent 0.1 at a = 0.1, v = 0.3"
+    assert mean_distance.digest(data) == (
         "linearized, minus: synchronized at 1 of 4 points; largest <J> 0.2 at a = 0.2, v = 0.1"
     )
-    assert digests.lyapunov(data.isel(exponent=slice(0))) == counts
+    assert lyapunov.digest(data.isel(exponent=slice(0))) == counts
 
 
 def test_where_uniform_sliding_is_unstable():
@@ -206,7 +214,7 @@ def test_where_uniform_sliding_is_unstable():
     eigenvalue = np.stack([growth, growth - 0.01], axis=-1)[..., None] * [1.0, 0.0]
     axes = {"law": ["x", "y", "z"], "a": A, "mode": [1, 2], "part": ["real", "imaginary"]}
     data = xarray.Dataset({"eigenvalue": (tuple(axes), eigenvalue)}, axes)
-    assert orbit_digests.equilibrium(data).splitlines() == [
+    assert equilibrium.digest(data).splitlines() == [
         "x: perturbations of uniform sliding grow at a = 0.05 to 0.15; the largest growth rate is 0.06 at a = 0.15",
         "y: perturbations of uniform sliding grow at no a",
         "z: uniform sliding was not examined",
@@ -224,7 +232,7 @@ def test_where_the_synchronized_orbit_loses_its_stability():
         bifurcation_kind=np.array([4, -1, -1], "i1"),
         bifurcation_side=np.array([1, -1, -1], "i1"),
     )
-    assert orbit_digests.orbits(data).splitlines() == [
+    assert orbits.digest(data).splitlines() == [
         "x: the synchronized orbit loses its transverse stability at a = 0.08 (supercritical pitchfork); block 2 "
         "begins to stick at a = 0.03",
         "y: no a was found at which the synchronized orbit loses its transverse stability",
@@ -241,7 +249,7 @@ def test_how_often_a_branch_is_locked():
         locked=np.array([[1, 1, 0], [-1, -1, -1]], "i1"),
         rotation_number=[[0.64, 0.65, nan], [nan] * 3],
     ).assign_attrs(branch=1)
-    assert orbit_digests.rotation(data).splitlines() == [
+    assert rotation.digest(data).splitlines() == [
         "x: branch 1 is locked (periodic) at 1 of 2 values of a in the grid at which it is periodic or "
         "quasiperiodic; rotation number 0.64 to 0.65",
         "y: branch 1 is neither periodic nor quasiperiodic at any a of the grid",
@@ -252,7 +260,7 @@ def test_where_the_laws_agree_for_two_blocks():
     agrees = np.array([[[[1, 1, 0, -1], [1, 0, 0, 1]]]], "i1")
     axes = {"chain": ["both_pulled"], "other_law": ["y"], "state": [1, 2], "a": A, "law": ["x", "y"]}
     data = of_module(two_blocks, axes, agrees=agrees)
-    assert orbit_digests.two_blocks(data) == (
+    assert two_blocks.digest(data) == (
         "both pulled, y law compared with the x law: from all 2 initial states they agree up to a = 0; from some they "
         "disagree at a = 0.05, 0.1; undetermined at a = 0.15"
     )
@@ -262,10 +270,10 @@ def test_which_initial_phases_synchronize():
     axes = {"law": ["x"], "a": [0.05, 0.1]}
     branch = np.array([[[0, 0, 0, 1], [0, 1, 1, -1]]])
     data = xarray.Dataset({"branch": (("law", "a", "state"), branch)}, axes)
-    assert orbit_digests.phases(data) == (
+    assert phases.digest(data) == (
         "x: 50.0 % of 8 initial states synchronize, from 25.0 % at a = 0.1 to 75.0 % at a = 0.05; 1 undetermined"
     )
-    assert orbit_digests.phases(data.isel(a=[0])) == "x: 75.0 % of 4 initial states synchronize; 0 undetermined"
+    assert phases.digest(data.isel(a=[0])) == "x: 75.0 % of 4 initial states synchronize; 0 undetermined"
 
 
 def test_values_of_a_inserted_where_attractors_change():
@@ -273,7 +281,7 @@ def test_values_of_a_inserted_where_attractors_change():
     branch = np.array([[[0, 1], [0, -1], [0, -1]], [[0, -1]] * 3])
     variables = {"a": (("law", "value"), a), "in_grid": (("law", "value"), in_grid)}
     data = xarray.Dataset({**variables, "branch": (("law", "value", "attractor"), branch)}, {"law": ["x", "y"]})
-    assert orbit_digests.refined(data).splitlines() == [
+    assert refined.digest(data).splitlines() == [
         "x: 2 branches of attractors at 3 values of a, 1 of them inserted where the attractors change",
         "y: 1 branch of attractors at 2 values of a, 0 of them inserted where the attractors change",
     ]
@@ -283,4 +291,4 @@ def test_chains_that_synchronize():
     fraction = ("blocks", "law", "a"), np.array([[[1.0, 1.0, 0.5, 0.0]]])
     data = xarray.Dataset({"synchronized_fraction": fraction}, {"blocks": [5], "law": ["x"], "a": A})
     words = "all sampled states synchronize up to a = 0.05; none is known to synchronize at a = 0.15"
-    assert orbit_digests.chains(data) == f"x, 5 blocks: {words}"
+    assert chains.digest(data) == f"x, 5 blocks: {words}"

@@ -26,7 +26,7 @@ from burridge_knopoff.model.initial import PAPER_STATES
 from burridge_knopoff.running.runner import Runner
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries import bifurcations
-from burridge_knopoff.summaries.bifurcations import _branches_of_segments, _round_digits, digest, merge, one_law
+from burridge_knopoff.summaries.bifurcations import _branches_of_segments, _round_digits, listing, merge, one_law
 
 # Not evenly spaced. Synchrony is lost between the second and third value; its successor becomes chaotic.
 A = [0.05, 0.08, 0.0875, 0.1, 0.13]
@@ -302,7 +302,7 @@ def test_bifurcations_in_words(dataset):
     }
     for name, value in values.items():
         rows[name] = dataset[name].dims, np.array(value)
-    assert digest(rows.assign_attrs(laws="linearized mine")).splitlines() == [
+    assert listing(rows.assign_attrs(laws="linearized mine")).splitlines() == [
         "linearized, a = 0.0869729047 +/- 1e-10: pitchfork; branch 0 ends, synchronized; at larger a it leads to "
         "branch 3; period 5.69123, stops 1 1 1, beyond it 1 1 1",
         "linearized, a = 0.1 +/- 1e-09: Neimark–Sacker; branch 3 changes from periodic to quasiperiodic; period 5.7, "
@@ -316,7 +316,7 @@ def test_bifurcations_in_words(dataset):
 
 def test_no_bifurcation_in_words(dataset):
     """An empty text could not be distinguished from a truncated one."""
-    assert digest(dataset.isel(bifurcation=[])) == "No bifurcation was found between the values of a.\n"
+    assert listing(dataset.isel(bifurcation=[])) == "No bifurcation was found between the values of a.\n"
 
 
 def test_a_segment_belongs_to_the_branch_of_most_of_its_attractors():

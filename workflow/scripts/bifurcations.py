@@ -4,8 +4,8 @@ from burridge_knopoff.job import Job
 
 job = Job(snakemake)
 
-from burridge_knopoff.summaries.bifurcations import digest, merge_laws
+from burridge_knopoff.summaries.bifurcations import listing, merge_laws
 
 edges = next(iter(job.summaries("edges")), None)
 bifurcations = merge_laws(job.summaries("bifurcations"), edges)
-job.write(bifurcations, digest(bifurcations))
+job.write(bifurcations, listing(bifurcations))

@@ -137,3 +137,12 @@ def known_attractors(attractors: xarray.Dataset, returns: xarray.Dataset, model:
         symmetry = Symmetry(one["symmetry"].item())
         result.append(Attractor(model, motion, symmetry, partner, slow=bool(one["slow"].item()), **fixed))
     return KnownAttractors(model, result, branch, side)
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return of how many attractors the section returns are stored."""
+    law, a = data.attrs["law"], data["a"].values
+    return (
+        f"{law}: section returns of {data.sizes['attractor']} attractors at {len(np.unique(a))} values of a, for "
+        "labelling states without another search"
+    )

@@ -10,9 +10,12 @@ from burridge_knopoff.dataset.point import STATUS_FLAG, model_attributes
 from burridge_knopoff.dataset.variables import Variable, global_attributes, xarray_variables
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
+from burridge_knopoff.running.status import Status
 
 if TYPE_CHECKING:
     import xarray
+
+NO_EVENT = "neighbours slip without end (try a slower driver), or the window is too short"
 
 _V = Variable
 _EVENT = ("event",)
@@ -104,3 +107,9 @@ def catalogue_of_run(
     if solver == "rk4":
         about["step"] = step
     return catalogue_dataset(events, model, begin, end, about)
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return why the catalogue of one completed run is empty; empty if it is not."""
+    is_empty = not data.sizes["event"] and data["status"].item() == Status.COMPLETED
+    return f"no slip event: {NO_EVENT}" if is_empty else ""

@@ -24,11 +24,11 @@ from burridge_knopoff.claims.verdict import (
     Verdict,
     describe_where,
     format_shares,
-    format_values,
     judge_shares,
     judge_worst_share,
     share_is_decided,
 )
+from burridge_knopoff.study.formatting import format_values
 
 
 @dataclass(frozen=True)

@@ -47,9 +47,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Run the model, and print the number of events, their range of sizes and the slope."""
-    from burridge_knopoff.catalogue.slip_events import catalogue_of_run
+    from burridge_knopoff.catalogue.slip_events import catalogue_of_run, digest
     from burridge_knopoff.dataset.summary import write_summary
-    from burridge_knopoff.show.digests import slip_events
     from burridge_knopoff.summaries.catalogue import summarize
 
     state = state_of(options) or PAPER_STATES["minus"]
@@ -69,7 +68,7 @@ def run(options: argparse.Namespace) -> int:
         where = f"{fitted} events from {low:g} to {high:g}"
         fit = f"{to_ascii(with_error(slope, error))}, {format_p_value(p_value)}, of" if slope == slope else "none:"
         print(f"slope       {fit} {where}")
-    if reason := slip_events(events):
+    if reason := digest(events):
         print(reason)
     if options.out:
         write_summary(events.assign_attrs(history=command_of(options)), options.out)

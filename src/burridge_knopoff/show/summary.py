@@ -5,17 +5,16 @@ from __future__ import annotations
 import ast
 from collections.abc import Iterator
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import xarray
 
+from burridge_knopoff import summaries
 from burridge_knopoff.provenance.sources import PACKAGE
 from burridge_knopoff.show.attractors import attractor_table, branches
-from burridge_knopoff.show.digests import DIGESTS
 from burridge_knopoff.show.formatting import describe_values, wrap_lines
-from burridge_knopoff.show.orbit_digests import DIGESTS as ORBIT_DIGESTS
-from burridge_knopoff.show.orbit_digests import basin_part
 from burridge_knopoff.show.result import Result
 from burridge_knopoff.summaries.text_table import UNLIMITED, table
 
@@ -72,9 +71,9 @@ def digest(result: Result, width: int = UNLIMITED) -> list[str]:
         if result.name == "attractors":
             is_single = data.sizes["a"] == data.sizes["law"] == 1 and "branch_name" in data
             return attractor_table(data, {}, width) if is_single else branches(data, width)
-        digests = {**DIGESTS, **ORBIT_DIGESTS, **({} if "map" in data.dims else {"basins": basin_part})}
-        text = digests.get(result.name) or import_module(data.attrs["source_module"]).digest
-        return wrap_lines(text(data).rstrip().splitlines(), width)
+        own = f"{summaries.__name__}.{result.name}"
+        module = import_module(own if find_spec(own) else data.attrs["source_module"])
+        return wrap_lines(module.digest(data).rstrip().splitlines(), width)
     except (ImportError, AttributeError, KeyError, ValueError, IndexError):
         # Made by other sources, or only a part of the summary.
         return []

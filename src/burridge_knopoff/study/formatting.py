@@ -78,3 +78,28 @@ def span(low: str, high: str) -> str:
 def friction_words(laws: Iterable[Law]) -> str:
     """Describe laws by their names, formulas and parameters."""
     return "; ".join(f"{law.name}: {law.words}" for law in laws)
+
+
+# More than this many spans of a are counted instead of listed.
+MOST_SPANS = 8
+
+
+def format_values(a: np.ndarray, chosen: np.ndarray) -> str:
+    """Return the chosen values of a grid as text, joining neighbours: «at a = 0.0025 to 0.02, 0.0475».
+
+    More than MOST_SPANS spans are counted: «at 44 of the 80 values of a from 0.1025 to 0.3».
+
+    a : ascending, shape (n,)
+    chosen : mask, shape (n,)
+    """
+    parts = []
+    index = np.flatnonzero(chosen)
+    for run in np.split(index, np.flatnonzero(np.diff(index) > 1) + 1) if len(index) else []:
+        first, last = a[run[0]], a[run[-1]]
+        parts.append(
+            f"{first:g}" if len(run) == 1 else f"{first:g}, {last:g}" if len(run) == 2 else f"{first:g} to {last:g}"
+        )
+    if len(parts) > MOST_SPANS:
+        between = index[-1] - index[0] + 1
+        return f"at {len(index)} of the {between} values of a from {a[index[0]]:g} to {a[index[-1]]:g}"
+    return f"at a = {', '.join(parts)}"

@@ -247,7 +247,12 @@ def merge(
 
 
 def digest(dataset: xarray.Dataset) -> str:
-    """Return a line for each map: the fractions of the basins and the uncertainty exponent of their boundary."""
+    """Return a line for each map: the fractions of the basins and the uncertainty exponent of their boundary.
+
+    For a part of a map, see `_digest_of_part`.
+    """
+    if "map" not in dataset.dims:
+        return _digest_of_part(dataset)
     lines = []
     for number, row in enumerate(map_rows(dataset)):
         basin_map = dataset.isel(map=number)
@@ -259,6 +264,20 @@ def digest(dataset: xarray.Dataset) -> str:
         decided = f"; mean decision time {np.nanmean(times):.0f}" if np.isfinite(times).any() else ""
         lines.append(f"{row.law}, a = {row.a:g}: {', '.join(shares)}; {exponent_text(basin_map)}{decided}")
     return "\n".join(lines) + "\n"
+
+
+def _digest_of_part(data: xarray.Dataset) -> str:
+    """Return the result of a part of a map: the shares of the branches in a tile, or the exponent from pairs."""
+    if "branch" not in data:
+        return f"{data.attrs['law']}, a = {data.attrs['a']:g}: {exponent_text(data)}"
+    branches, counts = np.unique(data["branch"].values, return_counts=True)
+    shares = [
+        f"{'undetermined' if branch < 0 else f'branch {branch}'} {100.0 * count / counts.sum():.2f} %"
+        for branch, count in zip(branches.tolist(), counts.tolist(), strict=True)
+    ]
+    return (
+        f"{data.attrs['law']}, a = {data.attrs['a']:g}: states of this tile by the branch reached: {', '.join(shares)}"
+    )
 
 
 def exponent_text(basin_map: xarray.Dataset) -> str:

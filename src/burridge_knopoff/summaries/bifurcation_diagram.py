@@ -12,6 +12,7 @@ import xarray
 
 from burridge_knopoff.dataset.summary import AXES, axes, summary
 from burridge_knopoff.dataset.variables import DIRECTION, Variable
+from burridge_knopoff.study.formatting import span
 from burridge_knopoff.summaries.points import Grid, read_point
 
 #: A slower crossing is a rounding error. In uniform sliding W = W' = 0 within 1e-12 at v = 5; the slowest crossing of
@@ -67,3 +68,16 @@ def section_points(dataset: xarray.Dataset, law: str, initial: str, direction: i
     chosen = np.repeat(chosen, dataset["crossing_count"].values)
     chosen &= dataset["crossing_direction"].values == direction
     return a[chosen], dataset["crossing_velocity"].values[chosen]
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return the range of W' at upward crossings of the section for each law and initial state."""
+    lines = []
+    for law, initial in dict.fromkeys(zip(data["law"].values, data["initial"].values, strict=True)):
+        a, velocity = section_points(data, law, initial, 1)
+        words = "W never crosses 0 upward"
+        if len(a):
+            ends = span(f"{velocity.min():.4g}", f"{velocity.max():.4g}")
+            words = f"W' at upward crossings is {ends}, largest at a = {a[velocity.argmax()]:g}"
+        lines.append(f"{law}, {initial}: {words}")
+    return "\n".join(lines)

@@ -28,9 +28,13 @@ from burridge_knopoff.periodic_orbits.bifurcations import Bifurcation
 from burridge_knopoff.periodic_orbits.pseudo_arclength import BranchOrbit
 from burridge_knopoff.provenance.keys import digest_of
 from burridge_knopoff.provenance.sources import source_fingerprint
+from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.grid import values_of
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.edges import saddle_at_crisis
+
+#: Largest number of bifurcations that are listed one by one.
+MOST_LISTED = 20
 
 PARTS = ("real", "imaginary")
 _AT, _ORBIT = ("bifurcation",), ("orbit",)
@@ -235,7 +239,7 @@ def merge(parts: Sequence[xarray.Dataset]) -> xarray.Dataset:
     return _dataset([part.attrs["laws"] for part in parts], values, parts[0]["block"].variable, head)
 
 
-def digest(dataset: xarray.Dataset) -> str:
+def listing(dataset: xarray.Dataset) -> str:
     """Return a line for each bifurcation: its kind, the change of the branch, and the stops on both sides."""
     columns = {name: dataset[name].values for name in ("law", *BIFURCATIONS)}
     lines = []
@@ -322,3 +326,16 @@ def _round_digits(values: np.ndarray, digits: int) -> np.ndarray:
     # Near 0 the number of decimal places is limited as well. Adding 0 turns -0 into 0.
     rounded = [float(f"{round(value, PLACES) + 0.0:.{digits - 1}e}") for value in values.ravel().tolist()]
     return np.reshape(rounded, values.shape).astype(float)
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return the number of bifurcations of each kind under each law, and all of them if they are few."""
+    lines = []
+    for law in data.attrs["laws"].split():
+        mask = data["law"].values == law
+        kinds = Counter(data["kind"].values[mask].tolist())
+        counts = ", ".join(f"{BifurcationKind(kind).words} {count}" for kind, count in kinds.most_common())
+        lines.append(f"{law}: {format_count(int(mask.sum()), 'bifurcation')}{f': {counts}' if counts else ''}")
+    if data.sizes["bifurcation"] > MOST_LISTED:
+        return "\n".join([*lines, "bifurcations.txt, next to the summary of all laws, has a line for each"])
+    return "\n".join([*lines, "", listing(data)])

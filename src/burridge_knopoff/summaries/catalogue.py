@@ -14,11 +14,14 @@ import numpy as np
 import xarray
 
 from burridge_knopoff.catalogue.distribution import EDGES, WIDTH, covered_blocks, fit_range, recurrence
+from burridge_knopoff.catalogue.slip_events import NO_EVENT
 from burridge_knopoff.catalogue.slope import fit_slope
 from burridge_knopoff.dataset.point import STATUS_FLAG
 from burridge_knopoff.dataset.summary import axes, open_summary, summary
 from burridge_knopoff.dataset.variables import Variable
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.study.formatting import format_count, span
+from burridge_knopoff.summaries.sentences import incomplete, lines_of
 
 TITLE = "Slip events: rates, slopes, extents and intervals"
 
@@ -199,3 +202,24 @@ def _slope(magnitude: np.ndarray, fitted: tuple[float, float], completed: bool) 
         fit |= vars(fit_slope(magnitude, low, high)) if completed else {}
     names = {"slope": "b", **{f"slope_{name}": name for name in ("error", "low", "high", "count", "p_value")}}
     return {name: fit[key] for name, key in names.items()}
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return the number of slip events under each law, the range of their slopes, and how many catalogues are empty."""
+
+    def sentence(part: xarray.Dataset) -> str:
+        events = format_count(int(np.maximum(part["event_count"].values, 0).sum()), "slip event")
+        words = f"{events} at {format_count(part.sizes['a'], 'value')} of a"
+        slope = part["slope"].values
+        if np.isfinite(slope).any():
+            ends = span(f"{np.nanmin(slope):.3g}", f"{np.nanmax(slope):.3g}")
+            words += f"; slope b of the magnitudes {ends} (rates decrease as exp(-b magnitude))"
+        return "; ".join([words, *incomplete(part["status"].values == Status.COMPLETED)])
+
+    return "\n".join(filter(None, [lines_of(data, ["law"], sentence), empty_catalogues(data)]))
+
+
+def empty_catalogues(data: xarray.Dataset) -> str:
+    """Return at how many values of a catalogues of completed runs are empty, and why; empty if none is."""
+    is_empty = (data["event_count"].values == 0) & (data["status"].values == Status.COMPLETED)
+    return f"no slip event at {is_empty.sum()} of {is_empty.size} values: {NO_EVENT}" if is_empty.any() else ""

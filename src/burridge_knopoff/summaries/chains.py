@@ -25,6 +25,7 @@ from burridge_knopoff.motion.chain_synchronization import (
 )
 from burridge_knopoff.study.formatting import friction_words
 from burridge_knopoff.study.model import models_of
+from burridge_knopoff.summaries.sentences import values_where
 
 _POINT = ("law", "a")
 _OWN_ATTRIBUTES = ("blocks", *global_attributes("", {}, module=__name__))
@@ -157,3 +158,14 @@ def _fractions(chains: xarray.Dataset) -> dict[str, xarray.DataArray]:
         "partial_fraction": partial.mean("state"),
         "mean_mirror_distance": chains["mean_distance"].where(~synchronized, 0.0).mean("state", skipna=False),
     }
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return where all sampled states of a chain synchronize, and where none is known to, for each number of blocks."""
+    lines, a = [], data["a"].values
+    for law in data["law"].values:
+        for blocks in data["blocks"].values:
+            share = data["synchronized_fraction"].sel(law=law, blocks=blocks).values
+            words = f"all sampled states synchronize {values_where(share == 1.0, a)}; none is known to synchronize "
+            lines.append(f"{law}, {blocks} blocks: {words}{values_where(share == 0.0, a)}")
+    return "\n".join(lines)

@@ -23,6 +23,10 @@ from burridge_knopoff.laws.blend import mirror_law
 from burridge_knopoff.model.initial import InitialState
 from burridge_knopoff.model.model import Model
 from burridge_knopoff.running.runner import Runner
+from burridge_knopoff.summaries.sentences import lines_of, values_where
+
+#: Growth rates up to this one are rounding errors.
+ROUNDING = 1e-10
 
 #: Time for which uniform sliding is simulated: a few periods of the slowest mode of the paper's chain.
 DURATION = 20.0
@@ -183,3 +187,17 @@ def simulate_sliding(model: Model, position: np.ndarray) -> tuple[float, float]:
 def _round(value: float) -> float:
     """Return a number rounded to the digits on which all machines agree."""
     return float(f"{value:.{DIGITS - 1}e}")
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return where perturbations of uniform sliding grow, and their largest growth rate."""
+
+    def sentence(part: xarray.Dataset) -> str:
+        a, growth = part["a"].values, part["eigenvalue"].sel(part="real").max("mode", skipna=False).values
+        if np.isnan(growth).all():
+            return "uniform sliding was not examined"
+        where = values_where(growth > ROUNDING, a)
+        largest = f"; the largest growth rate is {np.nanmax(growth):.4g} at a = {a[np.nanargmax(growth)]:g}"
+        return f"perturbations of uniform sliding grow {where}{largest * bool((growth > ROUNDING).any())}"
+
+    return lines_of(data, ["law"], sentence)

@@ -5,6 +5,7 @@ The kind follows from the exponents, the repetition of the state, and ⟨J⟩.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import partial
 
 import numpy as np
@@ -13,6 +14,7 @@ import xarray
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import PERIOD, YES_OR_NO, Variable, flag
 from burridge_knopoff.motion.kind import (
+    CHAOS,
     Motion,
     MotionKind,
     is_zero_exponent,
@@ -22,8 +24,13 @@ from burridge_knopoff.motion.kind import (
 from burridge_knopoff.motion.period import Repetition
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.status import Status
+from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries import runs as all_runs
 from burridge_knopoff.summaries.runs import RUN
+from burridge_knopoff.summaries.sentences import RUN as LINE
+from burridge_knopoff.summaries.sentences import largest, lines_of
+
+_UNCLEAR = "undetermined at {} of a from the run alone (agreement.nc has the kind of the attractor)"
 
 _OF_RUNS = ("lyapunov_exponent", "lyapunov_error", "lyapunov_infinite_count", "mean_distance", "status")
 #: The variables that follow from the kind of motion.
@@ -105,3 +112,31 @@ def _motion_of_run(
         motion = motion_of_repetition(repetition, distance, exponent, error, scaled)
     zeros = int(np.count_nonzero(is_zero_exponent(exponent, error, scaled)))
     return motion.kind, motion.unstable, motion.section_period, motion.period, zeros
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return where the runs of each law and initial state are chaotic or undetermined, and the largest exponent.
+
+    Over several parameters all kinds of motion are counted.
+    """
+
+    def sentence(part: xarray.Dataset) -> str:
+        kind = part["run_kind"]
+        top = largest("exponent", part["lyapunov_exponent"].max("exponent")) if part.sizes["exponent"] else []
+        words = _chaotic_values(kind) if kind.ndim == 1 else [_kind_counts(kind.values)]
+        return "; ".join([*words, *top])
+
+    return lines_of(data, LINE, sentence)
+
+
+def _chaotic_values(kind: xarray.DataArray) -> Iterator[str]:
+    is_chaotic = kind.isin(CHAOS).values
+    first = f", first at a = {kind['a'].values[is_chaotic.argmax()]:g}" if is_chaotic.any() else ""
+    yield f"chaotic at {is_chaotic.sum()} of {kind.size} values of a{first}"
+    if unclear := int((kind == MotionKind.UNDETERMINED).sum()):
+        yield _UNCLEAR.format(format_count(unclear, "value"))
+
+
+def _kind_counts(kinds: np.ndarray) -> str:
+    counts = [f"{kind.words} {count}" for kind in MotionKind if (count := np.count_nonzero(kinds == kind))]
+    return f"{format_count(kinds.size, 'point')}: {', '.join(counts)}"

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import xarray
 
+from burridge_knopoff.dataset.decoding import decode_flags
 from burridge_knopoff.dataset.summary import summary
 from burridge_knopoff.dataset.variables import YES_OR_NO, Variable
+from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.summaries import runs as all_runs
 from burridge_knopoff.summaries.runs import RUN
+from burridge_knopoff.summaries.sentences import RUN as LINE
+from burridge_knopoff.summaries.sentences import largest, lines_of, values_where
 
 SYNCHRONIZED = Variable(RUN, "i1", "synchronized: whether <J> is below the threshold", YES_OR_NO)
 _OF_RUNS = (
@@ -41,3 +46,16 @@ def summarize(runs: xarray.Dataset, synchronization_threshold: float) -> xarray.
         {"history": "snakemake, from runs.nc", "synchronization_threshold": synchronization_threshold},
         module=__name__,
     )
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return where each law and initial state is synchronized, and its largest ⟨J⟩."""
+
+    def sentence(part: xarray.Dataset) -> str:
+        is_synchronized = decode_flags(part["synchronized"]).values == "yes"
+        where = f"at {np.count_nonzero(is_synchronized)} of {format_count(is_synchronized.size, 'point')}"
+        if is_synchronized.ndim == 1:
+            where = values_where(is_synchronized, part["a"].values)
+        return "; ".join([f"synchronized {where}", *largest("<J>", part["mean_distance"])])
+
+    return lines_of(data, LINE, sentence)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import xarray
 
+from burridge_knopoff.dataset.decoding import decode_flags
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.laws import Law, law_of
@@ -30,6 +31,7 @@ from burridge_knopoff.periodic_orbits.synchronized_bifurcations import (
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.amplitude import fit_power_law, sweep
 from burridge_knopoff.summaries.orbit_flags import BifurcationSide, OrbitStatus
+from burridge_knopoff.summaries.sentences import lines_of
 
 BLOCKS = 3
 MODES = ("transverse", "flow", "symmetric_1", "symmetric_2", "stick_1", "stick_2")
@@ -292,3 +294,23 @@ def _compare(
 def effective_a(model: Model, a: float) -> float:
     """Return minus the slope of a model's law, at this a, at the velocity of the driver; NaN for NaN."""
     return a if np.isnan(a) else -float(model.law.at(float(a)).slope(model.v))
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return where the synchronized orbit loses its transverse stability, and by which bifurcation."""
+
+    def sentence(part: xarray.Dataset) -> str:
+        if (part["status"].values == OrbitStatus.NOT_THREE_BLOCKS).any():
+            return "not computed, as the chain has not three blocks"
+        critical, grazing = part["critical_a"].item(), part["grazing_a"].item()
+        words = ["no a was found at which the synchronized orbit loses its transverse stability"]
+        if np.isfinite(critical):
+            kind = BifurcationKind(part["bifurcation_kind"].item())
+            side = decode_flags(part["bifurcation_side"]).item()
+            how = f"{side} {kind.words}" if side != "undetermined" else kind.words
+            words = [f"the synchronized orbit loses its transverse stability at a = {critical:.10g} ({how})"]
+        if np.isfinite(grazing):
+            words.append(f"block 2 begins to stick at a = {grazing:.10g}")
+        return "; ".join(words)
+
+    return lines_of(data, ["law"], sentence)

@@ -24,6 +24,7 @@ from burridge_knopoff.model.sampling import fraction_interval
 from burridge_knopoff.running.processes import parallel_map
 from burridge_knopoff.study.model import model_of
 from burridge_knopoff.summaries.attractor_observables import follow_attractor
+from burridge_knopoff.summaries.sentences import lines_of
 
 TITLE = "Initial phases of the blocks"
 
@@ -181,3 +182,20 @@ def _intervals(hits: np.ndarray, count: int) -> np.ndarray:
     """Return fractions and the ends of their Wilson intervals, shape (3, *hits.shape)."""
     intervals = [fraction_interval(int(number), count) for number in hits.ravel()]
     return np.reshape(np.transpose(intervals), (3, *hits.shape))
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return the fraction of the initial phases that lead to synchrony, and the a where it is smallest and largest."""
+
+    def sentence(part: xarray.Dataset) -> str:
+        a = part["a"].values
+        branch = part["branch"].transpose("a", ...).values.reshape(len(a), -1)
+        share = (branch == 0).mean(axis=1)
+        words = f"{100.0 * (branch == 0).mean():.1f} % of {branch.size} initial states synchronize"
+        if share.min() < share.max():
+            low, high = share.argmin(), share.argmax()
+            words += f", from {100.0 * share[low]:.1f} % at a = {a[low]:g} to {100.0 * share[high]:.1f} % at a = "
+            words += f"{a[high]:g}"
+        return f"{words}; {np.count_nonzero(branch < 0)} undetermined"
+
+    return lines_of(data, ["law"], sentence)

@@ -21,6 +21,7 @@ from burridge_knopoff.running.section import Section
 from burridge_knopoff.running.settings import Settings
 from burridge_knopoff.running.simulation import run
 from burridge_knopoff.summaries import attractors
+from burridge_knopoff.summaries.sentences import lines_of
 
 VARIABLES = {
     "a": Variable(("value",), "f8", "friction parameter a: ascending; NaN beyond the last value of a law"),
@@ -67,3 +68,17 @@ def _sections(continuation: Continuation, window: float, section: Section) -> np
                 crossings = run(model, start, once, section_only=True).crossing_velocity[:CROSSINGS]
                 velocity[place, slot, : len(crossings)] = crossings
     return velocity
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return how many values of a were inserted between those of the grid, and the number of branches."""
+
+    def sentence(part: xarray.Dataset) -> str:
+        values, in_grid = np.isfinite(part["a"].values), part["in_grid"].values == 1
+        branches = len(np.unique(part["branch"].values[part["branch"].values >= 0]))
+        return (
+            f"{branches} branch{'es' * (branches != 1)} of attractors at {values.sum()} values of a, "
+            f"{np.count_nonzero(values & ~in_grid)} of them inserted where the attractors change"
+        )
+
+    return lines_of(data, ["law"], sentence)

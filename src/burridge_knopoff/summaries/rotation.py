@@ -21,7 +21,9 @@ from burridge_knopoff.motion.kind import REGULAR, MotionKind
 from burridge_knopoff.motion.modes import sliding_modes
 from burridge_knopoff.motion.rotation import rotation_number
 from burridge_knopoff.running.settings import Settings
+from burridge_knopoff.study.formatting import format_count, span
 from burridge_knopoff.summaries.detuning import TRANSIENT, WINDOW, detuned_model, detuned_motion
+from burridge_knopoff.summaries.sentences import lines_of
 
 TITLE = "Rotation number of branch 1, and branches 1 and 2 after detuning"
 
@@ -155,3 +157,23 @@ def summarize(refined: xarray.Dataset, models: Sequence[Model]) -> xarray.Datase
     return summary(
         "Rotation number of branch 1, and detuned branches", VARIABLES, values, coordinates, attributes, module=__name__
     )
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return at how many values of the grid a branch is locked, and the range of its rotation number."""
+    branch = data.attrs["branch"]
+
+    def sentence(part: xarray.Dataset) -> str:
+        locked, number = part["locked"].values, part["rotation_number"].values
+        mask = (locked >= 0) & (part["in_grid"].values == 1)
+        if not mask.any():
+            return f"branch {branch} is neither periodic nor quasiperiodic at any a of the grid"
+        words = (
+            f"branch {branch} is locked (periodic) at {np.count_nonzero(locked[mask] == 1)} of "
+            f"{format_count(int(mask.sum()), 'value')} of a in the grid at which it is periodic or quasiperiodic"
+        )
+        if np.isfinite(number).any():
+            words += f"; rotation number {span(f'{np.nanmin(number):.5g}', f'{np.nanmax(number):.5g}')}"
+        return words
+
+    return lines_of(data, ["law"], sentence)

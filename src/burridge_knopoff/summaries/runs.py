@@ -21,6 +21,8 @@ from burridge_knopoff.motion.period import SECTION, count_distinct, repetition_o
 from burridge_knopoff.motion.settings import MotionSettings
 from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.points import Grid, read_point
+from burridge_knopoff.summaries.sentences import RUN as LINE
+from burridge_knopoff.summaries.sentences import incomplete, lines_of
 
 #: Dimensions of a scalar of all runs.
 RUN = ("law", "initial", "a")
@@ -131,3 +133,13 @@ def settling_time(time: np.ndarray, distance: np.ndarray, levels: Sequence[float
         first = len(distance) - int(np.argmin(np.append((distance < level)[::-1], False)))
         settled.append(float(time[first]) if first < len(distance) else np.nan)
     return settled
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return how many runs of each law and initial state completed."""
+
+    def sentence(part: xarray.Dataset) -> str:
+        completed = part["status"].values == Status.COMPLETED
+        return next(incomplete(completed), f"all {completed.size} runs completed")
+
+    return lines_of(data, LINE, sentence)

@@ -13,11 +13,13 @@ import xarray
 from burridge_knopoff.dataset.summary import axes, summary
 from burridge_knopoff.dataset.variables import Variable, flag
 from burridge_knopoff.running.settings import SOLVERS
-from burridge_knopoff.running.status import STATUS_WORDS
+from burridge_knopoff.running.status import STATUS_WORDS, Status
+from burridge_knopoff.study.formatting import format_count
 from burridge_knopoff.study.study import Study
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events, read_point
 from burridge_knopoff.summaries.runs import RUN, over_runs
+from burridge_knopoff.summaries.sentences import incomplete
 
 NO_RUN = -1
 
@@ -123,3 +125,36 @@ def _runs_by(solver: str, runs: Grid, reference: Grid) -> xarray.Dataset:
     chosen = runs.of_laws([law for law, settings in runs.settings.items() if settings.solver == solver])
     values = over_runs(chosen, RUN_VARIABLES, _READ, compare)
     return xarray.Dataset({name: (RUN, array) for name, array in values.items()}, chosen.axes())
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return how far ⟨J⟩ and the order of events of other solvers differ from those of the study's points."""
+    lines = []
+    for law in data["law"].values:
+        main_solver = data.attrs[f"solver_{law}"]
+        reference = data.sel(law=law, solver=main_solver)
+        for solver in data["solver"].values:
+            part = data.sel(law=law, solver=solver)
+            status = part["status"].values
+            if solver == main_solver or (status == NO_RUN).all():
+                continue
+            runs = status != NO_RUN
+            completed = (status == Status.COMPLETED) & (reference["status"].values == Status.COMPLETED)
+            difference = np.where(completed, np.abs(part["difference"].values), np.nan)
+            words = []
+            if np.isfinite(difference).any():
+                i, k = np.unravel_index(np.nanargmax(difference), difference.shape)
+                largest, error = f"{difference[i, k]:.2g}", part["difference_error"].values[i, k]
+                where = f"{part['initial'].values[i]}, a = {part['a'].values[k]:g}"
+                words.append(f"<J> differs by at most {largest}{f' +- {error:.2g}' if error > 0.0 else ''} ({where})")
+            until = part["event_order_time"].values
+            end = np.fmin(part["end_time"].values, reference["end_time"].values)
+            same = runs & (until >= end)
+            order = f"the order of events is the same in {np.count_nonzero(same)} of {format_count(runs.sum(), 'run')}"
+            if (runs & ~same).any():
+                order += f" and in the others at least until tau = {until[runs & ~same].min():.4g}"
+            words.append(order)
+            lines.append(
+                f"{law}, {solver} compared with {main_solver}: {'; '.join([*words, *incomplete(completed[runs])])}"
+            )
+    return "\n".join(lines)

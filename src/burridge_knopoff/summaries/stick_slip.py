@@ -20,6 +20,8 @@ from burridge_knopoff.running.status import Status
 from burridge_knopoff.summaries.correlation import correlation
 from burridge_knopoff.summaries.points import EVENTS, Grid, all_events
 from burridge_knopoff.summaries.runs import RUN, over_runs
+from burridge_knopoff.summaries.sentences import RUN as LINE
+from burridge_knopoff.summaries.sentences import incomplete, lines_of, values_where
 
 STOP, START = 0, 1
 
@@ -181,3 +183,26 @@ def stick_fraction(time: np.ndarray, kind: np.ndarray, start: float, end: float,
     edge = np.clip(np.concatenate([[start], time, [end]]), start, end)
     stuck = np.concatenate([[before], kind == STOP])
     return float(np.diff(edge)[stuck].sum()) / (end - start)
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return where all blocks stop, the longest sticks, and where the end blocks move against each other."""
+
+    def sentence(part: xarray.Dataset) -> str:
+        a = part["a"].values
+        rate, stuck = part["stop_rate"].values, part["stick_fraction"].values
+        completed = np.isfinite(rate).all(axis=-1)
+        if not completed.any():
+            return "no run completed"
+        place, block = np.unravel_index(np.nanargmax(stuck), stuck.shape)
+        words = [f"every block stops {values_where(completed & (rate > 0.0).all(axis=-1), a)}"]
+        if stuck[place, block] > 0.0:
+            which = f"block {part['block'].values[block]} at a = {a[place]:g}"
+            words.append(f"the largest fraction of time in which a block sticks is {stuck[place, block]:.2g} ({which})")
+        negative = np.count_nonzero(part["velocity_correlation"].values < 0.0)
+        words.append(
+            f"the velocities of the end blocks are negatively correlated at {negative} of {len(a)} values of a"
+        )
+        return "; ".join([*words, *incomplete(completed)])
+
+    return lines_of(data, LINE, sentence)

@@ -21,7 +21,7 @@ import xarray
 from burridge_knopoff.attractors.asymptotic_states import asymptotic_states
 from burridge_knopoff.attractors.settings import GIVEN_STATE_KEYS, SearchSettings
 from burridge_knopoff.dataset.summary import axes, summary
-from burridge_knopoff.dataset.variables import Variable, flag
+from burridge_knopoff.dataset.variables import Answer, Variable, flag
 from burridge_knopoff.model.chain import Chain
 from burridge_knopoff.model.fields import settings_from_config
 from burridge_knopoff.model.initial import InitialState
@@ -36,6 +36,7 @@ from burridge_knopoff.running.trajectory import Trajectory
 from burridge_knopoff.study.model import models_of, motion_of
 from burridge_knopoff.summaries.event_order import common_order
 from burridge_knopoff.summaries.judgement import compare_states, pair_variables
+from burridge_knopoff.summaries.sentences import values_where
 
 BLOCKS = 2
 
@@ -226,3 +227,20 @@ def _one_block(
 def _event_sequence(trajectory: Trajectory) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return time, block and kind of all events of a run that has stored all of them with states."""
     return trajectory.event_time, trajectory.event_block, trajectory.event_kind
+
+
+def digest(data: xarray.Dataset) -> str:
+    """Return where the laws agree for all initial states of two blocks, and where they disagree for some."""
+    lines, first, a = [], data["law"].values[0], data["a"].values
+    for chain in data["chain"].values:
+        for other in data["other_law"].values:
+            answers = data["agrees"].sel(chain=chain, other_law=other).transpose("a", "state").values
+            agree, disagree = (answers == Answer.YES).all(axis=1), (answers == Answer.NO).any(axis=1)
+            states = data.sizes["state"]
+            all_states, some = ("the initial state",) * 2 if states == 1 else (f"all {states} initial states", "some")
+            words = f"from {all_states} they agree {values_where(agree, a)}; from {some} they disagree "
+            words += values_where(disagree, a)
+            if (unclear := ~agree & ~disagree).any():
+                words += f"; undetermined {values_where(unclear, a)}"
+            lines.append(f"{chain.replace('_', ' ')}, {other} law compared with the {first} law: {words}")
+    return "\n".join(lines)

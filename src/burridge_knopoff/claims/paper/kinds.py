@@ -23,7 +23,6 @@ from burridge_knopoff.claims.verdict import (
     NotTestableError,
     Verdict,
     describe_where,
-    format_values,
     join_words,
     judge_interval,
     worst_verdict,
@@ -36,6 +35,7 @@ from burridge_knopoff.motion.kind import (
     merge_chaos,
 )
 from burridge_knopoff.motion.settings import MotionSettings
+from burridge_knopoff.study.formatting import format_values
 from burridge_knopoff.study.paper import PAPER_LAWS
 from burridge_knopoff.summaries.plateaux import plateaux
 

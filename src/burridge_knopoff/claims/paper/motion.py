@@ -25,14 +25,13 @@ from burridge_knopoff.claims.verdict import (
     describe_where,
     extremes,
     format_shares,
-    format_values,
     judge_shares,
     judge_value,
     judge_worst_share,
     worst_verdict,
 )
 from burridge_knopoff.model.initial import PAPER_STATES
-from burridge_knopoff.study.formatting import span, with_error
+from burridge_knopoff.study.formatting import format_values, span, with_error
 from burridge_knopoff.study.paper import PAPER_LAWS
 
 if TYPE_CHECKING:
